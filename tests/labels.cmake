@@ -25,7 +25,7 @@ set(INTEGRATION_TESTS cases.study.study cases.field.field cases.commands.json
   cases.scenes.paper_fig8_direct cases.scenes.lost_curves cases.scenes.snubber_blade
   hard.three_degree hard.jumps hard.ends hard.friction hard.resonance hard.balance hard.pairs
   hard.peaks hard.isolas hard.parameters bench.stability bench.modal bench.contact
-  bench.integrate bench.lasting mhb.floquet.friction_limit docs.first_case
+  bench.integrate bench.lasting bench.study mhb.floquet.friction_limit docs.first_case
   mhb.ring.ring_step mhb.ring.neimark_sacker cases.install.install
   mhb.tracking.corner mhb.tracking.tracked_curve
   mesh.blade.shroud_angle)

@@ -209,7 +209,8 @@ static shb_status linear_limits(const modal_model *model, const mhb_settings *se
   for (int stuck = 0; stuck < 2 && status == SHB_OK; stuck++) {
     int branch;
     status = mhb_response_branch(response, stuck ? MHB_BRANCH_STUCK : MHB_BRANCH_OPEN, &branch);
-    if (status == SHB_OK) status = mhb_linear_limits(balance, response, branch);
+    if (status == SHB_OK && !settings->outline) /* an outline is of the curves between them */
+      status = mhb_linear_limits(balance, response, branch);
   }
   mhb_balance_destroy(balance);
   return status;

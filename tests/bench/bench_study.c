@@ -1,0 +1,126 @@
+/* Peaks of study designs: CPU time a design, and error against full sweeps.
+ *
+ *   bench_study FILE      a modal file: contact and excitation of cases/z_notch_blade, 15 designs
+ *   bench_study           a small random ring, 8 designs
+ *   bench_study --quick   the same, 3 designs
+ *
+ * A row is a design of preload and friction. The reference is a sweep of the whole range with 31
+ * harmonics and a tenth of the law's tolerance, and its highest point. A peak between two points of
+ * the reference is higher than both by up to some 1e-5, so that a positive error is no fault.
+ * Goal: no peak is lower than the reference by more than 1 %, the tolerance of the case. */
+#include <math.h>
+#include <omp.h>
+#include <stdio.h>
+#include <string.h>
+
+#include "cases/study/design_run.h"
+#include "mesh/base/constants.h"
+#include "mesh/base/progress.h"
+#include "mhb/branches/forced_response.h"
+#include "modal/model/model.h"
+#include "postproc/analysis/outputs.h"
+#include "tests/bench/z_notch_settings.h"
+#include "tests/support/random_model.h"
+
+enum { PRELOADS = 5, FRICTIONS = 3, OUTPUTS = 2 };
+
+static const double GOAL = 0.01;
+
+typedef struct {
+  double cpu, peak, error; /* s, m, estimated relative error */
+  double sweep, reference; /* s, m */
+} row;
+
+static double highest(const mhb_response *r) {
+  post_output first = post_output_primary(r);
+  double      most  = 0;
+  for (int k = 0; k < r->n_branches; k++) {
+    const mhb_branch *b = &r->branch[k];
+    if (b->kind != MHB_BRANCH_NONLINEAR) continue;
+    for (int i = 0; i < b->n_points; i++)
+      most = fmax(most, post_amplitude(r, b, i, first, post_first_harmonic(b)));
+  }
+  return most;
+}
+
+static shb_status measure(case_model *model, row *out) {
+  static const study_output output[OUTPUTS] = {{.quantity = STUDY_PEAK},
+                                               {.quantity = STUDY_FREQUENCY}};
+  design_study              one;
+  mhb_response             *r    = NULL;
+  mhb_settings              full = model->settings;
+  SHB_TRY(design_study_create(0, OUTPUTS, 0, &one));
+  study_design *design = design_study_add(&one, NULL);
+  double        began  = shb_processor_seconds();
+  shb_status    status = design ? design_run(NULL, model, OUTPUTS, output, design) : SHB_ERR_IO;
+  out->cpu             = shb_processor_seconds() - began;
+  if (design) {
+    out->peak  = design->value[0];
+    out->error = design->error[0] / design->value[0];
+  }
+  design_study_free(&one);
+  SHB_TRY(status);
+  full.motion_tolerance = 0;
+  full.harmonics        = 31;
+  full.stability        = MHB_STABILITY_NEVER;
+  full.tolerance *= 0.1;
+  began  = shb_processor_seconds();
+  status = mhb_forced_response(&model->model, &full, NULL, NULL, NULL, &r);
+  if (status != SHB_OK && status != SHB_NOT_CONVERGED) return status;
+  out->sweep     = shb_processor_seconds() - began;
+  out->reference = highest(r);
+  mhb_response_destroy(r);
+  return SHB_OK;
+}
+
+/* Returns the number of faults; -1 after an error. */
+static int table(case_model *model, const double *n0, const double *mu, int most) {
+  int    fault = 0, n = 0;
+  double cpu = 0, sweep = 0, worst = 0;
+  printf("%9s %5s %12s %10s %10s %8s %8s\n", "n0, N", "mu", "peak, m", "error", "estimated", "s",
+         "sweep s");
+  for (int i = 0; i < PRELOADS * FRICTIONS && n < most; i++, n++) {
+    row one;
+    model->settings.n_preloads = 1;
+    model->settings.n0[0]      = n0[i % PRELOADS];
+    model->settings.mu         = mu[i / PRELOADS];
+    if (measure(model, &one) != SHB_OK) return -1;
+    double error = one.peak / one.reference - 1;
+    fault += !(error > -GOAL);
+    worst = fmax(worst, fabs(error));
+    cpu += one.cpu;
+    sweep += one.sweep;
+    printf("%9.4g %5.2f %12.6g %+10.1e %10.1e %8.3f %8.3f  %s\n", model->settings.n0[0],
+           model->settings.mu, one.peak, error, one.error, one.cpu, one.sweep,
+           error > -GOAL ? "good" : "BAD");
+    fflush(stdout);
+  }
+  printf("mean: %.3f s a design, %.3f s a sweep; largest error %.1e\n", cpu / n, sweep / n, worst);
+  return fault;
+}
+
+int main(int argc, char **argv) {
+  static const double z_n0[PRELOADS] = {8, 12, 25, 60, 200}, z_mu[FRICTIONS] = {0.3, 0.2, 0.45};
+  static const double s_n0[PRELOADS]  = {0.15, 0.25, 0.4, 0.1, 0.6},
+                      s_mu[FRICTIONS] = {0.4, 0.3, 0.5};
+  int        quick = argc > 1 && !strcmp(argv[1], "--quick"), from_file = argc > 1 && !quick;
+  case_model model  = {.settings = from_file ? z_notch_settings() : random_settings(7)};
+  shb_status status = SHB_OK;
+  omp_set_num_threads(1);
+  model.settings.lasting = MHB_LASTING_NEVER;
+  if (from_file) {
+    status = modal_model_read(argv[1], &model.model);
+  } else {
+    random_model(1, WITH_LEFT, 1, &model.model);
+    model.settings.motion_tolerance = 0.01;
+    model.settings.frequency[0]     = 0.6 / SHB_TWO_PI;
+    model.settings.frequency[1]     = 1.6 / SHB_TWO_PI;
+  }
+  int fault = status != SHB_OK ? -1
+              : from_file      ? table(&model, z_n0, z_mu, PRELOADS * FRICTIONS)
+                               : table(&model, s_n0, s_mu, quick ? 3 : 8);
+  if (fault < 0) fprintf(stderr, "%s\n", shb_message());
+  printf("%s\n", fault ? "FAULTS" : "no peak is lower than its reference by more than 1 %");
+  modal_model_free(&model.model);
+  return fault != 0;
+}
