@@ -7,8 +7,9 @@
 #include "cases/study/exact_peak.h"
 #include "mhb/branches/forced_response.h"
 
-/* Harmonics of the sweeps, tried in turn until the peak can be solved beside the curve; 0: those of
- * the case, which may take a hundred times as long. On z_notch_blade the peaks of three harmonics are within 8 % of those of 31. */
+/* Harmonics of the sweeps, tried in turn until the peak can be solved beside the curve. 0: those of
+ * the case, which may take a hundred times as long. On z_notch_blade the peaks of three harmonics
+ * are within 8 % of those of 31. */
 static const int sweeps[] = {3, 7, 15, 0};
 enum { N_SWEEPS = sizeof sweeps / sizeof *sweeps };
 

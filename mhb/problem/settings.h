@@ -98,8 +98,8 @@ typedef struct {
   char                output[MHB_NAME]; /* whose peak: a probe or "contact"; "": the first probe */
   const struct mhb_speed_table
       *run_up; /* NULL: one speed. Else the modal model follows the frequency. */
-  /* The curve in outline, with a fixed number of harmonics: peaks are not located, the errors of
-   * points are unknown (NAN), and the linear limits have no points. */
+  /* The curve in outline, with a fixed number of harmonics: peaks are not located, and the errors
+   * of points are unknown (NAN). The linear limits have no points. */
   bool outline;
   bool resume; /* take over the finished branches of an interrupted run of equal settings */
 } mhb_settings;
