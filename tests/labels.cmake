@@ -46,7 +46,7 @@ if(SHROUDHB_SANITIZE OR CMAKE_BUILD_TYPE STREQUAL "Debug") # no optimisation, ev
 endif()
 
 if(TARGET shroudhb-study)
-  list(APPEND SLOW_TESTS cases.scenes.shroud_angle)
+  list(APPEND SLOW_TESTS cases.scenes.shroud_angle cases.scenes.robust_preload)
 endif()
 
 get_property(all_tests DIRECTORY PROPERTY TESTS)

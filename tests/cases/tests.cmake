@@ -94,6 +94,7 @@ shb_scene_test(snubber_blade snubber_blade)
 shb_scene_test(optimum_preload optimum_preload)
 if(TARGET shroudhb-study)
   shb_scene_test(shroud_angle shroud_angle)
+  shb_scene_test(robust_preload robust_preload)
 endif()
 
 if(SHROUDHB_PYTHON)

@@ -1,0 +1,97 @@
+/* The study of the preload that is robust: the numbers of its README. */
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include <cmocka.h>
+
+#include "postproc/study/study_effects.h"
+#include "postproc/study/study_file.h"
+#include "tests/support/check.h"
+#include "tests/support/scratch.h"
+
+enum { GROUPS = 5, EACH = 72, LEVELS = 3 };
+
+static char         folder[SCRATCH_PATH];
+static design_study study;
+
+static int run_study(void **state) {
+  (void)state;
+  char command[8 * SCRATCH_PATH], path[SCRATCH_PATH + 64];
+  scratch_create(folder);
+  snprintf(command, sizeof command,
+           "mkdir '%s/z_notch_blade' '%s/robust_preload' && cp '%s/../z_notch_blade/case.yaml' "
+           "'%s/z_notch_blade' && cp '%s/study.yaml' '%s/robust_preload' && "
+           "cd '%s/robust_preload' && '%s' study --quiet study.yaml",
+           folder, folder, SCENE, folder, SCENE, folder, folder, SHROUDHB);
+  if (system(command) != 0) return 1;
+  snprintf(path, sizeof path, "%s/robust_preload/robust_preload.study.h5", folder);
+  return study_file_read(path, &study) != SHB_OK;
+}
+
+static int clean(void **state) {
+  (void)state;
+  char command[SCRATCH_PATH + 16];
+  design_study_free(&study);
+  snprintf(command, sizeof command, "rm -rf '%s'", folder);
+  return system(command);
+}
+
+static const double *percentiles(const double *of, int group) {
+  return of + group * study.n_outputs * LEVELS; /* of the first output */
+}
+
+/* um: percentiles 5, 50 and 95 %, and the bounds of the last */
+static void percentiles_are_those_of_the_table(void **state) {
+  (void)state;
+  static const double preload[GROUPS]            = {10, 12, 14, 17, 21};
+  static const double wanted[GROUPS][LEVELS + 2] = {{28.70, 36.11, 45.17, 42.15, 61.58},
+                                                    {28.50, 35.59, 42.94, 40.50, 49.38},
+                                                    {29.74, 35.39, 43.43, 39.83, 51.87},
+                                                    {31.82, 36.04, 45.88, 42.38, 54.13},
+                                                    {33.43, 41.08, 54.22, 49.99, 63.54}};
+  double              worst                      = 0;
+  assert_int_equal(study.n, GROUPS * EACH);
+  assert_int_equal(study.robust.n_groups, GROUPS);
+  for (int g = 0; g < GROUPS; g++) {
+    const double *p               = percentiles(study.robust.percentile, g);
+    const double  row[LEVELS + 2] = {p[0], p[1], p[2],
+                                     percentiles(study.robust.percentile_low, g)[2],
+                                     percentiles(study.robust.percentile_high, g)[2]};
+    assert_near(study.robust.key[g], preload[g], 1e-12);
+    assert_int_equal(study.robust.n_samples[g], EACH);
+    for (int i = 0; i < LEVELS + 2; i++)
+      worst = fmax(worst, fabs(row[i] / (1e-6 * wanted[g][i]) - 1));
+  }
+  print_message("percentiles within %.1e\n", worst);
+  assert_true(worst < 0.01);
+}
+
+/* Its interval is clear of 21 N and of no other preload. */
+static void twelve_newtons_are_best_and_told_from_21(void **state) {
+  (void)state;
+  int level, best = study_best_group(&study, &level);
+  assert_int_equal(best, 1);
+  assert_near(study.robust.level[level], 95, 0);
+  assert_int_equal(study_count_equal_groups(&study, best, level), GROUPS - 2);
+}
+
+/* 35.07 um is the optimum without scatter, cases/optimum_preload. */
+static void scatter_costs_a_fifth(void **state) {
+  (void)state;
+  assert_near(percentiles(study.robust.percentile, 1)[2] / 35.07e-6, 1.22, 0.02);
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(percentiles_are_those_of_the_table),
+      cmocka_unit_test(twelve_newtons_are_best_and_told_from_21),
+      cmocka_unit_test(scatter_costs_a_fifth),
+  };
+  return cmocka_run_group_tests(tests, run_study, clean);
+}
