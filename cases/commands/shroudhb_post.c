@@ -1,6 +1,7 @@
 /* shroudhb-post: the report of a case from its response file, or the contents of an HDF5 file. No
  * MPI. */
 #include <cblas.h>
+#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -21,13 +22,14 @@
 #include "postproc/report/publish.h"
 #include "postproc/study/study_publish.h"
 #include "postproc/summary/json.h"
+#include "postproc/summary/mode_summary.h"
 #include "postproc/summary/summary.h"
 #include "postproc/summary/table_json.h"
 
 static const char usage[] =
     "usage: shroudhb-post [--quiet] [--verbose] [--json] [--no-report] [--set KEY=VALUE]...\n"
     "                     [--into FOLDER] CASE.yaml\n"
-    "       shroudhb-post --summary | --modes | --check CASE.yaml\n"
+    "       shroudhb-post --summary | --modes | --check | --facts CASE.yaml\n"
     "       shroudhb-post [--quiet] [--verbose] NAME.study.h5\n"
     "       shroudhb-post --inspect [--verbose] FILE.h5 [OTHER.h5]\n"
     "       shroudhb-post --inspect [--csv | --json] FILE.h5 PATH[SELECTION]\n"
@@ -42,6 +44,7 @@ static const char usage[] =
     "--summary\n"
     "(nothing is written), --modes (of the modal file alone) and --check (name and parts of the "
     "case).\n"
+    "--facts prints mass, lowest mode and static stress of the modal file.\n"
     "--no-report leaves out page and picture.\n"
     "Of a study file: NAME.study.html, NAME.study.csv and NAME.study.svg.\n"
     "With --inspect: what an HDF5 file holds; --verbose unfolds everything, case text and settings "
@@ -258,6 +261,24 @@ static shb_status print_summary(const case_file *file, bool curves) {
   return status;
 }
 
+/* --facts: what the modal file of the case tells of its blade, for `shroudhb check`. */
+static shb_status print_facts(const case_file *file) {
+  static const double rpm    = 9.549296585513721; /* a radian a second */
+  post_modes          modes  = {0};
+  char               *modal  = current_modal(file);
+  shb_status          status = modal ? post_modes_read(modal, &modes) : SHB_OK;
+  if (modes.n > 0) {
+    printf("  modal     lowest mode %.6g Hz", modes.frequency[0]);
+    if (isfinite(modes.mass)) printf(", mass %.4g kg", modes.mass);
+    if (isfinite(modes.static_stress))
+      printf(", static stress %.4g MPa at %.5g rpm", modes.static_stress / 1e6, modes.speed * rpm);
+    printf("\n");
+  }
+  post_modes_free(&modes);
+  free(modal);
+  return status;
+}
+
 /* --check: what a case in order is called. */
 static shb_status print_check(const case_file *file) {
   post_buffer text = {0};
@@ -344,6 +365,7 @@ static shb_status work(const case_file *file, const command_options *options) {
   if (strcmp(mode, "summary") == 0) return print_summary(file, true);
   if (strcmp(mode, "modes") == 0) return print_summary(file, false);
   if (strcmp(mode, "check") == 0) return print_check(file);
+  if (strcmp(mode, "facts") == 0) return print_facts(file);
   return publish(file, options);
 }
 

@@ -16,6 +16,7 @@
 #include "cases/parse/keys.h"
 #include "cases/parse/yaml.h"
 #include "cases/schema/case.h"
+#include "cases/schema/case_paths.h"
 #include "cases/schema/key_schema.h"
 
 static const char usage[] =
@@ -33,7 +34,8 @@ static const char usage[] =
     "  study STUDY.yaml   many designs of a case on all cores; `shroudhb study --help`\n"
     "  check FILE.yaml    check a case file or a study file, run nothing\n"
     "  keys               every key of a case file: unit, range, default, meaning; --markdown\n"
-    "                     prints the page docs/user/case_reference.md, --schema a JSON Schema\n"
+    "                     prints the page docs/user/case_reference.md, --schema a JSON Schema,\n"
+    "                     --schema=motion that of a file for contact\n"
     "  inspect FILE.h5    what a modal or response file holds; of two modal files: A.h5 B.h5;\n"
     "                     FILE.h5 PATH prints values, 'branch_2/motion[peak,0,:,1]'; --csv\n"
     "  field NAME.response.h5  the moving blade: motion and stress everywhere over a period, for\n"
@@ -123,7 +125,9 @@ static int keys_main(const char *name, int argc, char **argv, run_words end) {
   }
   void (*print)(FILE *) = case_print_keys;
   if (argc > 1 && strcmp(argv[1], "--markdown") == 0) print = case_print_reference;
-  if (argc > 1 && strcmp(argv[1], "--schema") == 0) print = case_print_schema;
+  if (argc > 1 && (strcmp(argv[1], "--schema") == 0 || strcmp(argv[1], "--schema=case") == 0))
+    print = case_print_schema;
+  if (argc > 1 && strcmp(argv[1], "--schema=motion") == 0) print = case_print_motion_schema;
   int taken = print == case_print_keys ? 1 : 2;
   if (argc > taken) {
     fprintf(stderr, "shroudhb: error: keys takes --markdown or --schema; unexpected '%s'\n",
@@ -221,6 +225,25 @@ static bool is_study(const char *path) {
   return study;
 }
 
+/* With a modal file there is more to tell; the program that reads it does. */
+static void add_facts(const case_file *file, int argc, char **argv) {
+  char  *modal = case_modal_path(file), facts[] = "--facts";
+  bool   there   = modal && access(modal, R_OK) == 0;
+  char  *program = subprocess_program("shroudhb-post");
+  char **words   = calloc((size_t)argc + 3, sizeof *words);
+  if (there && words && program) {
+    subprocess_result result;
+    words[0] = program;
+    words[1] = facts;
+    for (int i = 1; i < argc; i++) words[i + 1] = argv[i];
+    fflush(stdout);
+    (void)subprocess_run(words, &result); /* its own message, if any, is on standard error */
+  }
+  free(modal);
+  free(program);
+  free(words);
+}
+
 static int check_main(const char *name, int argc, char **argv, run_words end) {
   (void)name;
   command_options options;
@@ -230,7 +253,10 @@ static int check_main(const char *name, int argc, char **argv, run_words end) {
   if (is_study(options.path)) return become("study", study, argc, argv, end);
   case_file  file;
   shb_status status = command_read(&options, RUN_ALL | CASE_OR_MODES, &file);
-  if (status == SHB_OK && !options.quiet) run_describe(&file, stdout);
+  if (status == SHB_OK && !options.quiet) {
+    run_describe(&file, stdout);
+    add_facts(&file, argc, argv);
+  }
   if (status == SHB_OK) case_free(&file);
   return command_finish(status);
 }

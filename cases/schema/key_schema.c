@@ -3,6 +3,8 @@
 #include <string.h>
 
 #include "cases/parse/key_table.h"
+#include "cases/parse/reader.h"
+#include "cases/schema/motion.h"
 
 /* ---------------------------------------------------------------- JSON */
 
@@ -233,15 +235,26 @@ static void print_block(case_keys keys, const char *block, int depth, FILE *out)
   fputs("}}", out);
 }
 
-void case_print_schema(FILE *out) {
+static void print_schema(const char *title, case_keys keys, FILE *out) {
+  fprintf(out,
+          "{\"$schema\": \"http://json-schema.org/draft-07/schema#\",\n"
+          "\"title\": \"shroudhb %s file\",\n",
+          title);
   fputs(
-      "{\"$schema\": \"http://json-schema.org/draft-07/schema#\",\n"
-      "\"title\": \"shroudhb case file\",\n"
       "\"definitions\": {\"quantity\": {\"type\": \"string\", \"description\": \"a number with its "
       "unit\",\n"
       "  \"pattern\": \"^[-+]?([0-9]+[.]?[0-9]*|[.][0-9]+)([eE][-+]?[0-9]+)? *[^ 0-9].*$\"}},\n"
       "\"allOf\": [",
       out);
-  print_block(case_key_table(), "", 1, out);
+  print_block(keys, "", 1, out);
   fputs("]}\n", out);
+}
+
+void case_print_schema(FILE *out) {
+  print_schema("case", case_key_table(), out);
+}
+
+void case_print_motion_schema(FILE *out) {
+  case_key row[CASE_MAX_KEYS];
+  print_schema("motion", case_motion_keys(row), out);
 }

@@ -7,5 +7,7 @@
 /* The schema of a case file. It holds names, types, words, ranges of bare numbers, and the help of
  * every key. What depends on other keys is left to the program itself. */
 void case_print_schema(FILE *out);
+/* That of a motion file for `shroudhb contact`. */
+void case_print_motion_schema(FILE *out);
 
 #endif

@@ -10,14 +10,17 @@
 #include "cases/parse/value_context.h"
 
 static const case_key signal_rows[] = {
-    {"motion.v", CASE_SIGNAL, "m", .required = true, .stages = CASE_MHB},
-    {"motion.u", CASE_SIGNAL, "m", .required = true, .stages = CASE_MHB},
-    {"motion.w", CASE_SIGNAL, "m", .required = true, .stages = CASE_MHB},
+    {"motion.v", CASE_SIGNAL, "m", .required = true, .stages = CASE_MHB,
+     .help = "normal motion: [[amplitude, phase], ...] of harmonics 0, 1, ..."},
+    {"motion.u", CASE_SIGNAL, "m", .required = true, .stages = CASE_MHB,
+     .help = "tangential motion, as v"},
+    {"motion.w", CASE_SIGNAL, "m", .required = true, .stages = CASE_MHB,
+     .help = "the other tangential motion, as v"},
 };
 
 /* The rows of the contact block and those of the motion. The accuracy is the highest, since a
  * single evaluation is cheap. */
-static case_keys motion_table(case_key row[CASE_MAX_KEYS]) {
+case_keys case_motion_keys(case_key row[CASE_MAX_KEYS]) {
   case_keys all = case_key_table();
   int       n   = 0;
   for (int i = 0; i < all.n && n < CASE_MAX_KEYS - 3; i++)
@@ -64,7 +67,7 @@ static bool read_document(case_issues *issues, case_motion *out) {
   if (!root && issues->n > 0) return true;
   case_key    row[CASE_MAX_KEYS];
   case_file   file   = {.folder = "."};
-  case_reader reader = {.issues = issues, .keys = motion_table(row), .file = &file};
+  case_reader reader = {.issues = issues, .keys = case_motion_keys(row), .file = &file};
   case_reader_walk(&reader, root);
   if (root && root->kind == CASE_MAPPING) case_reader_require(&reader, CASE_MHB);
   if (file.mhb.n_preloads > 1 && case_reader_good(&reader, "contact.n0"))

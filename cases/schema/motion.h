@@ -5,6 +5,8 @@
 #include <complex.h>
 #include <stdio.h>
 
+#include "cases/parse/keys.h"
+#include "cases/parse/reader.h"
 #include "mesh/base/status.h"
 #include "mhb/problem/settings.h"
 
@@ -16,6 +18,9 @@ typedef struct {
   int             n_harmonics; /* the longest of the three signals, at least 1 */
   double complex *motion; /* [3 (v, u, w)][n_harmonics + 1] m; x(t) = Re sum_k A_k exp(j k w t) */
 } case_motion;
+
+/* The keys of a motion file: those of contact, and the three signals. */
+case_keys case_motion_keys(case_key row[CASE_MAX_KEYS]);
 
 /* Read and check a motion file. Errors as in case_read. */
 shb_status case_motion_read(const char *path, FILE *errors, case_motion *out);

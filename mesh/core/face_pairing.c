@@ -1,6 +1,7 @@
 #include "mesh/core/face_pairing.h"
 
 #include <math.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -206,7 +207,7 @@ static shb_status take_match(int n, int *right, int *left, mesh_pairing *out) {
   return status;
 }
 
-shb_status mesh_pairing_create(const mesh_fe *mesh, mesh_axis axis, int blades, mesh_pairing *out) {
+static shb_status pair(const mesh_fe *mesh, mesh_axis axis, int blades, mesh_pairing *out) {
   int *right = NULL, *left = NULL, n = 0;
   memset(out, 0, sizeof *out);
   shb_status status  = mesh_fe_match(mesh, axis, blades, &n, &right, &left);
@@ -218,6 +219,56 @@ shb_status mesh_pairing_create(const mesh_fe *mesh, mesh_axis axis, int blades, 
   }
   if (status != SHB_OK) mesh_pairing_free(out);
   return status;
+}
+
+/* Mean place of the nodes of a group, without its axial part. */
+static void middle(const mesh_fe *mesh, mesh_set_id id, const double axial[3], double out[3]) {
+  const mesh_face_set *set = &mesh->set[id];
+  const int            n   = mesh_topology_of(mesh->kind)->face_nodes * set->n;
+  memset(out, 0, 3 * sizeof *out);
+  for (int i = 0; i < n; i++)
+    for (int d = 0; d < 3; d++) out[d] += mesh->coordinates[3 * (size_t)set->nodes[i] + d] / n;
+  double along = out[0] * axial[0] + out[1] * axial[1] + out[2] * axial[2];
+  for (int d = 0; d < 3; d++) out[d] -= along * axial[d];
+}
+
+/* Number of blades as of the angle between the two faces; 0 if there is none. */
+static int blades_of_faces(const mesh_fe *mesh, mesh_axis axis) {
+  double axial[3], right[3], left[3];
+  mesh_axis_vector(axis, axial);
+  middle(mesh, MESH_CONTACT_RIGHT, axial, right);
+  middle(mesh, MESH_CONTACT_LEFT, axial, left);
+  double turn = 0, same = 0;
+  for (int d = 0; d < 3; d++) {
+    int b = (d + 1) % 3, c = (d + 2) % 3;
+    turn += axial[d] * (left[b] * right[c] - left[c] * right[b]);
+    same += left[d] * right[d];
+  }
+  double count = SHB_TWO_PI / fabs(atan2(turn, same));
+  return count >= 2 && count < 1000 ? (int)lround(count) : 0;
+}
+
+/* Add to the message the number of blades with which the faces would match. */
+static shb_status name_blades(const mesh_fe *mesh, mesh_axis axis, int blades, shb_status status) {
+  char      why[512];
+  const int about = blades_of_faces(mesh, axis);
+  snprintf(why, sizeof why, "%s", shb_message());
+  for (int i = 0; i < 3 && about > 0; i++) {
+    int          n     = about + (int[]){0, -1, 1}[i];
+    mesh_pairing other = {0};
+    bool         fits  = n >= 2 && n != blades && pair(mesh, axis, n, &other) == SHB_OK;
+    mesh_pairing_free(&other);
+    if (fits)
+      return shb_fail(status, __FILE__, __LINE__, "%s; with rotor.blades: %d, not %d, they match",
+                      why, n, blades);
+  }
+  return shb_fail(status, __FILE__, __LINE__, "%s", why);
+}
+
+shb_status mesh_pairing_create(const mesh_fe *mesh, mesh_axis axis, int blades, mesh_pairing *out) {
+  shb_status status = pair(mesh, axis, blades, out);
+  bool       both   = mesh->set[MESH_CONTACT_RIGHT].n && mesh->set[MESH_CONTACT_LEFT].n;
+  return status == SHB_ERR_INPUT && both ? name_blades(mesh, axis, blades, status) : status;
 }
 
 void mesh_pairing_free(mesh_pairing *pairing) {

@@ -73,6 +73,10 @@ run 0 inspect bracket.modal.h5
 grep -q '5 modes .*; no contact' out || fail "inspect says nothing of missing contact"
 run 0 check bracket.yaml
 grep -q 'modes alone' out || fail "check says nothing of modes alone"
+grep -q 'lowest mode 92.41[0-9]* Hz, mass 0.353[23] kg' out || {
+  fail "check does not tell what the modal file holds"
+  cat out
+}
 
 for command in mhb run integrate; do
   run 2 $command bracket.yaml
@@ -95,6 +99,15 @@ run 0 modal --quiet --set 'rotor.speed=[0 rpm, 3000 rpm]' --set 'probe={tip: [0,
   bracket.yaml
 run 0 inspect bracket.modal.h5
 grep -q '2 speeds' out || fail "no Campbell diagram"
+
+# the blade count that fits is told
+sed '/^mesh:/,/^ *$/d; /^excitation:/,/^ *$/d' "$blade" >ring.yaml
+cat >>ring.yaml <<'END'
+mesh: {file: ring.msh}
+END
+run 0 mesh --quiet --set mesh.blade.size=20mm --set name=ring "$blade" --into .
+run 2 modal --quiet --set rotor.blades=41 --set name=counted ring.yaml
+says 'with rotor.blades: 40, not 41, they match'
 
 # a blade without a load: modes and contact, but nothing for the balance to answer to
 sed '/^excitation:/,/^ *$/d' "$blade" >blade.yaml

@@ -43,4 +43,16 @@ for name, change in {
     "two numbers for three": lambda c: c["excitation"].update(traction=[1, 2]),
 }.items():
     assert faults(change) > 0, name
-print(f"{len(files)} case files, 8 faults")
+motion = json.loads(subprocess.run([program, "keys", "--schema=motion"], check=True,
+                                   capture_output=True).stdout)
+jsonschema.Draft7Validator.check_schema(motion)
+validator = jsonschema.Draft7Validator(motion)
+for file in sorted((cases / "prescribed_motion").glob("*.yaml")):
+    good = yaml.safe_load(file.read_text())
+    for error in validator.iter_errors(good):
+        sys.exit(f"{file}: {error.json_path}: {error.message}")
+    good["motion"]["x"] = []
+    assert list(validator.iter_errors(good)), "unknown signal"
+    good["motion"] = {"v": 3}
+    assert list(validator.iter_errors(good)), "no list"
+print(f"{len(files)} case files, 8 faults; motion files")
