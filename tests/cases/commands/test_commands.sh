@@ -119,6 +119,7 @@ run 2 keys --markdown more; says err "unexpected 'more'"
 run 0 check good.yaml; says out 'good.yaml: ok'; says out '37 blades, engine order 7'; silent err
 run 0 check --quiet good.yaml; silent out; silent err
 run 0 check brought.yaml; says out 'from given.modal.h5'
+called 'post --facts brought.yaml;' # what the modal file holds
 run 2 check bad.yaml; silent out
 says err 'bad.yaml:14:11: error: contact.mue: unknown key; did you mean'
 says err "bad.yaml:15:19: error: mhb.frequency[0]: '90 Hx': unknown unit 'Hx'; expected Hz"
