@@ -87,13 +87,14 @@ static int allocate(mhb_receptance *r) {
   r->interface          = shb_arena_take(a, n / 3, sizeof *r->interface);
   r->phase              = shb_arena_take(a, K, sizeof *r->phase);
   r->updated_at         = shb_arena_take(a, K, sizeof *r->updated_at);
+  r->load_at            = shb_arena_take(a, K, sizeof *r->load_at);
   r->lambda             = shb_arena_take(a, K * m, sizeof *r->lambda);
-  r->R                  = shb_arena_take(a, K * n * n, sizeof *r->R);
+  r->R                  = calloc(K * n * n, sizeof *r->R);
   r->free               = shb_arena_take(a, K * n, sizeof *r->free);
   r->free_response_unit = shb_arena_take(a, K * n, sizeof *r->free_response_unit);
   r->scratch            = shb_arena_take(a, 4 * m, sizeof *r->scratch);
   r->BL                 = shb_arena_take(a, n * m, sizeof *r->BL);
-  return !a->failed;
+  return !a->failed && r->R;
 }
 
 /* Inter-blade phase of the fundamental, rad. */
@@ -111,8 +112,8 @@ static shb_status set_blade(mhb_receptance *r, const mhb_settings *settings) {
     SHB_TRY(set_axes(r, settings, i));
   }
   for (int k = 0; k <= r->n_harmonics; k++) {
-    r->updated_at[k] = NAN;
-    r->phase[k]      = cexp(-I * fmod(k * step, SHB_TWO_PI));
+    r->updated_at[k] = r->load_at[k] = NAN;
+    r->phase[k]                      = cexp(-I * fmod(k * step, SHB_TWO_PI));
   }
   SHB_TRY(mhb_modal_part_create(r->model, relative, r->nu, r->n_harmonics, r->phase, &r->part));
   r->B              = r->part->B;
@@ -165,6 +166,7 @@ void mhb_receptance_destroy(mhb_receptance *r) {
   mhb_modal_part_destroy(r->part);
   mhb_speed_model_destroy(r->at);
   shb_arena_free(&r->arena);
+  free(r->R);
   free(r);
 }
 
@@ -235,6 +237,27 @@ static void harmonic_at(mhb_receptance *r, int k) {
                 r->B + (size_t)k * (size_t)n * (size_t)m, m, &one, R, n);
 }
 
+/* lambda and free, as harmonic_at makes them, without R. */
+static void load_at(mhb_receptance *r, int k) {
+  int             n = r->n, m = r->n_modes;
+  double          w = k * r->omega / r->nu, *L = r->scratch, *y = L + 2 * m;
+  double complex *u = r->free_response_unit + k * n;
+  const double *re = mhb_modal_part_split(r->part, k, 0), *im = mhb_modal_part_split(r->part, k, 1);
+  const double *load_re = re + n * m, *load_im = im + n * m;
+  set_lambda(r, w, L, L + m);
+  for (int i = 0; i < m; i++) {
+    r->lambda[k * m + i] = CMPLX(L[i], L[m + i]);
+    y[i]                 = L[i] * load_re[i] - L[m + i] * load_im[i];
+    y[m + i]             = L[i] * load_im[i] + L[m + i] * load_re[i];
+  }
+  memset(u, 0, sizeof *u * (size_t)n);
+  mhb_residual_terms_load(r->residual_terms, k, w, 1, u);
+  for (int a = 0; a < n; a++, re += m, im += m) {
+    u[a] += product(m, y, y + m, re, im, 1);
+    r->free[k * n + a] = r->scale * u[a];
+  }
+}
+
 void mhb_receptance_set_frequency(mhb_receptance *r, double omega) {
   r->omega = omega;
   if (!r->at || r->at->omega == omega) return;
@@ -242,13 +265,23 @@ void mhb_receptance_set_frequency(mhb_receptance *r, double omega) {
   mhb_modal_part_update(r->part);
 }
 
+/* Without a run-up the mean does not depend on the frequency. */
+static double frequency_of(const mhb_receptance *r, int k) {
+  return k == 0 && !r->at ? 0 : r->omega;
+}
+
 void mhb_receptance_update(mhb_receptance *r, int k) {
-  double w = k == 0 && !r->at
-                 ? 0
-                 : r->omega; /* without a run-up the mean does not depend on the frequency */
+  double w = frequency_of(r, k);
   if (r->updated_at[k] == w) return;
   harmonic_at(r, k);
-  r->updated_at[k] = w;
+  r->updated_at[k] = r->load_at[k] = w;
+}
+
+void mhb_receptance_update_load(mhb_receptance *r, int k) {
+  double w = frequency_of(r, k);
+  if (r->load_at[k] == w) return;
+  load_at(r, k);
+  r->load_at[k] = w;
 }
 
 void mhb_receptance_at(mhb_receptance *r, double omega, int top) {
@@ -280,7 +313,7 @@ MHB_INLINE void drive(const mhb_receptance *r, int k, const double complex *p, d
     yr[i] = r->scale * re[n * m + i];
     yi[i] = r->scale * im[n * m + i];
   }
-  for (int b = 0; b < n; b++, re += m, im += m) {
+  for (int b = 0; p && b < n; b++, re += m, im += m) {
     double pr = creal(p[b]), pi = cimag(p[b]);
     for (int i = 0; i < m; i++) {
       yr[i] -= re[i] * pr + im[i] * pi;

@@ -42,8 +42,9 @@ typedef struct {
   double                scale;              /* of the excitation */
   double                omega;              /* rad/s, of mhb_receptance_set_frequency */
   double               *updated_at;         /* [k] rad/s of the arrays below, NAN: never */
+  double               *load_at;            /* [k] the same of lambda and free */
   double complex       *lambda;             /* [k][modes] L */
-  double complex       *R;                  /* [k][n][n] m/N */
+  double complex       *R;                  /* [k][n][n] m/N; memory is touched when R_k is made */
   double complex       *free;               /* [k][n] m, response without contact */
   double complex       *free_response_unit; /* the same at scale 1 */
   double               *scratch;            /* [4][modes] */
@@ -67,6 +68,9 @@ void mhb_receptance_set_frequency(mhb_receptance *receptance, double omega);
 /* lambda, R and free of harmonic k. Not for two threads at once. */
 void mhb_receptance_update(mhb_receptance *receptance, int k);
 
+/* lambda and free alone: R is not made. Not for two threads at once. */
+void mhb_receptance_update_load(mhb_receptance *receptance, int k);
+
 /* Both, harmonics 0..top. */
 void mhb_receptance_at(mhb_receptance *receptance, double omega, int top);
 
@@ -82,7 +86,7 @@ void mhb_receptance_motion(const mhb_receptance *receptance, int k, const double
 void mhb_receptance_amplitudes(const mhb_receptance *receptance, int k, const double complex *p,
                                double complex *amplitude);
 
-/* slope[n] <- d/d omega of harmonic k of free - R p, at fixed p[n]. */
+/* slope[n] <- d/d omega of harmonic k of free - R p, at fixed p[n]; p NULL: of free. */
 void mhb_receptance_slope(const mhb_receptance *receptance, int k, const double complex *p,
                           double complex *slope);
 

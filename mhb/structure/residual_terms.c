@@ -224,7 +224,7 @@ static double complex drive(const mhb_residual_terms *l, int k, int i, double lo
   const int             r = l->model->n_residual;
   const double complex *S = shapes(l, k) + i;
   double complex        f = load * l->F[k * r + i];
-  for (int a = 0; a < l->relative.n; a++) f -= conj(S[a * r]) * p[a];
+  for (int a = 0; p && a < l->relative.n; a++) f -= conj(S[a * r]) * p[a];
   return f;
 }
 
@@ -237,7 +237,7 @@ static void add_terms(const mhb_residual_terms *l, int k, const modal_series *s,
   for (int a = 0; a < n; a++) {
     to[a] += factor * load * series(l->load, loaded, (size_t)k * (size_t)n + (size_t)a);
     for (int t = 0; t < MODAL_TERMS; t++)
-      if (l->contact[t] && contact[t] != 0)
+      if (p && l->contact[t] && contact[t] != 0)
         to[a] -= factor * contact[t] * mhb_cyclic_flexibility_row(l->contact[t], l->phase[k], a, p);
   }
 }

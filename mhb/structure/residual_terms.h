@@ -66,7 +66,7 @@ void mhb_residual_terms_motion_by(const mhb_residual_terms *terms, int k,
                                   const modal_series *series, double scale, const double complex *p,
                                   double complex *motion);
 
-/* slope[n] += d/d(w^2) of that, times dw2. */
+/* slope[n] += d/d(w^2) of that, times dw2; p NULL: of the load alone. */
 void mhb_residual_terms_slope(const mhb_residual_terms *terms, int k, double w, double dw2,
                               double scale, const double complex *p, double complex *slope);
 

@@ -1,0 +1,398 @@
+#include "mhb/low_rank/receptance_product.h"
+
+#include <cblas.h>
+#include <lapacke.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "mesh/base/constants.h"
+
+/* Singular values below it are left out, in the norm of the contact stiffness, where I is 1. */
+static const double NEGLIGIBLE = 1e-12;
+
+/* Columns of the first sketch. */
+enum { FIRST_SKETCH = 128 };
+
+/* ---- the smooth part ---- */
+
+/* Smooth term i of the receptance: even and odd coupling of each term, then self of the third. */
+static const double *source_of(const mhb_receptance *r, int i) {
+  mhb_cyclic_flexibility *const *f = r->residual_terms->contact;
+  if (i == MHB_SMOOTH_TERMS - 1) return f[2] ? f[2]->self : NULL;
+  if (!f[i / 2]) return NULL;
+  return i % 2 ? f[i / 2]->odd_coupling : f[i / 2]->even_coupling;
+}
+
+/* The residual term whose weight smooth term i has. */
+static int term_of(int i) {
+  return i == MHB_SMOOTH_TERMS - 1 ? 2 : i / 2;
+}
+
+/* Factors of the axes in the norm of the contact stiffness, and what a sketch needs. */
+typedef struct {
+  const double *root;                     /* [n] of the stiffness */
+  double        weight[MHB_SMOOTH_TERMS]; /* at the highest frequency */
+  int           columns;
+  double       *Q, *random, *image, *half; /* [n][columns] */
+  double       *small;                     /* [columns][terms * columns] */
+  double       *singular, *left, *work;
+} sketch;
+
+static double next_random(unsigned long long *seed) {
+  *seed = *seed * 6364136223846793005ULL + 1442695040888963407ULL;
+  return (double)(*seed >> 11) / 9007199254740992.0 - 0.5;
+}
+
+/* to += weight D^1/2 A D^1/2 from, D^1/2 = root; A of n columns. */
+static void add_scaled(const sketch *s, int n, int columns, int term, const double *A,
+                       const double *from, double *to) {
+  for (int i = 0; i < n; i++)
+    for (int j = 0; j < columns; j++) s->half[i * columns + j] = s->root[i] * from[i * columns + j];
+  cblas_dgemm(CblasRowMajor, CblasNoTrans, CblasNoTrans, n, columns, n, s->weight[term], A, n,
+              s->half, columns, 0, s->image, columns);
+  for (int i = 0; i < n; i++)
+    for (int j = 0; j < columns; j++) to[i * columns + j] += s->root[i] * s->image[i * columns + j];
+}
+
+static void sketch_free(sketch *s) {
+  free(s->Q);
+  free(s->random);
+  free(s->image);
+  free(s->half);
+  free(s->small);
+  free(s->singular);
+  free(s->left);
+  free(s->work);
+}
+
+static int sketch_allocate(sketch *s, int n) {
+  size_t q = (size_t)s->columns, rows = (size_t)n;
+  s->Q        = calloc(rows * q, sizeof(double));
+  s->random   = calloc(rows * q, sizeof(double));
+  s->image    = calloc(rows * q, sizeof(double));
+  s->half     = calloc(rows * q, sizeof(double));
+  s->small    = calloc(q * q * MHB_SMOOTH_TERMS, sizeof(double));
+  s->singular = calloc(q, sizeof(double));
+  s->left     = calloc(q * q, sizeof(double));
+  s->work     = calloc(q * q * MHB_SMOOTH_TERMS, sizeof(double));
+  return s->Q && s->random && s->image && s->half && s->small && s->singular && s->left && s->work;
+}
+
+/* Q <- orthonormal basis of the image of all smooth terms. */
+static int find_range(const mhb_receptance_product *p, sketch *s) {
+  int                n = p->n, q = s->columns;
+  unsigned long long seed = 1;
+  for (int t = 0; t < MHB_SMOOTH_TERMS; t++) {
+    const double *A = source_of(p->receptance, t);
+    if (!A) continue;
+    for (int i = 0; i < n * q; i++) s->random[i] = next_random(&seed);
+    add_scaled(s, n, q, t, A, s->random, s->Q);
+  }
+  return LAPACKE_dgeqrf(LAPACK_ROW_MAJOR, n, q, s->Q, q, s->singular) == 0 &&
+         LAPACKE_dorgqr(LAPACK_ROW_MAJOR, n, q, q, s->Q, q, s->singular) == 0;
+}
+
+/* Singular vectors of [Q^T A_t Q ...] by all terms: s->left, columns in falling order. */
+static int reduce(const mhb_receptance_product *p, sketch *s) {
+  int n = p->n, q = s->columns, wide = MHB_SMOOTH_TERMS * q;
+  for (int t = 0; t < MHB_SMOOTH_TERMS; t++) {
+    const double *A = source_of(p->receptance, t);
+    memset(s->random, 0, sizeof(double) * (size_t)n * (size_t)q);
+    if (A) add_scaled(s, n, q, t, A, s->Q, s->random);
+    cblas_dgemm(CblasRowMajor, CblasTrans, CblasNoTrans, q, q, n, 1, s->Q, q, s->random, q, 0,
+                s->small + t * q, wide);
+  }
+  memcpy(s->work, s->small, sizeof(double) * (size_t)q * (size_t)wide);
+  double rest[q];
+  return LAPACKE_dgesvd(LAPACK_ROW_MAJOR, 'S', 'N', q, wide, s->work, wide, s->singular, s->left, q,
+                        NULL, wide, rest) == 0;
+}
+
+/* Largest element of (A - U U^+ A U U^+) x over a few random x, in the norm: what U leaves out. */
+static double left_out(const mhb_receptance_product *p, sketch *s, int rank) {
+  enum { PROBES = 4 };
+  int                n = p->n, q = s->columns;
+  unsigned long long seed = 77;
+  double worst = 0, probe[PROBES * n], inside[PROBES * n], image[PROBES * n], small[PROBES * q],
+         back[PROBES * q];
+  for (int t = 0; t < MHB_SMOOTH_TERMS; t++) {
+    const double *A = source_of(p->receptance, t);
+    if (!A) continue;
+    for (int i = 0; i < PROBES * n; i++) probe[i] = next_random(&seed);
+    memset(image, 0, sizeof image);
+    add_scaled(s, n, PROBES, t, A, probe, image);
+    cblas_dgemm(CblasRowMajor, CblasTrans, CblasNoTrans, q, PROBES, n, 1, s->Q, q, probe, PROBES, 0,
+                small, PROBES);
+    cblas_dgemm(CblasRowMajor, CblasTrans, CblasNoTrans, rank, PROBES, q, 1, s->left, q, small,
+                PROBES, 0, back, PROBES);
+    cblas_dgemm(CblasRowMajor, CblasNoTrans, CblasNoTrans, q, PROBES, rank, 1, s->left, q, back,
+                PROBES, 0, small, PROBES);
+    cblas_dgemm(CblasRowMajor, CblasNoTrans, CblasNoTrans, n, PROBES, q, 1, s->Q, q, small, PROBES,
+                0, probe, PROBES);
+    memset(inside, 0, sizeof inside);
+    add_scaled(s, n, PROBES, t, A, probe, inside);
+    cblas_dgemm(CblasRowMajor, CblasTrans, CblasNoTrans, q, PROBES, n, 1, s->Q, q, inside, PROBES,
+                0, small, PROBES);
+    cblas_dgemm(CblasRowMajor, CblasTrans, CblasNoTrans, rank, PROBES, q, 1, s->left, q, small,
+                PROBES, 0, back, PROBES);
+    cblas_dgemm(CblasRowMajor, CblasNoTrans, CblasNoTrans, q, PROBES, rank, 1, s->left, q, back,
+                PROBES, 0, small, PROBES);
+    cblas_dgemm(CblasRowMajor, CblasNoTrans, CblasNoTrans, n, PROBES, q, -1, s->Q, q, small, PROBES,
+                1, image, PROBES);
+    for (int i = 0; i < PROBES * n; i++) worst = fmax(worst, fabs(image[i]));
+  }
+  return worst;
+}
+
+/* U = D^-1/2 Q left, and the smooth terms between its columns. */
+static void take_smooth(mhb_receptance_product *p, const sketch *s, int rank) {
+  int     n = p->n, q = s->columns, wide = MHB_SMOOTH_TERMS * q;
+  double *half = s->work;
+  p->n_smooth  = rank;
+  p->U         = shb_arena_take(&p->arena, (size_t)n * (size_t)rank, sizeof(double));
+  if (!p->U) return;
+  cblas_dgemm(CblasRowMajor, CblasNoTrans, CblasNoTrans, n, rank, q, 1, s->Q, q, s->left, q, 0,
+              p->U, rank);
+  for (int i = 0; i < n; i++) cblas_dscal(rank, 1 / s->root[i], p->U + i * rank, 1);
+  for (int t = 0; t < MHB_SMOOTH_TERMS; t++) {
+    if (!source_of(p->receptance, t)) continue;
+    double *to = shb_arena_take(&p->arena, (size_t)rank * (size_t)rank, sizeof(double));
+    if (!to) return;
+    cblas_dgemm(CblasRowMajor, CblasTrans, CblasNoTrans, rank, q, q, 1 / s->weight[t], s->left, q,
+                s->small + t * q, wide, 0, half, q);
+    cblas_dgemm(CblasRowMajor, CblasNoTrans, CblasNoTrans, rank, rank, q, 1, half, q, s->left, q, 0,
+                to, rank);
+    p->smooth[t] = to;
+  }
+}
+
+/* One sketch. 1: the smooth part is found; 0: more columns are needed; -1: failed. */
+static int try_sketch(mhb_receptance_product *p, sketch *s) {
+  if (!sketch_allocate(s, p->n) || !find_range(p, s) || !reduce(p, s)) return -1;
+  int rank = 0;
+  while (rank < s->columns && s->singular[rank] > NEGLIGIBLE) rank++;
+  if (rank > s->columns - 16) return 0;
+  if (left_out(p, s, rank) > 1e2 * NEGLIGIBLE) return -1;
+  take_smooth(p, s, rank);
+  return 1;
+}
+
+static void find_smooth(mhb_receptance_product *p, const double *stiffness, double top) {
+  double       root[p->n];
+  sketch       s      = {.root = root};
+  modal_series series = modal_series_at(p->receptance->model, top);
+  int          any = 0, found = 0;
+  for (int i = 0; i < p->n; i++) root[i] = sqrt(stiffness[i]);
+  for (int t = 0; t < MHB_SMOOTH_TERMS; t++) {
+    s.weight[t] = fmax(series.weight[term_of(t)], 1e-300);
+    any |= source_of(p->receptance, t) != NULL;
+  }
+  for (int q = FIRST_SKETCH; any && !found && q < p->n / 2; q *= 2) {
+    s.columns = q;
+    found     = try_sketch(p, &s);
+    sketch_free(&s);
+  }
+  if (found == 1 || !any) return;
+  p->U        = NULL; /* the terms themselves */
+  p->n_smooth = p->n;
+  for (int t = 0; t < MHB_SMOOTH_TERMS; t++) p->smooth[t] = (double *)source_of(p->receptance, t);
+}
+
+/* ---- life cycle ---- */
+
+static void take_arrays(mhb_receptance_product *p) {
+  size_t n = (size_t)p->n, K = (size_t)p->m + 1, nb = (size_t)p->nb, s = (size_t)p->n_smooth;
+  for (int i = 0; i < MHB_PRODUCTS; i++) {
+    for (int t = 0; t < 2; t++) p->own_weight[i][t] = shb_arena_take(&p->arena, nb, sizeof(double));
+    p->symmetric[i] = shb_arena_take(&p->arena, K * s * s, sizeof(double));
+    p->skew[i]      = shb_arena_take(&p->arena, K * s * s, sizeof(double));
+    p->pole[i]      = shb_arena_take(&p->arena, K * (size_t)p->n_poles, sizeof(double complex));
+  }
+  p->weighted    = shb_arena_take(&p->arena, n * nb, sizeof(double));
+  p->coefficient = shb_arena_take(&p->arena, s * nb, sizeof(double));
+  p->response    = shb_arena_take(&p->arena, s * nb, sizeof(double));
+  p->force       = shb_arena_take(&p->arena, n, sizeof(double complex));
+  p->motion      = shb_arena_take(&p->arena, n, sizeof(double complex));
+  p->amplitude   = shb_arena_take(&p->arena, (size_t)p->n_poles, sizeof(double complex));
+}
+
+shb_status mhb_receptance_product_create(mhb_receptance *r, int m, const double *stiffness,
+                                         double top, mhb_receptance_product **out) {
+  mhb_receptance_product *p = calloc(1, sizeof *p);
+  SHB_CHECK(p, SHB_ERR_IO, "out of memory");
+  p->receptance = r;
+  p->n          = r->n;
+  p->m          = m;
+  p->nb         = 2 * m + 1;
+  p->n_poles    = r->n_modes + r->model->n_residual;
+  p->omega      = NAN;
+  for (int t = 0; t < 2; t++)
+    p->own[t] = r->residual_terms->contact[t] ? r->residual_terms->contact[t]->self : NULL;
+  find_smooth(p, stiffness, m * top / r->nu);
+  take_arrays(p);
+  if (p->arena.failed) {
+    mhb_receptance_product_destroy(p);
+    SHB_FAIL(SHB_ERR_IO, "out of memory for the receptance of %d pairs", r->n / 3);
+  }
+  *out = p;
+  return SHB_OK;
+}
+
+void mhb_receptance_product_destroy(mhb_receptance_product *p) {
+  if (!p) return;
+  shb_arena_free(&p->arena);
+  free(p);
+}
+
+/* ---- at a frequency ---- */
+
+/* C_k = E - j O, with the weights or slopes of the terms. */
+static void set_smooth(mhb_receptance_product *p, int k, const double weight[MODAL_TERMS],
+                       mhb_product_kind kind) {
+  size_t  square = (size_t)p->n_smooth * (size_t)p->n_smooth;
+  double *E = p->symmetric[kind] + (size_t)k * square, *O = p->skew[kind] + (size_t)k * square;
+  double complex phase = p->receptance->phase[k];
+  memset(E, 0, sizeof(double) * square);
+  memset(O, 0, sizeof(double) * square);
+  for (int t = 0; t < MHB_SMOOTH_TERMS; t++) {
+    double w = weight[term_of(t)];
+    if (!p->smooth[t] || w == 0) continue;
+    if (t == MHB_SMOOTH_TERMS - 1)
+      cblas_daxpy((int)square, w, p->smooth[t], 1, E, 1);
+    else if (t % 2)
+      cblas_daxpy((int)square, cimag(phase) * w, p->smooth[t], 1, O, 1);
+    else
+      cblas_daxpy((int)square, -creal(phase) * w, p->smooth[t], 1, E, 1);
+  }
+}
+
+/* L and dL/d omega of the modes, g and dg/d omega of the residual modes. */
+static void set_poles(mhb_receptance_product *p, int k, const modal_series *series, double dw2) {
+  const mhb_receptance *r     = p->receptance;
+  double                kk    = (double)k / r->nu;
+  double complex       *value = p->pole[MHB_PRODUCT_VALUE] + (size_t)k * (size_t)p->n_poles;
+  double complex       *slope = p->pole[MHB_PRODUCT_SLOPE] + (size_t)k * (size_t)p->n_poles;
+  for (int i = 0; i < r->n_modes; i++) {
+    double complex L    = r->lambda[k * r->n_modes + i];
+    double         loss = 2 * r->model->damping_ratio[i] * SHB_TWO_PI * r->model->frequency[i] * kk;
+    value[i]            = L;
+    slope[i]            = L * L * CMPLX(dw2, -loss);
+  }
+  for (int i = 0; i < r->model->n_residual; i++) {
+    double dg, g = modal_series_mode(r->model, i, series, &dg);
+    value[r->n_modes + i] = g;
+    slope[r->n_modes + i] = dg * dw2;
+  }
+}
+
+void mhb_receptance_product_update(mhb_receptance_product *p) {
+  mhb_receptance *r = p->receptance;
+  if (p->omega == r->omega) return;
+  p->omega = r->omega;
+  for (int k = 0; k <= p->m; k++) {
+    double       kk = (double)k / r->nu, dw2 = 2 * kk * kk * r->omega, slope[MODAL_TERMS];
+    modal_series series = modal_series_at(r->model, kk * r->omega);
+    mhb_receptance_update_load(r, k);
+    for (int t = 0; t < MODAL_TERMS; t++) slope[t] = dw2 * series.slope[t];
+    for (int t = 0; t < 2; t++)
+      for (int i = k ? 2 * k - 1 : 0; i <= 2 * k; i++) {
+        p->own_weight[MHB_PRODUCT_VALUE][t][i] = series.weight[t];
+        p->own_weight[MHB_PRODUCT_SLOPE][t][i] = slope[t];
+      }
+    set_smooth(p, k, series.weight, MHB_PRODUCT_VALUE);
+    set_smooth(p, k, slope, MHB_PRODUCT_SLOPE);
+    set_poles(p, k, &series, dw2);
+  }
+}
+
+/* out += own (weight p) */
+static void add_own(mhb_receptance_product *p, int t, mhb_product_kind kind, const double *force,
+                    double *out) {
+  const double *weight = p->own_weight[kind][t], *from = force;
+  int           n = p->n, nb = p->nb, none = 1, plain = 1;
+  for (int i = 0; i < nb; i++) {
+    none &= weight[i] == 0;
+    plain &= weight[i] == 1;
+  }
+  if (!p->own[t] || none) return;
+  for (int i = 0; i < n && !plain; i++)
+    for (int j = 0; j < nb; j++) p->weighted[i * nb + j] = weight[j] * force[i * nb + j];
+  if (!plain) from = p->weighted;
+  cblas_dgemm(CblasRowMajor, CblasNoTrans, CblasNoTrans, n, nb, n, 1, p->own[t], n, from, nb, 1,
+              out, nb);
+}
+
+/* out += U C_k U^T p_k */
+static void add_smooth(mhb_receptance_product *p, mhb_product_kind kind, const double *force,
+                       double *out) {
+  int           n = p->n, nb = p->nb, s = p->n_smooth;
+  size_t        square = (size_t)s * (size_t)s;
+  const double *v      = force;
+  if (s == 0) return;
+  if (p->U) {
+    cblas_dgemm(CblasRowMajor, CblasTrans, CblasNoTrans, s, nb, n, 1, p->U, s, force, nb, 0,
+                p->coefficient, nb);
+    v = p->coefficient;
+  }
+  double *y = p->U ? p->response : out, keep = p->U ? 0 : 1;
+  for (int k = 0; k <= p->m; k++) {
+    const double *E  = p->symmetric[kind] + (size_t)k * square;
+    const double *O  = p->skew[kind] + (size_t)k * square;
+    int           re = k ? 2 * k - 1 : 0, im = 2 * k;
+    if (k == 0) {
+      cblas_dgemv(CblasRowMajor, CblasNoTrans, s, s, 1, E, s, v, nb, keep, y, nb);
+      continue;
+    }
+    cblas_dgemm(CblasRowMajor, CblasNoTrans, CblasNoTrans, s, 2, s, 1, E, s, v + re, nb, keep,
+                y + re, nb);
+    cblas_dgemv(CblasRowMajor, CblasNoTrans, s, s, 1, O, s, v + im, nb, 1, y + re, nb);
+    cblas_dgemv(CblasRowMajor, CblasNoTrans, s, s, -1, O, s, v + re, nb, 1, y + im, nb);
+  }
+  if (p->U)
+    cblas_dgemm(CblasRowMajor, CblasNoTrans, CblasNoTrans, n, nb, s, 1, p->U, s, y, nb, 1, out, nb);
+}
+
+/* motion += X diag(pole) X^H force of harmonic k. */
+static void add_shapes(mhb_receptance_product *p, int count, const double complex *X,
+                       const double complex *pole) {
+  const double complex one = 1, zero = 0;
+  if (count == 0) return;
+  cblas_zgemv(CblasRowMajor, CblasConjTrans, p->n, count, &one, X, count, p->force, 1, &zero,
+              p->amplitude, 1);
+  for (int i = 0; i < count; i++) p->amplitude[i] *= pole[i];
+  cblas_zgemv(CblasRowMajor, CblasNoTrans, p->n, count, &one, X, count, p->amplitude, 1, &one,
+              p->motion, 1);
+}
+
+static void add_poles(mhb_receptance_product *p, mhb_product_kind kind, const double *force,
+                      double *out) {
+  const mhb_receptance *r = p->receptance;
+  int                   n = p->n, nb = p->nb, modes = r->n_modes, rest = r->model->n_residual;
+  for (int k = 0; k <= p->m; k++) {
+    const double complex *pole = p->pole[kind] + (size_t)k * (size_t)p->n_poles;
+    int                   any  = 0;
+    for (int i = 0; i < n; i++) {
+      const double *a = force + (size_t)i * (size_t)nb;
+      p->force[i]     = k ? CMPLX(a[2 * k - 1], a[2 * k]) : a[0];
+      any |= creal(p->force[i]) != 0 || cimag(p->force[i]) != 0;
+    }
+    if (!any) continue;
+    memset(p->motion, 0, sizeof(double complex) * (size_t)n);
+    add_shapes(p, modes, r->B + (size_t)k * (size_t)n * (size_t)modes, pole);
+    add_shapes(p, rest, r->residual_terms->S + (size_t)k * (size_t)n * (size_t)rest, pole + modes);
+    for (int i = 0; i < n; i++) {
+      double *to = out + (size_t)i * (size_t)nb;
+      to[k ? 2 * k - 1 : 0] += creal(p->motion[i]);
+      if (k) to[2 * k] += cimag(p->motion[i]);
+    }
+  }
+}
+
+void mhb_receptance_product_apply(mhb_receptance_product *p, mhb_product_kind kind,
+                                  const double *force, double *out) {
+  memset(out, 0, sizeof(double) * (size_t)p->n * (size_t)p->nb);
+  for (int t = 0; t < 2; t++) add_own(p, t, kind, force, out);
+  add_smooth(p, kind, force, out);
+  add_poles(p, kind, force, out);
+}

@@ -1,0 +1,59 @@
+/* Product R p of the receptances of all harmonics with a contact force, without R.
+ *
+ *   R_k = own_0 + a_1 own_1 + U C_k U^T + [B_k, S_k] diag(L_k, g_k) [B_k, S_k]^H
+ *
+ * own_t: residual flexibility and inertia of a face by itself, of full rank (mhb_cyclic_flexibility,
+ * `self`). All that couples the two faces, and the third residual term, is smooth: it lies in the
+ * span of a few vectors U (70 to 93 of 711 to 1386, `many_pairs` of the reference). U is found by a
+ * random sketch (Halko, Martinsson, Tropp 2011) to 1e-12 in the norm of the contact stiffness. Without
+ * a small U the products are dense.
+ *
+ * Forces and motions are in real form [n][2m+1]. */
+#ifndef MHB_LOW_RANK_RECEPTANCE_PRODUCT_H
+#define MHB_LOW_RANK_RECEPTANCE_PRODUCT_H
+
+#include "mhb/structure/receptance.h"
+
+/* R itself, or its derivative by omega. */
+typedef enum { MHB_PRODUCT_VALUE, MHB_PRODUCT_SLOPE, MHB_PRODUCTS } mhb_product_kind;
+
+enum { MHB_SMOOTH_TERMS = 2 * MODAL_TERMS + 1 }; /* even, odd of each term, self of the third */
+
+typedef struct {
+  mhb_receptance *receptance;
+  int             n, m, nb;                 /* 3 pairs; harmonics 0..m; 2m+1 */
+  int             n_poles;                  /* modes and residual modes */
+  const double   *own[2];                   /* [n][n] of the receptance; NULL: none */
+  int             n_smooth;                 /* columns of U, n without U */
+  double         *U;                        /* [n][smooth] or NULL: the identity */
+  double         *smooth[MHB_SMOOTH_TERMS]; /* [smooth][smooth] U^+ of a term; NULL: none */
+
+  /* at a frequency */
+  double  omega;                                        /* rad/s; NAN: none */
+  double *own_weight[MHB_PRODUCTS][2];                  /* [2m+1] of each column */
+  double *symmetric[MHB_PRODUCTS], *skew[MHB_PRODUCTS]; /* [k][smooth][smooth]: C = E - j O */
+  double complex *pole[MHB_PRODUCTS];                   /* [k][poles] */
+
+  double         *weighted;               /* [n][2m+1] */
+  double         *coefficient, *response; /* [smooth][2m+1] */
+  double complex *force, *motion;         /* [n] */
+  double complex *amplitude;              /* [poles] */
+  shb_arena       arena;
+} mhb_receptance_product;
+
+/* Harmonics 0..m of the receptance, which must outlive it and keep its model.
+ *   stiffness  in  [n] size of the contact stiffness of each axis, N/m, > 0
+ *   top        in  rad/s, highest excitation frequency
+ * SHB_ERR_IO: no memory. */
+shb_status mhb_receptance_product_create(mhb_receptance *receptance, int m, const double *stiffness,
+                                         double top, mhb_receptance_product **out);
+void       mhb_receptance_product_destroy(mhb_receptance_product *product);
+
+/* Go to the receptance's frequency. */
+void mhb_receptance_product_update(mhb_receptance_product *product);
+
+/* out[n][2m+1] <- R p or dR/d omega p at the frequency of the last update. */
+void mhb_receptance_product_apply(mhb_receptance_product *product, mhb_product_kind kind,
+                                  const double *p, double *out);
+
+#endif
