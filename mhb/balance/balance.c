@@ -6,6 +6,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "mesh/base/constants.h"
 #include "mhb/numerics/fourier.h"
 #include "mhb/numerics/simd.h"
 
@@ -38,6 +39,27 @@ static void operating_point_changed(mhb_balance *b) {
     b->eval->own[i] = mhb_interface_operating_point(&b->eval->at, b->settings, i);
   for (int a = 0; a < b->n_pairs; a++) b->eval->linear_dp[a] = -1;
   set_laws(b);
+}
+
+shb_status mhb_balance_product(const mhb_balance *b, mhb_receptance *receptance, int first, int m,
+                               mhb_receptance_product **out) {
+  const double from = fmax(b->settings->frequency[0], b->settings->frequency[1]);
+  double       stiffness[3 * b->n_pairs], top = 0;
+  for (int a = 0; a < b->n_pairs; a++)
+    top = fmax(top, fmax(b->law[a].kv, fmax(b->law[a].ku[0], b->law[a].ku[2])));
+  for (int i = 0; i < 3 * b->n_pairs; i++) {
+    const mhb_law *law = &b->law[i / 3];
+    stiffness[i]       = fmax(i % 3 ? law->ku[i % 3 == 2 ? 2 : 0] : law->kv, 1e-3 * top);
+    if (!(stiffness[i] > 0)) stiffness[i] = 1;
+  }
+  return mhb_receptance_product_create(receptance, first, m, stiffness,
+                                       SHB_TWO_PI * fmax(from, receptance->model->frequency[0]),
+                                       out);
+}
+
+static shb_status create_product(mhb_balance *b) {
+  if (b->n_pairs < MHB_MANY_PAIRS || b->receptance->at) return SHB_OK;
+  return mhb_balance_product(b, b->receptance, 0, b->m, &b->product);
 }
 
 shb_status mhb_balance_create(const modal_model *model, const mhb_settings *settings,
@@ -79,12 +101,18 @@ shb_status mhb_balance_create_on(mhb_receptance *receptance, const mhb_settings 
   b->eval     = b->default_evaluation;
   b->eval->at = mhb_operating_point_of(settings);
   operating_point_changed(b);
+  status = create_product(b);
+  if (status != SHB_OK) {
+    mhb_balance_destroy(b);
+    return status;
+  }
   *out = b;
   return SHB_OK;
 }
 
 void mhb_balance_destroy(mhb_balance *b) {
   if (!b) return;
+  mhb_receptance_product_destroy(b->product);
   if (b->owns_receptance) mhb_receptance_destroy(b->receptance);
   for (int i = 0; b->contacts && i < b->n_threads; i++)
     mhb_contact_evaluator_destroy(b->contacts[i]);
@@ -372,6 +400,39 @@ static void set_force_by_parameter(mhb_balance *b, const double *x) {
   }
 }
 
+/* r <- x - free + R p of many pairs. */
+static void residual_by_product(mhb_balance *b, const double *x, double *r) {
+  mhb_receptance_product_update(b->product);
+  mhb_receptance_product_apply(b->product, MHB_PRODUCT_VALUE, b->eval->p, r);
+  for (int k = 0; k <= b->m; k++) {
+    const double complex *free = b->receptance->free + k * 3 * b->n_pairs;
+    for (int i = 0; i < 3 * b->n_pairs; i++) {
+      size_t at = (size_t)i * (size_t)b->nb + (size_t)(k ? 2 * k - 1 : 0);
+      r[at] += x[at] - creal(free[i]);
+      if (k) r[at + 1] += x[at + 1] - cimag(free[i]);
+    }
+  }
+}
+
+/* slope <- dr/dvalue of many pairs. */
+static void slope_by_product(mhb_balance *b, double *slope) {
+  const int by_frequency = b->parameter == MHB_IN_FREQUENCY, n3 = 3 * b->n_pairs;
+  mhb_receptance_product_update(b->product);
+  mhb_receptance_product_apply(b->product, by_frequency ? MHB_PRODUCT_SLOPE : MHB_PRODUCT_VALUE,
+                               by_frequency ? b->eval->p : b->eval->by_parameter, slope);
+  for (int k = 0; k <= b->m; k++) {
+    if (!b->receptance->driven[k] || (!by_frequency && b->parameter != MHB_IN_SCALE)) continue;
+    if (by_frequency) mhb_receptance_slope(b->receptance, k, NULL, b->motion_k);
+    for (int i = 0; i < n3; i++) {
+      size_t         at = (size_t)i * (size_t)b->nb + (size_t)(k ? 2 * k - 1 : 0);
+      double complex load =
+          by_frequency ? b->motion_k[i] : b->receptance->free_response_unit[k * n3 + i];
+      slope[at] -= creal(load);
+      if (k) slope[at + 1] -= cimag(load);
+    }
+  }
+}
+
 static void evaluate(mhb_balance *b, const double *x, double value, int derivative, double *r,
                      double *slope) {
   int by_law = slope && b->parameter != MHB_IN_FREQUENCY; /* the slope needs dp */
@@ -379,7 +440,11 @@ static void evaluate(mhb_balance *b, const double *x, double value, int derivati
   mhb_receptance_set_frequency(b->receptance, b->eval->at.omega);
   evaluate_pairs(b, x, derivative || by_law);
   if (by_law) set_force_by_parameter(b, x);
-  for (int k = 0; k <= b->m; k++) {
+  if (b->product) {
+    residual_by_product(b, x, r);
+    if (slope) slope_by_product(b, slope);
+  }
+  for (int k = 0; k <= b->m && !b->product; k++) {
     get_harmonic(b, b->eval->p, k, b->force_k);
     get_harmonic(b, x, k, b->motion_k);
     int unloaded = is_unloaded(b, k);
@@ -398,7 +463,8 @@ void mhb_balance_slope(mhb_balance *b, const double *x, mhb_parameter parameter,
   mhb_parameter own = b->parameter;
   b->parameter      = parameter;
   if (parameter != MHB_IN_FREQUENCY) set_force_by_parameter(b, x);
-  for (int k = 0; k <= b->m; k++) {
+  if (b->product) slope_by_product(b, slope);
+  for (int k = 0; k <= b->m && !b->product; k++) {
     get_harmonic(b, b->eval->p, k, b->force_k);
     set_slope(b, k, is_unloaded(b, k));
     put_harmonic(b, slope, k, b->motion_k);

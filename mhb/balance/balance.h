@@ -13,12 +13,17 @@
 #include "mesh/base/arena.h"
 #include "mhb/balance/stick_stiffness.h"
 #include "mhb/contact/contact.h"
+#include "mhb/low_rank/receptance_product.h"
 #include "mhb/problem/interfaces.h"
 #include "mhb/problem/settings.h"
 #include "mhb/structure/receptance.h"
 
 /* mhb_balance_linear_limit: pairs with a positive preload stick, the others are open. */
 enum { MHB_BY_PRELOAD = 2 };
+
+/* From this many pairs on the receptance is not formed, but multiplied (low_rank). Not in a run-up,
+ * where the model changes with the frequency. */
+enum { MHB_MANY_PAIRS = 8 };
 
 /* Results of one evaluation. A point of a curve that owns its evaluation can be linearised
  * later. */
@@ -39,6 +44,7 @@ typedef struct {
   const mhb_settings     *settings;
   mhb_receptance         *receptance; /* harmonics 0..m at least */
   int                     owns_receptance;
+  mhb_receptance_product *product;  /* of many pairs; NULL: R is formed */
   mhb_contact_evaluator  *contact;  /* forces to harmonic m: that of thread 0 */
   mhb_contact_evaluator **contacts; /* [thread] */
   int                     n_threads;
@@ -61,6 +67,11 @@ shb_status mhb_balance_create(const modal_model *model, const mhb_settings *sett
 shb_status mhb_balance_create_on(mhb_receptance *receptance, const mhb_settings *settings,
                                  mhb_balance **balance);
 void       mhb_balance_destroy(mhb_balance *balance);
+
+/* Products with harmonics first..m of a receptance. Their accuracy is measured by the balance's
+ * laws. */
+shb_status mhb_balance_product(const mhb_balance *balance, mhb_receptance *receptance, int first,
+                               int m, mhb_receptance_product **product);
 
 /* An evaluation for this balance, at the balance's operating point; its results are not made yet.
  * SHB_ERR_IO: no memory. */

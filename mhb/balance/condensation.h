@@ -17,11 +17,15 @@
  *
  * A pair stuck at the friction limit has a mean friction g = G u that depends on its motion. It is
  * a stuck pair with two borders more. Their unknowns are g. Their columns are R_0 of axes u and w,
- * their rows -G, their corner I. Harmonics whose right-hand side is zero cost nothing. */
+ * their rows -G, their corner I. Harmonics whose right-hand side is zero cost nothing.
+ *
+ * Many pairs that move, or many that stick, are left to GMRES on the whole system (low_rank): the
+ * condensation is made only where that fails. */
 #ifndef MHB_BALANCE_CONDENSATION_H
 #define MHB_BALANCE_CONDENSATION_H
 
 #include "mhb/balance/balance.h"
+#include "mhb/low_rank/woodbury.h"
 
 /* Pairs at the friction limit that become borders; further ones are treated as nonlinear. */
 enum { MHB_MOST_AT_LIMIT = 8, MHB_MOST_BORDERS = 1 + 2 * MHB_MOST_AT_LIMIT };
@@ -30,6 +34,12 @@ typedef struct {
   const mhb_balance *balance;
   int                m, n_pairs; /* of the balance, when this was created */
   int                capacity;   /* nonlinear unknowns there is room for */
+
+  /* many pairs */
+  mhb_woodbury *low_rank;    /* NULL: few */
+  mhb_block    *form;        /* [pairs] */
+  int           by_low_rank; /* 1: the point was factored by it */
+  double        accuracy;    /* of its solutions, relative to the right-hand side */
 
   /* the pairs at the point that was factored */
   mhb_pair_kind *kind; /* [pairs] nonlinear, stuck (also at the limit) or open */
@@ -85,7 +95,8 @@ void       mhb_condensation_destroy(mhb_condensation *condensation);
 int mhb_condensation_factor(mhb_condensation *condensation, const double *column,
                             const double *row);
 
-/* rhs[n or n+1] <- solution. Returns 0 if it is not finite. No allocation. */
+/* rhs[n or n+1] <- solution. Returns 0 if it is not finite. No allocation but for a new basis of
+ * many pairs. Many pairs: to `accuracy`, which the caller may change; 1e-4 at first. */
 int mhb_condensation_solve(mhb_condensation *condensation, double *rhs);
 
 /* Sign of the determinant of the system that was factored: 1 or -1. */

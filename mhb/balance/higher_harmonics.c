@@ -12,20 +12,23 @@ static int most(int a, int b) {
   return a > b ? a : b;
 }
 
-static int allocate(mhb_higher_harmonics *h) {
+static int allocate(mhb_higher_harmonics *h, int product, size_t change) {
   size_t K = (size_t)h->last - (size_t)h->first + 1, n = (size_t)h->n, m = (size_t)h->n_modes;
-  size_t row = 3 * (size_t)mhb_real_size(h->last);
-  h->x       = shb_arena_take(&h->arena, row, sizeof(double));
-  h->p       = shb_arena_take(&h->arena, row, sizeof(double));
-  h->force   = shb_arena_take(&h->arena, K * n, sizeof(double complex));
-  h->u       = shb_arena_take(&h->arena, K * n, sizeof(double complex));
-  h->D       = shb_arena_take(&h->arena, 3 * n, sizeof(double complex));
-  h->W       = shb_arena_take(&h->arena, 3 * n, sizeof(double complex));
-  h->c       = shb_arena_take(&h->arena, n, sizeof(double complex));
-  h->A       = shb_arena_take(&h->arena, h->by_modes ? m * m : n * n, sizeof(double complex));
-  h->y       = shb_arena_take(&h->arena, m, sizeof(double complex));
-  h->V       = shb_arena_take(&h->arena, 3 * m, sizeof(double complex));
-  h->pivot   = shb_arena_take(&h->arena, (size_t)most(h->n, h->n_modes), sizeof(int));
+  size_t row  = 3 * (size_t)mhb_real_size(h->last);
+  h->x        = shb_arena_take(&h->arena, row, sizeof(double));
+  h->p        = shb_arena_take(&h->arena, row, sizeof(double));
+  h->force    = shb_arena_take(&h->arena, K * n, sizeof(double complex));
+  h->u        = shb_arena_take(&h->arena, K * n, sizeof(double complex));
+  h->D        = shb_arena_take(&h->arena, 3 * n, sizeof(double complex));
+  h->W        = shb_arena_take(&h->arena, 3 * n, sizeof(double complex));
+  h->c        = shb_arena_take(&h->arena, n, sizeof(double complex));
+  h->A        = shb_arena_take(&h->arena, h->by_modes ? m * m : n * n, sizeof(double complex));
+  h->y        = shb_arena_take(&h->arena, m, sizeof(double complex));
+  h->V        = shb_arena_take(&h->arena, 3 * m, sizeof(double complex));
+  size_t high = product ? 2 * K * n : 0;
+  h->change   = shb_arena_take(&h->arena, change > high ? change : high, sizeof(double));
+  h->motion   = shb_arena_take(&h->arena, high, sizeof(double));
+  h->pivot    = shb_arena_take(&h->arena, (size_t)most(h->n, h->n_modes), sizeof(int));
   return !h->arena.failed;
 }
 
@@ -40,11 +43,13 @@ shb_status mhb_higher_harmonics_create(const mhb_balance *balance, mhb_receptanc
   h->by_modes       = h->n > h->n_modes;
   h->receptance     = receptance;
   shb_status status = SHB_OK;
-  if (!allocate(h))
+  if (!allocate(h, balance->product != NULL, balance->product ? (size_t)balance->n : 0))
     status = shb_fail(SHB_ERR_IO, __FILE__, __LINE__, "out of memory for %d harmonics", h->last);
   if (status == SHB_OK)
     status =
         mhb_contact_evaluator_create(h->last, h->last, balance->settings->tolerance, &h->contact);
+  if (status == SHB_OK && balance->product)
+    status = mhb_balance_product(balance, receptance, h->first, h->last, &h->product);
   if (status != SHB_OK) {
     mhb_higher_harmonics_destroy(h);
     return status;
@@ -56,6 +61,7 @@ shb_status mhb_higher_harmonics_create(const mhb_balance *balance, mhb_receptanc
 void mhb_higher_harmonics_destroy(mhb_higher_harmonics *h) {
   if (!h) return;
   mhb_contact_evaluator_destroy(h->contact);
+  mhb_receptance_product_destroy(h->product);
   shb_arena_free(&h->arena);
   free(h);
 }
@@ -208,13 +214,40 @@ static int solve_modes(mhb_higher_harmonics *h, int k, double complex *u) {
 
 /* ---- all harmonics ---- */
 
+/* h->motion <- R p_k of all harmonics of many pairs. */
+static void set_motions(mhb_higher_harmonics *h) {
+  int nb = h->product->nb;
+  for (int k = h->first; k <= h->last; k++) {
+    const double complex *p  = harmonic_of(h, h->force, k);
+    double               *to = h->change + mhb_product_column(h->product, k);
+    for (int i = 0; i < h->n; i++, to += nb) {
+      to[0] = creal(p[i]);
+      to[1] = cimag(p[i]);
+    }
+  }
+  mhb_receptance_product_update(h->product);
+  mhb_receptance_product_apply(h->product, MHB_PRODUCT_VALUE, h->change, h->motion);
+}
+
+/* h->c <- free_k - R_k p_k */
+static void set_free_motion(mhb_higher_harmonics *h, int k) {
+  if (!h->product) {
+    mhb_receptance_motion(h->receptance, k, harmonic_of(h, h->force, k), h->c);
+    return;
+  }
+  const double *from = h->motion + mhb_product_column(h->product, k);
+  for (int i = 0; i < h->n; i++, from += h->product->nb)
+    h->c[i] = h->receptance->free[k * h->n + i] - CMPLX(from[0], from[1]);
+}
+
 double mhb_higher_harmonics_estimate(mhb_higher_harmonics *h, const mhb_balance *balance,
                                      const double *x) {
   double sum = 0;
   set_forces(h, balance, x);
+  if (h->product) set_motions(h);
   for (int k = h->first; k <= h->last; k++) {
     double complex *u = harmonic_of(h, h->u, k);
-    mhb_receptance_motion(h->receptance, k, harmonic_of(h, h->force, k), h->c);
+    set_free_motion(h, k);
     if (!(h->by_modes ? solve_modes(h, k, u) : solve_pairs(h, k, u)))
       memset(u, 0, sizeof *u * (size_t)h->n);
     sum += power_of(h->n, u);
@@ -233,6 +266,12 @@ void mhb_higher_harmonics_feedback(mhb_higher_harmonics *h, const mhb_balance *b
     for (int row = 3 * a, c = 0; c < 3; c++, row++)
       for (int i = 0; i < nb; i++)
         change[row * nb + i] = h->p[c * wide + i] - balance->eval->p[row * nb + i];
+  }
+  if (balance->product) {
+    memcpy(h->change, change, size);
+    mhb_receptance_product_update(balance->product);
+    mhb_receptance_product_apply(balance->product, MHB_PRODUCT_VALUE, h->change, change);
+    return;
   }
   for (int k = 0; k <= balance->m; k++) {
     mhb_receptance_update(h->receptance, k);

@@ -14,18 +14,21 @@
 #include "mhb/balance/balance.h"
 
 typedef struct {
-  int                    first, last; /* harmonics */
-  int                    n, n_modes;  /* n = 3 pairs */
-  int                    by_modes;    /* 1: solved for y */
-  mhb_receptance        *receptance;  /* harmonics 0..last at least */
-  mhb_contact_evaluator *contact;     /* harmonics 0..last */
-  double                *x, *p;       /* [3][2 last + 1] motion and force of one pair, real form */
-  double complex        *force, *u;   /* [k - first][n] p_k N, u_k m */
-  double complex        *D, *W;       /* [pair][3][3] */
-  double complex        *A, *c; /* matrix [n][n] or [modes][modes] and c [n] of one harmonic */
-  double complex        *y, *V; /* [modes], [3][modes] D W B of one pair */
-  int                   *pivot; /* [n or modes] */
-  shb_arena              arena;
+  int                     first, last; /* harmonics */
+  int                     n, n_modes;  /* n = 3 pairs */
+  int                     by_modes;    /* 1: solved for y */
+  mhb_receptance         *receptance;  /* harmonics 0..last at least */
+  mhb_contact_evaluator  *contact;     /* harmonics 0..last */
+  double                 *x, *p;       /* [3][2 last + 1] motion and force of one pair, real form */
+  double complex         *force, *u;   /* [k - first][n] p_k N, u_k m */
+  double complex         *D, *W;       /* [pair][3][3] */
+  double complex         *A, *c;   /* matrix [n][n] or [modes][modes] and c [n] of one harmonic */
+  double complex         *y, *V;   /* [modes], [3][modes] D W B of one pair */
+  int                    *pivot;   /* [n or modes] */
+  mhb_receptance_product *product; /* of many pairs: harmonics first..last */
+  double                 *change;  /* [columns of the product or of the balance] in real form */
+  double                 *motion;  /* [columns of the product] R p_k */
+  shb_arena               arena;
 } mhb_higher_harmonics;
 
 /* For the harmonics of the receptance above those of the balance.

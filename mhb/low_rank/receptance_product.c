@@ -203,12 +203,10 @@ static void find_smooth(mhb_receptance_product *p, const double *stiffness, doub
 
 static void take_arrays(mhb_receptance_product *p) {
   size_t n = (size_t)p->n, K = (size_t)p->m + 1, nb = (size_t)p->nb, s = (size_t)p->n_smooth;
-  for (int i = 0; i < MHB_PRODUCTS; i++) {
-    for (int t = 0; t < 2; t++) p->own_weight[i][t] = shb_arena_take(&p->arena, nb, sizeof(double));
-    p->symmetric[i] = shb_arena_take(&p->arena, K * s * s, sizeof(double));
-    p->skew[i]      = shb_arena_take(&p->arena, K * s * s, sizeof(double));
-    p->pole[i]      = shb_arena_take(&p->arena, K * (size_t)p->n_poles, sizeof(double complex));
-  }
+  for (int i = 0; i < MHB_PRODUCTS; i++)
+    p->pole[i] = shb_arena_take(&p->arena, K * (size_t)p->n_poles, sizeof(double complex));
+  p->weight      = shb_arena_take(&p->arena, K * MODAL_TERMS * MHB_PRODUCTS, sizeof(double));
+  p->turned      = shb_arena_take(&p->arena, s * nb, sizeof(double));
   p->weighted    = shb_arena_take(&p->arena, n * nb, sizeof(double));
   p->coefficient = shb_arena_take(&p->arena, s * nb, sizeof(double));
   p->response    = shb_arena_take(&p->arena, s * nb, sizeof(double));
@@ -217,14 +215,16 @@ static void take_arrays(mhb_receptance_product *p) {
   p->amplitude   = shb_arena_take(&p->arena, (size_t)p->n_poles, sizeof(double complex));
 }
 
-shb_status mhb_receptance_product_create(mhb_receptance *r, int m, const double *stiffness,
-                                         double top, mhb_receptance_product **out) {
+shb_status mhb_receptance_product_create(mhb_receptance *r, int first, int m,
+                                         const double *stiffness, double top,
+                                         mhb_receptance_product **out) {
   mhb_receptance_product *p = calloc(1, sizeof *p);
   SHB_CHECK(p, SHB_ERR_IO, "out of memory");
   p->receptance = r;
   p->n          = r->n;
+  p->first      = first;
   p->m          = m;
-  p->nb         = 2 * m + 1;
+  p->nb         = first ? 2 * (m - first + 1) : 2 * m + 1;
   p->n_poles    = r->n_modes + r->model->n_residual;
   p->omega      = NAN;
   for (int t = 0; t < 2; t++)
@@ -247,24 +247,9 @@ void mhb_receptance_product_destroy(mhb_receptance_product *p) {
 
 /* ---- at a frequency ---- */
 
-/* C_k = E - j O, with the weights or slopes of the terms. */
-static void set_smooth(mhb_receptance_product *p, int k, const double weight[MODAL_TERMS],
-                       mhb_product_kind kind) {
-  size_t  square = (size_t)p->n_smooth * (size_t)p->n_smooth;
-  double *E = p->symmetric[kind] + (size_t)k * square, *O = p->skew[kind] + (size_t)k * square;
-  double complex phase = p->receptance->phase[k];
-  memset(E, 0, sizeof(double) * square);
-  memset(O, 0, sizeof(double) * square);
-  for (int t = 0; t < MHB_SMOOTH_TERMS; t++) {
-    double w = weight[term_of(t)];
-    if (!p->smooth[t] || w == 0) continue;
-    if (t == MHB_SMOOTH_TERMS - 1)
-      cblas_daxpy((int)square, w, p->smooth[t], 1, E, 1);
-    else if (t % 2)
-      cblas_daxpy((int)square, cimag(phase) * w, p->smooth[t], 1, O, 1);
-    else
-      cblas_daxpy((int)square, -creal(phase) * w, p->smooth[t], 1, E, 1);
-  }
+/* Weights of a residual term in all harmonics. */
+static double *weights_of(const mhb_receptance_product *p, mhb_product_kind kind, int term) {
+  return p->weight + ((size_t)kind * MODAL_TERMS + (size_t)term) * ((size_t)p->m + 1);
 }
 
 /* L and dL/d omega of the modes, g and dg/d omega of the residual modes. */
@@ -290,18 +275,14 @@ void mhb_receptance_product_update(mhb_receptance_product *p) {
   mhb_receptance *r = p->receptance;
   if (p->omega == r->omega) return;
   p->omega = r->omega;
-  for (int k = 0; k <= p->m; k++) {
-    double       kk = (double)k / r->nu, dw2 = 2 * kk * kk * r->omega, slope[MODAL_TERMS];
+  for (int k = p->first; k <= p->m; k++) {
+    double       kk = (double)k / r->nu, dw2 = 2 * kk * kk * r->omega;
     modal_series series = modal_series_at(r->model, kk * r->omega);
     mhb_receptance_update_load(r, k);
-    for (int t = 0; t < MODAL_TERMS; t++) slope[t] = dw2 * series.slope[t];
-    for (int t = 0; t < 2; t++)
-      for (int i = k ? 2 * k - 1 : 0; i <= 2 * k; i++) {
-        p->own_weight[MHB_PRODUCT_VALUE][t][i] = series.weight[t];
-        p->own_weight[MHB_PRODUCT_SLOPE][t][i] = slope[t];
-      }
-    set_smooth(p, k, series.weight, MHB_PRODUCT_VALUE);
-    set_smooth(p, k, slope, MHB_PRODUCT_SLOPE);
+    for (int t = 0; t < MODAL_TERMS; t++) {
+      weights_of(p, MHB_PRODUCT_VALUE, t)[k] = series.weight[t];
+      weights_of(p, MHB_PRODUCT_SLOPE, t)[k] = dw2 * series.slope[t];
+    }
     set_poles(p, k, &series, dw2);
   }
 }
@@ -309,46 +290,61 @@ void mhb_receptance_product_update(mhb_receptance_product *p) {
 /* out += own (weight p) */
 static void add_own(mhb_receptance_product *p, int t, mhb_product_kind kind, const double *force,
                     double *out) {
-  const double *weight = p->own_weight[kind][t], *from = force;
+  const double *weight = weights_of(p, kind, t), *from = force;
   int           n = p->n, nb = p->nb, none = 1, plain = 1;
-  for (int i = 0; i < nb; i++) {
-    none &= weight[i] == 0;
-    plain &= weight[i] == 1;
+  for (int k = p->first; k <= p->m; k++) {
+    none &= weight[k] == 0;
+    plain &= weight[k] == 1;
   }
   if (!p->own[t] || none) return;
   for (int i = 0; i < n && !plain; i++)
-    for (int j = 0; j < nb; j++) p->weighted[i * nb + j] = weight[j] * force[i * nb + j];
+    for (int j = 0; j < nb; j++)
+      p->weighted[i * nb + j] =
+          weight[p->first ? p->first + j / 2 : (j + 1) / 2] * force[i * nb + j];
   if (!plain) from = p->weighted;
   cblas_dgemm(CblasRowMajor, CblasNoTrans, CblasNoTrans, n, nb, n, 1, p->own[t], n, from, nb, 1,
               out, nb);
+}
+
+/* p->turned <- v with what smooth term t is multiplied by: the weight, times 1 (self), - Re e_k
+ * (even) or - j Im e_k (odd). Returns 0 if that is nothing. */
+static int turn(mhb_receptance_product *p, int t, mhb_product_kind kind, const double *v) {
+  const double *weight  = weights_of(p, kind, term_of(t));
+  const int     is_self = t == MHB_SMOOTH_TERMS - 1, is_odd = !is_self && t % 2;
+  int           any = 0, nb = p->nb;
+  for (int k = p->first; k <= p->m; k++) {
+    double complex e      = p->receptance->phase[k];
+    double         factor = weight[k] * (is_self ? 1 : is_odd ? cimag(e) : -creal(e));
+    int            re = mhb_product_column(p, k), im = re + 1;
+    any |= factor != 0;
+    for (int i = 0; i < p->n_smooth; i++) {
+      const double *from = v + i * nb;
+      double       *to   = p->turned + i * nb;
+      to[re]             = factor * (is_odd ? (k ? from[im] : 0) : from[re]);
+      if (k) to[im] = factor * (is_odd ? -from[re] : from[im]);
+    }
+  }
+  return any;
 }
 
 /* out += U C_k U^T p_k */
 static void add_smooth(mhb_receptance_product *p, mhb_product_kind kind, const double *force,
                        double *out) {
   int           n = p->n, nb = p->nb, s = p->n_smooth;
-  size_t        square = (size_t)s * (size_t)s;
-  const double *v      = force;
+  const double *v = force;
+  double       *y = out;
   if (s == 0) return;
   if (p->U) {
     cblas_dgemm(CblasRowMajor, CblasTrans, CblasNoTrans, s, nb, n, 1, p->U, s, force, nb, 0,
                 p->coefficient, nb);
     v = p->coefficient;
+    y = p->response;
+    memset(y, 0, sizeof(double) * (size_t)s * (size_t)nb);
   }
-  double *y = p->U ? p->response : out, keep = p->U ? 0 : 1;
-  for (int k = 0; k <= p->m; k++) {
-    const double *E  = p->symmetric[kind] + (size_t)k * square;
-    const double *O  = p->skew[kind] + (size_t)k * square;
-    int           re = k ? 2 * k - 1 : 0, im = 2 * k;
-    if (k == 0) {
-      cblas_dgemv(CblasRowMajor, CblasNoTrans, s, s, 1, E, s, v, nb, keep, y, nb);
-      continue;
-    }
-    cblas_dgemm(CblasRowMajor, CblasNoTrans, CblasNoTrans, s, 2, s, 1, E, s, v + re, nb, keep,
-                y + re, nb);
-    cblas_dgemv(CblasRowMajor, CblasNoTrans, s, s, 1, O, s, v + im, nb, 1, y + re, nb);
-    cblas_dgemv(CblasRowMajor, CblasNoTrans, s, s, -1, O, s, v + re, nb, 1, y + im, nb);
-  }
+  for (int t = 0; t < MHB_SMOOTH_TERMS; t++)
+    if (p->smooth[t] && turn(p, t, kind, v))
+      cblas_dgemm(CblasRowMajor, CblasNoTrans, CblasNoTrans, s, nb, s, 1, p->smooth[t], s,
+                  p->turned, nb, 1, y, nb);
   if (p->U)
     cblas_dgemm(CblasRowMajor, CblasNoTrans, CblasNoTrans, n, nb, s, 1, p->U, s, y, nb, 1, out, nb);
 }
@@ -369,12 +365,12 @@ static void add_poles(mhb_receptance_product *p, mhb_product_kind kind, const do
                       double *out) {
   const mhb_receptance *r = p->receptance;
   int                   n = p->n, nb = p->nb, modes = r->n_modes, rest = r->model->n_residual;
-  for (int k = 0; k <= p->m; k++) {
+  for (int k = p->first; k <= p->m; k++) {
     const double complex *pole = p->pole[kind] + (size_t)k * (size_t)p->n_poles;
     int                   any  = 0;
     for (int i = 0; i < n; i++) {
-      const double *a = force + (size_t)i * (size_t)nb;
-      p->force[i]     = k ? CMPLX(a[2 * k - 1], a[2 * k]) : a[0];
+      const double *a = force + (size_t)i * (size_t)nb + mhb_product_column(p, k);
+      p->force[i]     = k ? CMPLX(a[0], a[1]) : a[0];
       any |= creal(p->force[i]) != 0 || cimag(p->force[i]) != 0;
     }
     if (!any) continue;
@@ -382,9 +378,9 @@ static void add_poles(mhb_receptance_product *p, mhb_product_kind kind, const do
     add_shapes(p, modes, r->B + (size_t)k * (size_t)n * (size_t)modes, pole);
     add_shapes(p, rest, r->residual_terms->S + (size_t)k * (size_t)n * (size_t)rest, pole + modes);
     for (int i = 0; i < n; i++) {
-      double *to = out + (size_t)i * (size_t)nb;
-      to[k ? 2 * k - 1 : 0] += creal(p->motion[i]);
-      if (k) to[2 * k] += cimag(p->motion[i]);
+      double *to = out + (size_t)i * (size_t)nb + mhb_product_column(p, k);
+      to[0] += creal(p->motion[i]);
+      if (k) to[1] += cimag(p->motion[i]);
     }
   }
 }

@@ -8,7 +8,8 @@
  * random sketch (Halko, Martinsson, Tropp 2011) to 1e-12 in the norm of the contact stiffness. Without
  * a small U the products are dense.
  *
- * Forces and motions are in real form [n][2m+1]. */
+ * Forces and motions are in real form [n][2m+1]. Without the low harmonics they are [n][nb], real and
+ * imaginary part of each harmonic. */
 #ifndef MHB_LOW_RANK_RECEPTANCE_PRODUCT_H
 #define MHB_LOW_RANK_RECEPTANCE_PRODUCT_H
 
@@ -21,7 +22,7 @@ enum { MHB_SMOOTH_TERMS = 2 * MODAL_TERMS + 1 }; /* even, odd of each term, self
 
 typedef struct {
   mhb_receptance *receptance;
-  int             n, m, nb;                 /* 3 pairs; harmonics 0..m; 2m+1 */
+  int             n, first, m, nb;          /* 3 pairs; harmonics first..m; columns of a force */
   int             n_poles;                  /* modes and residual modes */
   const double   *own[2];                   /* [n][n] of the receptance; NULL: none */
   int             n_smooth;                 /* columns of U, n without U */
@@ -29,30 +30,37 @@ typedef struct {
   double         *smooth[MHB_SMOOTH_TERMS]; /* [smooth][smooth] U^+ of a term; NULL: none */
 
   /* at a frequency */
-  double  omega;                                        /* rad/s; NAN: none */
-  double *own_weight[MHB_PRODUCTS][2];                  /* [2m+1] of each column */
-  double *symmetric[MHB_PRODUCTS], *skew[MHB_PRODUCTS]; /* [k][smooth][smooth]: C = E - j O */
-  double complex *pole[MHB_PRODUCTS];                   /* [k][poles] */
+  double          omega;              /* rad/s; NAN: none */
+  double         *weight;             /* [kind][term][k] of the residual terms */
+  double complex *pole[MHB_PRODUCTS]; /* [k][poles] */
 
-  double         *weighted;               /* [n][2m+1] */
-  double         *coefficient, *response; /* [smooth][2m+1] */
-  double complex *force, *motion;         /* [n] */
-  double complex *amplitude;              /* [poles] */
+  double         *weighted;       /* [n][2m+1] */
+  double         *coefficient;    /* [smooth][2m+1] U^T p */
+  double         *turned;         /* [smooth][2m+1] the same with weight and phase of a term */
+  double         *response;       /* [smooth][2m+1] */
+  double complex *force, *motion; /* [n] */
+  double complex *amplitude;      /* [poles] */
   shb_arena       arena;
 } mhb_receptance_product;
 
-/* Harmonics 0..m of the receptance, which must outlive it and keep its model.
+/* Harmonics first..m of the receptance, which must outlive it and keep its model.
  *   stiffness  in  [n] size of the contact stiffness of each axis, N/m, > 0
  *   top        in  rad/s, highest excitation frequency
  * SHB_ERR_IO: no memory. */
-shb_status mhb_receptance_product_create(mhb_receptance *receptance, int m, const double *stiffness,
-                                         double top, mhb_receptance_product **out);
+shb_status mhb_receptance_product_create(mhb_receptance *receptance, int first, int m,
+                                         const double *stiffness, double top,
+                                         mhb_receptance_product **out);
 void       mhb_receptance_product_destroy(mhb_receptance_product *product);
 
 /* Go to the receptance's frequency. */
 void mhb_receptance_product_update(mhb_receptance_product *product);
 
-/* out[n][2m+1] <- R p or dR/d omega p at the frequency of the last update. */
+/* Column of harmonic k, its real part. */
+static inline int mhb_product_column(const mhb_receptance_product *product, int k) {
+  return product->first ? 2 * (k - product->first) : k ? 2 * k - 1 : 0;
+}
+
+/* out[n][nb] <- R p or dR/d omega p at the frequency of the last update. */
 void mhb_receptance_product_apply(mhb_receptance_product *product, mhb_product_kind kind,
                                   const double *p, double *out);
 

@@ -6,6 +6,7 @@
  *   bench_response --pairs N      the row of N pairs alone
  *   bench_response --harmonics H  the beam's rows of H harmonics alone, against themselves
  *   bench_response --precision    error against seconds alone (precision.h)
+ *   bench_response --faces FILE...   contact faces of modal files (contact_faces.h)
  *   bench_response --blade FILE N0 FROM TO   the same of a modal file: contact to the neighbour,
  *                                 preload N, range Hz
  *
@@ -22,6 +23,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include "contact_faces.h"
 #include "mesh/base/constants.h"
 #include "mesh/base/progress.h"
 #include "mhb/branches/main_branch.h"
@@ -424,6 +426,8 @@ int main(int argc, char **argv) {
     status = quick(&failed);
   } else if (argc == 2 && !strcmp(argv[1], "--precision")) {
     status = precision(&failed);
+  } else if (argc > 2 && !strcmp(argv[1], "--faces")) {
+    status = bench_contact_faces(argv + 2, argc - 2, &failed);
   } else if (argc == 6 && !strcmp(argv[1], "--blade")) {
     status = blade(argv + 2, &failed);
   } else if (pairs > 0) {
@@ -434,7 +438,7 @@ int main(int argc, char **argv) {
     fprintf(stderr,
             "bench_response: usage: bench_response [--quick | --pairs N | --harmonics H | "
             "--precision | "
-            "--blade FILE N0 FROM TO]\n");
+            "--faces FILE... | --blade FILE N0 FROM TO]\n");
     return SHB_ERR_INPUT;
   }
   if (status != SHB_OK) {
