@@ -158,7 +158,7 @@ static int orthonormalise(candidates *c, int n) {
 /* 1/(w_i^2 - w^2 + 2 j zeta w_i w), not nearer to an undamped resonance than 1e-4 of it. */
 static double complex receptance_of(const mhb_receptance *r, int i, double w) {
   double wi = SHB_TWO_PI * r->model->frequency[i], zeta = fmax(r->model->damping_ratio[i], 5e-5);
-  return 1 / CMPLX(wi * wi - w * w, 2 * zeta * wi * w);
+  return 1.0 / CMPLX(wi * wi - w * w, 2 * zeta * wi * w);
 }
 
 /* Block of H: Q^H D^1/2 R_k D^1/2 Q at w, and its conjugate transpose beside it. */
@@ -319,7 +319,7 @@ static int make_projections(mhb_contact_basis *b, int k) {
   size_t                square = (size_t)rank * (size_t)rank, all = (size_t)n * (size_t)rank;
   double               *room = calloc(4 * all + 1, sizeof(double));
   b->projected[k] = shb_arena_take(&b->arena, MHB_PROJECTIONS * square, sizeof(double complex));
-  b->pole[k]      = shb_arena_take(&b->arena, (size_t)(rank * poles), sizeof(double complex));
+  b->pole[k]      = shb_arena_take(&b->arena, (size_t)rank * (size_t)poles, sizeof(double complex));
   b->K[k]         = shb_arena_take(&b->arena, square * (size_t)(parts * parts), sizeof(double));
   if (!room || b->arena.failed) {
     free(room);
@@ -420,7 +420,7 @@ static void update_harmonic(mhb_contact_basis *b, int k) {
   for (int i = 0; i < rank; i++)
     for (int j = 0; j < rank; j++) {
       const double complex *x = b->pole[k] + i * poles, *y = b->pole[k] + j * poles;
-      double complex        sum = entry(b, k, &series, (size_t)(i * rank + j));
+      double complex        sum = entry(b, k, &series, (size_t)i * (size_t)rank + (size_t)j);
       for (int l = 0; l < poles; l++)
         sum += x[l] * conj(y[l]) * (l < modes ? r->lambda[k * modes + l] : g[l - modes]);
       double *to = b->K[k] + i * rank * mhb_basis_parts(k) + j;

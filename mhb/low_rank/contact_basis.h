@@ -1,13 +1,13 @@
 /* The few motions of the contact that matter to the balance.
  *
- * Seen through the contact stiffness D the receptance has a small rank: the face moves as a rigid
- * body, and what its patches yield by themselves is weak. X_k spans the singular vectors of D^1/2 R_k
- * D^1/2 above a bound over the frequency range, X_k^H D X_k = I. Then
+ * Seen through the contact stiffness D the receptance has a small rank. The face moves as a rigid
+ * body, and what its patches yield by themselves is weak. X_k spans the singular vectors of
+ * D^1/2 R_k D^1/2 above a bound over the frequency range, X_k^H D X_k = I. Then
  *
  *   R_k = X_k K_k X_k^H + rest,   K_k(omega) = X_k^H D R_k D X_k,
  *
- * with a rest below the bound. K_k follows from projections that are made once. Candidates for X_k are
- * the modes, the residual modes and the leading eigenvectors of the residual flexibility. */
+ * with a rest below the bound. K_k follows from projections that are made once. Candidates for X_k
+ * are the modes, the residual modes and the leading eigenvectors of the residual flexibility. */
 #ifndef MHB_LOW_RANK_CONTACT_BASIS_H
 #define MHB_LOW_RANK_CONTACT_BASIS_H
 
@@ -32,14 +32,14 @@ typedef struct {
   shb_arena             arena;
 } mhb_contact_basis;
 
-/* Real form of harmonic k > 0: each row of X_k is two, real and imaginary part, times the columns of
- * Re y, then those of Im y. At k = 0 both are one. */
+/* Rows of X_k in real form for one axis of a pair: real and imaginary part, times the columns of
+ * Re y, then those of Im y. At k = 0 there is one. */
 static inline int mhb_basis_parts(int k) {
   return k ? 2 : 1;
 }
 
-/* For excitation frequencies low..high rad/s. The bound is raised from 0.05, up to 0.8, until size is
- * at most `most`.
+/* For excitation frequencies low..high rad/s. The bound is raised from 0.05, up to 0.8, until size
+ * is at most `most`.
  *   stiffness  in  [n] D, N/m, > 0
  * SHB_ERR_IO: no memory; SHB_NOT_CONVERGED: no eigenvalues. */
 shb_status mhb_contact_basis_create(const mhb_receptance *receptance, int m,

@@ -33,7 +33,7 @@ void       mhb_gmres_destroy(mhb_gmres *gmres);
 int mhb_gmres_solve(mhb_gmres *gmres, int size, mhb_gmres_apply apply, void *context,
                     const double *b, double tolerance, double *x);
 
-/* Number of negative real Ritz values of A M^-1 in the last solution: that of its negative
+/* Number of negative real Ritz values of A M^-1 in the last solution. These are its negative
  * eigenvalues, as far as the iterations have seen them. */
 int mhb_gmres_negative(mhb_gmres *gmres);
 

@@ -2,14 +2,13 @@
  *
  *   R_k = own_0 + a_1 own_1 + U C_k U^T + [B_k, S_k] diag(L_k, g_k) [B_k, S_k]^H
  *
- * own_t: residual flexibility and inertia of a face by itself, of full rank (mhb_cyclic_flexibility,
- * `self`). All that couples the two faces, and the third residual term, is smooth: it lies in the
- * span of a few vectors U (70 to 93 of 711 to 1386, `many_pairs` of the reference). U is found by a
- * random sketch (Halko, Martinsson, Tropp 2011) to 1e-12 in the norm of the contact stiffness. Without
- * a small U the products are dense.
+ * own_t: residual flexibility and inertia of a face by itself, of full rank. All that couples the
+ * two faces, and the third residual term, is smooth: it lies in the span of a few vectors U, about 93
+ * of 381 on cases/z_notch_blade. U is found by a random sketch (Halko, Martinsson, Tropp 2011) to
+ * 1e-12 in the norm of the contact stiffness. Without a small U the products are dense.
  *
- * Forces and motions are in real form [n][2m+1]. Without the low harmonics they are [n][nb], real and
- * imaginary part of each harmonic. */
+ * Forces and motions are in real form [n][2m+1]. Without the low harmonics they are [n][nb], real
+ * and imaginary part of each harmonic. */
 #ifndef MHB_LOW_RANK_RECEPTANCE_PRODUCT_H
 #define MHB_LOW_RANK_RECEPTANCE_PRODUCT_H
 

@@ -2,7 +2,7 @@
  *
  *   (I + R P) x + column sigma = rhs,   row . x + corner sigma = rhs_border
  *
- * P: stiffness of the pairs, a block each. With R replaced by X K X^H (contact_basis.h) the system is
+ * P: stiffness of the pairs, a block each. With R replaced by X K X^H (contact_basis.h) it is
  *
  *   [ I + T K     X^H P column     ] [ y     ]   [ X^H P rhs              ]
  *   [ - row X K   corner - row.col ] [ sigma ] = [ rhs_border - row . rhs ],   T = X^H P X,

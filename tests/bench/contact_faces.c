@@ -29,7 +29,7 @@ typedef struct {
   double first;        /* s until the first solution */
   double dense;        /* ms a point; 0: not run */
   double apart;        /* of the tangents by both, relative */
-  int    size;         /* coefficients of the basis */
+  int    size, smooth; /* coefficients of the basis; columns of U */
 } face_row;
 
 static double processor_ms(void) {
@@ -75,8 +75,8 @@ static void walk_dense(mhb_arclength *path, mhb_truncation *truncation, face_row
   mhb_condensation *system  = mhb_balance_curve_of(path)->newton->system;
   mhb_condensation *doubled = truncation->system;
   mhb_woodbury     *kept[2] = {system->low_rank, doubled->low_rank};
-  double            omega = path->current.value, ms = 0;
-  int               steps = 0;
+  double            ms      = 0;
+  int               steps   = 0;
   system->low_rank = doubled->low_rank = NULL;
   path->step                           = .02;
   for (; steps < DENSE_POINTS; steps++) {
@@ -87,8 +87,7 @@ static void walk_dense(mhb_arclength *path, mhb_truncation *truncation, face_row
     ms += processor_ms() - started;
     mhb_arclength_advance(path);
   }
-  row->dense = steps ? ms / steps : 0;
-  (void)omega;
+  row->dense        = steps ? ms / steps : 0;
   system->low_rank  = kept[0];
   doubled->low_rank = kept[1];
 }
@@ -178,6 +177,7 @@ static shb_status run_face(const char *file, face_row *row) {
                                &iterations) == MHB_CONVERGED &&
                 mhb_arclength_start(path, x, low, 1) == MHB_CONVERGED,
             SHB_NOT_CONVERGED, "no first solution of %d pairs", b->n_pairs);
+  row->smooth       = b->product ? b->product->n_smooth : 0;
   row->first        = 1e-3 * (processor_ms() - started);
   shb_status status = walk(path, truncation, row);
   free(x);
@@ -220,20 +220,21 @@ static double goal_of(int pairs) {
 
 shb_status bench_contact_faces(char **files, int n, int *failed) {
   face_row row[MOST_FILES] = {{0}};
-  printf("\n%5s %6s %6s %8s %8s %8s %6s %6s %5s %7s %8s %8s %9s %8s %9s %8s\n", "pairs", "points",
-         "moving", "step ms", "estim ms", "ms/point", "goal", "newton", "GMRES", "basis", "first s",
-         "MB", "residual", "dense ms", "peak um", "apart");
+  printf("\n%5s %6s %6s %8s %8s %8s %6s %6s %5s %6s %6s %8s %8s %9s %8s %9s %8s\n", "pairs",
+         "points", "moving", "step ms", "estim ms", "ms/point", "goal", "newton", "GMRES", "basis",
+         "smooth", "first s", "MB", "residual", "dense ms", "peak um", "apart");
   for (int i = 0; i < n && i < MOST_FILES; i++) {
     double megabytes = 0, all;
     SHB_TRY(fork_face(files[i], &row[i], &megabytes));
     const face_row *r = &row[i];
     all               = r->ms + r->estimate;
     printf(
-        "%5d %6d %6d %8.2f %8.2f %8.2f %6.0f %6.2f %5.1f %7d %8.2f %8.0f %9.1e %8.1f %9.4f %8.1e"
+        "%5d %6d %6d %8.2f %8.2f %8.2f %6.0f %6.2f %5.1f %6d %6d %8.2f %8.0f %9.1e %8.1f %9.4f "
+        "%8.1e"
         " %s\n",
         r->pairs, r->points, r->moving, r->ms, r->estimate, all, goal_of(r->pairs), r->newton,
-        r->iterations, r->size, r->first, megabytes, r->residual, r->dense, 1e6 * r->peak, r->apart,
-        all <= goal_of(r->pairs) ? "PASS" : "FAIL");
+        r->iterations, r->size, r->smooth, r->first, megabytes, r->residual, r->dense,
+        1e6 * r->peak, r->apart, all <= goal_of(r->pairs) ? "PASS" : "FAIL");
     fflush(stdout);
     *failed += !(r->residual <= 1e-8) || r->apart > 1e-11;
   }

@@ -1,7 +1,7 @@
 /* Contact faces with many pairs: milliseconds a point by the low-rank solver and by the dense one.
  *
- * The files are modal files of cases/z_notch_blade with `points: all` and mesh.blade.shroud_size 9, 3,
- * 2, 1.4 mm: 22, 84, 237, 462 pairs. */
+ * The files are modal files of cases/z_notch_blade with `points: all` and mesh.blade.shroud_size 9,
+ * 4, 2, 1.4 mm: 22, 84, 237, 462 pairs. */
 #ifndef BENCH_CONTACT_FACES_H
 #define BENCH_CONTACT_FACES_H
 
