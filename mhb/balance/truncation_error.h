@@ -14,8 +14,8 @@
 #include "mhb/balance/condensation.h"
 #include "mhb/balance/higher_harmonics.h"
 
-/* With more nonlinear unknowns of the doubled balance than this, 3 (4m+1) a nonlinear pair, the
- * estimate is of first order. */
+/* With more nonlinear unknowns of the doubled balance than this, 3 (4m+1) a nonlinear pair, few
+ * pairs are estimated to first order. Many pairs (MHB_MANY_PAIRS) have no limit. */
 enum { MHB_MOST_DOUBLED = 3000 };
 
 /* Bounds of the highest harmonic that is estimated, 4m between them. */

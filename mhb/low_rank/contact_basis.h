@@ -32,8 +32,8 @@ typedef struct {
   shb_arena             arena;
 } mhb_contact_basis;
 
-/* Rows of X_k in real form for one axis of a pair: real and imaginary part, times the columns of
- * Re y, then those of Im y. At k = 0 there is one. */
+/* Rows of X_k in real form for one axis of a pair: real and imaginary part. Its columns are those
+ * of Re y, then those of Im y. At k = 0 there is one row. */
 static inline int mhb_basis_parts(int k) {
   return k ? 2 : 1;
 }

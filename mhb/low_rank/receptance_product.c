@@ -188,7 +188,7 @@ static void find_smooth(mhb_receptance_product *p, const double *stiffness, doub
     s.weight[t] = fmax(series.weight[term_of(t)], 1e-300);
     any |= source_of(p->receptance, t) != NULL;
   }
-  for (int q = FIRST_SKETCH; any && !found && q < p->n / 2; q *= 2) {
+  for (int q = FIRST_SKETCH; any && !found && q < p->n; q *= 2) {
     s.columns = q;
     found     = try_sketch(p, &s);
     sketch_free(&s);

@@ -2,10 +2,10 @@
  *
  *   R_k = own_0 + a_1 own_1 + U C_k U^T + [B_k, S_k] diag(L_k, g_k) [B_k, S_k]^H
  *
- * own_t: residual flexibility and inertia of a face by itself, of full rank. All that couples the
- * two faces, and the third residual term, is smooth: it lies in the span of a few vectors U, about 93
- * of 381 on cases/z_notch_blade. U is found by a random sketch (Halko, Martinsson, Tropp 2011) to
- * 1e-12 in the norm of the contact stiffness. Without a small U the products are dense.
+ * own_t: residual flexibility and inertia of a face by itself, of full rank. What couples the two
+ * faces is smooth, and so is the third residual term. It lies in the span of a few vectors U: 86 of
+ * 711 with 237 pairs of cases/z_notch_blade. A random sketch finds U (Halko, Martinsson, Tropp
+ * 2011) to 1e-12 in the norm of the contact stiffness. Without a small U the products are dense.
  *
  * Forces and motions are in real form [n][2m+1]. Without the low harmonics they are [n][nb], real
  * and imaginary part of each harmonic. */
