@@ -18,6 +18,11 @@ foreach(noun hysteresis_picture up_to_date)
 endforeach()
 add_test(NAME cases.commands.commands
   COMMAND sh ${CMAKE_CURRENT_SOURCE_DIR}/cases/commands/test_commands.sh $<TARGET_FILE:shroudhb>)
+if(NOT SHROUDHB_SANITIZE AND NOT SHROUDHB_FUZZ) # sanitizers reserve more than any limit
+  add_test(NAME cases.commands.address_space
+    COMMAND sh ${CMAKE_CURRENT_SOURCE_DIR}/cases/commands/test_address_space.sh
+            $<TARGET_FILE_DIR:shroudhb>)
+endif()
 add_test(NAME cases.commands.modes_alone
   COMMAND sh ${CMAKE_CURRENT_SOURCE_DIR}/cases/commands/test_modes_alone.sh $<TARGET_FILE:shroudhb>
           ${PROJECT_SOURCE_DIR}/cases/z_notch_blade/case.yaml)
