@@ -272,9 +272,14 @@ static double frequency_of(const mhb_receptance *r, int k) {
 
 void mhb_receptance_update(mhb_receptance *r, int k) {
   double w = frequency_of(r, k);
-  if (r->updated_at[k] == w) return;
-  harmonic_at(r, k);
-  r->updated_at[k] = r->load_at[k] = w;
+  if (r->updated_at[k] != w) {
+    harmonic_at(r, k);
+    r->updated_at[k] = r->load_at[k] = w;
+  }
+  if (r->load_at[k] != w) { /* R_k is that of w, but the load went elsewhere since */
+    load_at(r, k);
+    r->load_at[k] = w;
+  }
 }
 
 void mhb_receptance_update_load(mhb_receptance *r, int k) {

@@ -127,6 +127,12 @@ static void load_without_R(void **state) {
   for (int k = 0; k <= M; k++) mhb_receptance_update_load(other, k);
   for (int i = 0; i < (M + 1) * one->n; i++)
     assert_below(cabs(one->free[i] - other->free[i]), 1e-13 * (cabs(one->free[i]) + 1));
+  mhb_receptance_at(other, 1.3, M); /* R of 1.3, then the load alone elsewhere, then back */
+  mhb_receptance_set_frequency(other, 1.1);
+  for (int k = 0; k <= M; k++) mhb_receptance_update_load(other, k);
+  mhb_receptance_at(other, 1.3, M);
+  for (int i = 0; i < (M + 1) * one->n_modes; i++)
+    assert_below(cabs(one->lambda[i] - other->lambda[i]), 1e-13 * (cabs(one->lambda[i]) + 1));
   mhb_receptance_destroy(one);
   mhb_receptance_destroy(other);
   modal_model_free(&model);
