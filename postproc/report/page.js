@@ -66,9 +66,10 @@
     const x = fullRange();
     const label = `${o.place} ${o.axis}, ${o.quantity}, ${u[0]}`;
     main = new Panel(
-        "response", {left: 60, top: 34, width: width - 80, height: height - 84},
+        "response", {left: 60, top: D.rpm ? 54 : 34, width: width - 80, height: height - (D.rpm ? 104 : 84)},
         axis(x, X.scale, xLabel), axis(y, u[1], label));
     main.unit = u;
+    if (D.rpm && sweep) main.svg += speedAxis(main);
     const order = D.branches.map((b, i) => i).sort((i, j) => rankOf(i) - rankOf(j));
     for (const i of order) {
       const b = D.branches[i], g = groupOf(b), a = b.row(o.row), stable = b.row(ROW.stable);
@@ -121,6 +122,20 @@
     $("whole").disabled = !state.zoom && !state.zoomY;
     drawHover();
   }
+  /* In a run-up the speed above the chart, at round numbers. */
+  function speedAxis(p) {
+    const {left, top, width} = p.box, places = [], LABEL = 210; /* px of the amplitude's label */
+    for (const rpm of Plot.linearTicks(p.ax.lo * D.rpm, p.ax.hi * D.rpm, Math.floor(width / 110))) {
+      const x = p.x(rpm / D.rpm);
+      places.push(`<path class="base" d="M${x.toFixed(1)} ${top}v-4"/>`);
+      if (x > left + LABEL)
+        places.push(`<text class="tick" x="${x.toFixed(1)}" y="${
+            top - 7}" text-anchor="middle">${number(rpm, 7, false)}</text>`);
+    }
+    return `<g id="rpm">${places.join("")}<path class="base" d="M${left} ${top}h${
+        width}"/><text class="axis" x="${left + width}" y="${
+        top - 22}" text-anchor="end">rotor speed, rpm</text></g>`;
+  }
   /* Text anchor that keeps the label of a limit inside the parameter's range. */
   function anchor(f) {
     const [lo, hi] = X.range, air = 1e-6 * (hi - lo);
@@ -140,6 +155,8 @@
     const u = unit(LENGTH, a);
     const rows =
         [[X.name, xText(b.f[i])], [state.output.quantity, number(a / u[1], 4) + NBSP + u[0]]];
+    if (D.rpm && sweep)
+      rows.splice(1, 0, ["rotor speed", number(b.f[i] * D.rpm, 5, false) + NBSP + "rpm"]);
     if (g.kind === "nonlinear") {
       if (Number.isFinite(shares[0]))
         rows.push(

@@ -373,6 +373,8 @@ static shb_status put_all(const post_analysis *analysis, int chosen, sheet *shee
   post_put(out, "{\"rows\":%d,\"chosen\":%d,\"log\":%s,\"abscissa\":", p.rows, chosen,
            post_amplitude_is_log(analysis) ? "true" : "false");
   put_abscissa(&analysis->abscissa, out);
+  if (analysis->response->run_up && analysis->response->engine_order > 0)
+    post_put(out, ",\"rpm\":%.9g", 60.0 / analysis->response->engine_order);
   post_put(out, ",\"groups\":[");
   put_groups(analysis, out);
   post_put(out, "],\"outputs\":[");

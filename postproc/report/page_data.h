@@ -4,7 +4,7 @@
  *   branches  [{group, n, complete, reason, data}]
  *   outputs   [{place, axis, quantity, row, track, peaks, folds}]
  *   spectra   [{place, row, n}]
- *   rows, chosen, log
+ *   rows, chosen, log; in a run-up rpm, speed over frequency
  *   abscissa  {parameter (as in a case file), name, unit, scale (shown is value in SI / scale),
  *             log, range [lo, hi]}
  *

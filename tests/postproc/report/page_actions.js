@@ -144,5 +144,5 @@
   }
   for (const e of document.querySelectorAll("svg.plot"))
     if (/NaN|undefined|Infinity/.test(e.innerHTML)) faults.push(`NaN in ${e.id} at the end`);
-  document.title = "seen " + JSON.stringify({charts, faults, pictures});
+  document.title = "seen " + JSON.stringify({charts, faults, pictures, speeds: !!$("rpm")});
 })();

@@ -74,6 +74,8 @@ def faults(kind, chromium, folder):
     found += seen['faults']
     if (kind in ('blade', 'large')) != ('pictures' in seen):
         found.append('no blade' if kind in ('blade', 'large') else 'a blade')
+    if (kind == 'free') != seen['speeds']:  # it runs up
+        found.append('axis of speeds')
     if LOOPS <= set(seen['charts']) == (kind in ('free', 'blade', 'large')):
         found.append(f'charts {seen["charts"]}')
     return found
