@@ -122,7 +122,7 @@
     $("whole").disabled = !state.zoom && !state.zoomY;
     drawHover();
   }
-  /* In a run-up the speed above the chart, at round numbers. */
+  /* Where the speed follows the frequency: the speed above the chart, at round numbers. */
   function speedAxis(p) {
     const {left, top, width} = p.box, places = [], LABEL = 210; /* px of the amplitude's label */
     for (const rpm of Plot.linearTicks(p.ax.lo * D.rpm, p.ax.hi * D.rpm, Math.floor(width / 110))) {
