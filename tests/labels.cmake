@@ -27,14 +27,14 @@ set(INTEGRATION_TESTS cases.study.study cases.field.field cases.commands.json
   hard.peaks hard.isolas hard.parameters bench.stability bench.modal bench.contact
   bench.integrate bench.lasting bench.study mhb.floquet.friction_limit docs.first_case
   mhb.ring.ring_step mhb.ring.neimark_sacker cases.install.install
-  mhb.tracking.corner mhb.tracking.tracked_curve
+  mhb.tracking.corner mhb.tracking.tracked_curve bench.tracking
   mesh.blade.shroud_angle)
 if(SHROUDHB_CHROMIUM AND SHROUDHB_PYTHON)
   list(APPEND INTEGRATION_TESTS postproc.study.page_script postproc.report.page_script)
 endif()
 set(SLOW_TESTS
   mesh.blade.blade mhb.floquet.monodromy mhb.branches.verdicts cases.converge.converge hard.gaps
-  bench.elements cases.scenes.optimum_preload fuzz.libfuzzer)
+  bench.elements cases.scenes.optimum_preload fuzz.libfuzzer mhb.tracking.tracked_response)
 
 set(TIMEOUT_unit 100)
 set(TIMEOUT_integration 600)

@@ -225,6 +225,7 @@ static int adaptive_step(mhb_arclength *curve, const mhb_curve_point *tried) {
     note_orientation(curve);
     return 1;
   }
+  if (curve->system->plain) return 0;
   return step_across_kink(curve) || step_larger(curve) || step_to_value(curve) ||
          step_reversed(curve);
 }

@@ -31,6 +31,7 @@ struct mhb_curve_system {
   int    n;        /* unknowns */
   double least;    /* below it no value makes sense */
   bool   relative; /* a change of the value is compared with the value itself, not with the range */
+  bool   plain;    /* where no ordinary step converges it is the user who tries others */
   bool   smooth;   /* the residual is accurate enough for chord steps */
   int    row_length; /* x is [n / row_length][row_length]; a finer system of the same curve has as
                       * many rows, longer ones, that begin with the same unknowns */

@@ -317,7 +317,7 @@ static void linearise(tracer *t, const place *at) {
 }
 
 /* x of the point <- the motion at a place; r and the evaluation follow. Off the corner the mean
- * friction is the least admissible one, a function with kinks, and the means are iterated. */
+ * friction is the least admissible one, and Newton's method finds the means. */
 static bool balance_at(tracer *t, const place *at) {
   mhb_balance *b = t->s.balance;
   state_at(&t->s, at->omega, at->value);
@@ -325,12 +325,11 @@ static bool balance_at(tracer *t, const place *at) {
   go_to(b, t->s.tracking, at->value);
   t->point.value = at->value;
   linearise(t, at);
-  int i = 0;
-  for (; t->s.stuck && i < MOST_MEANS && t->point.residual > SETTLED_MEANS; i++) {
-    for (int axis = 0; axis < 3; axis++) t->point.x[axis * b->nb] -= 0.5 * t->point.r[axis * b->nb];
+  t->point.iterations = 0;
+  if (t->s.stuck && t->point.residual > SETTLED_MEANS) {
+    mhb_newton_solve(t->newton, b, at->omega, SETTLED_MEANS, t->point.x, &t->point.iterations);
     linearise(t, at);
   }
-  t->point.iterations = i;
   return t->point.residual <= BALANCED;
 }
 

@@ -122,14 +122,26 @@ static void solve_bordered(const mhb_peak_system *s, char transposed, double *rh
   LAPACKE_dgetrs_work(LAPACK_COL_MAJOR, transposed, one, 1, s->bordered, one, s->pivot, rhs, one);
 }
 
-/* Unit tangent T of the response curve and the adjoint; the border turns to T. Returns G. NAN: B is
- * singular. */
+/* Sign of the determinant of B. */
+static int orientation(const mhb_peak_system *s) {
+  size_t one  = (size_t)s->n + 1;
+  int    sign = 1;
+  for (size_t i = 0; i < one; i++) {
+    if (s->pivot[i] != (lapack_int)i + 1) sign = -sign;
+    if (s->bordered[i * one + i] < 0) sign = -sign;
+  }
+  return sign;
+}
+
+/* Unit tangent T of the response curve and the adjoint. The determinant of [r_z; T] is positive.
+ * The sign of G then does not depend on the border, which a distant trial may have left.
+ * Returns G. NAN: B is singular. */
 static double tangent_and_adjoint(mhb_peak_system *s) {
   if (!factor_bordered(s)) return NAN;
   memset(s->tangent, 0, sizeof(double) * (size_t)s->n);
   s->tangent[s->n] = 1;
   solve_bordered(s, 'N', s->tangent);
-  double length = mhb_norm(s->tangent, s->n + 1);
+  double length = orientation(s) * mhb_norm(s->tangent, s->n + 1);
   for (int i = 0; i <= s->n; i++) s->tangent[i] /= length;
   memcpy(s->adjoint, s->gradient, sizeof(double) * ((size_t)s->n + 1));
   solve_bordered(s, 'T', s->adjoint);
@@ -138,7 +150,7 @@ static double tangent_and_adjoint(mhb_peak_system *s) {
 
 /* The smallest share of the period in which a pair that is not linear slips or is open. */
 static double slip_share(const mhb_balance *b) {
-  double least = 1;
+  double least = mhb_balance_is_linear(b) ? 0 : 1;
   for (int a = 0; a < b->n_pairs; a++)
     if (b->eval->kind[a] == MHB_PAIR_NONLINEAR)
       least = fmin(least, 1 - b->eval->info[a].share[MHB_STICK]);
@@ -326,6 +338,7 @@ shb_status mhb_peak_system_create(mhb_balance *balance, mhb_tracked_point kind, 
   s->n              = balance->n;
   s->base           = (mhb_curve_system){.n                  = balance->n + 1,
                                          .least              = mhb_parameter_least(parameter),
+                                         .plain              = kind == MHB_TRACK_PEAK,
                                          .row_length         = balance->n + 1,
                                          .copies             = 1,
                                          .copy               = copy,

@@ -30,7 +30,8 @@ typedef struct {
   double amplitude;  /* m, of the output */
   double curvature;  /* d2A/ds2 along the response curve, 1/m: below 0 at a maximum */
   double by_value;   /* dA/dq along the peaks; for a fold d xi/dq, m a unit */
-  double slip_share; /* smallest share of the period in which a nonlinear pair slips or is open */
+  double slip_share; /* smallest share of the period in which a nonlinear pair slips or is open; 0:
+                        all pairs are linear */
 } mhb_peak_report;
 
 typedef struct mhb_peak_system mhb_peak_system;

@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "mesh/base/clock.h"
+#include "mesh/base/constants.h"
 #include "mesh/base/progress.h"
 #include "mhb/balance/truncation_error.h"
 #include "mhb/branches/record.h"
@@ -14,6 +15,10 @@
 /* Below this share of the period slip has as good as ended. The response curve has a corner there,
  * and the law's derivatives lose their meaning. */
 static const double LEAST_SLIP = 2e-3;
+
+/* Beyond a kink amplitude and frequency differ by no more than this, relative. */
+static const double NEIGHBOUR = 2e-2;
+enum { MOST_KINKS = 12 };
 
 typedef struct {
   mhb_segment_host    host; /* first: its functions get it back */
@@ -27,6 +32,7 @@ typedef struct {
   int                 segment;   /* under way */
   int                 direction; /* in which it began */
   double              clock;
+  bool                spoilt; /* a point has too large a truncation error */
 } tracer;
 
 /* ---- what segments ask for ---- */
@@ -50,10 +56,20 @@ static shb_status accept(mhb_segment_host *host, bool *moved) {
   return SHB_OK;
 }
 
+/* One pair that is stuck throughout. */
+static bool sticks(const mhb_balance *b) {
+  const mhb_pair_kind kind = b->eval->kind[0];
+  return b->n_pairs == 1 && (kind == MHB_PAIR_STUCK || kind == MHB_PAIR_AT_LIMIT);
+}
+
 static shb_status started(mhb_segment_host *host, const mhb_seed *seed, mhb_end *end) {
   tracer *t = (tracer *)host;
   (void)seed;
-  (void)end;
+  /* Without slip the peak is that of mhb_trace_corner. Here it would go on beyond the onset of
+   * slip, along the hair of stuck solutions. */
+  mhb_balance_use(t->balance, host->curve->current.evaluation);
+  if (t->tracking->kind == MHB_TRACK_PEAK && sticks(t->balance)) *end = MHB_END_NO_START;
+  if (*end != MHB_END_NONE) return SHB_OK;
   mhb_curve_place_free(&t->start);
   t->back = (mhb_curve_return){&t->start, 0};
   return mhb_curve_place_note(&t->start, host->curve->system, &host->curve->current, 1e-6);
@@ -66,7 +82,10 @@ static shb_status record(mhb_segment_host *host, mhb_curve_point *point, int spe
   mhb_balance_set_parameter(t->balance, t->tracking->parameter);
   SHB_TRY(mhb_record(t->store, t->segment, t->balance, point, special, now - t->clock));
   t->clock = now;
-  *go_on   = !shb_interrupted();
+  /* the whole curve is followed again with more harmonics */
+  const double most = t->tracking->tolerance;
+  t->spoilt         = t->spoilt || (most > 0 && point->truncation > most);
+  *go_on            = !t->spoilt && !shb_interrupted();
   return SHB_OK;
 }
 
@@ -133,15 +152,63 @@ static int make_tests(tracer *t, mhb_event_test test[MOST_TESTS]) {
 
 /* ---- both halves of a curve ---- */
 
-/* Drop the points from where the parameter turns. */
-static void keep_monotone(mhb_branch *branch, int direction) {
-  int n = 1;
-  while (n < branch->n_points && direction * (branch->value[n] - branch->value[n - 1]) > 0) n++;
+/* Drop the points of a segment from where the parameter turns; first: the segment's first point. */
+static void keep_monotone(tracer *t, int first) {
+  mhb_branch *branch = &t->store->branch[t->segment];
+  int         n      = first > 0 ? first : 1;
+  while (n < branch->n_points && t->direction * (branch->value[n] - branch->value[n - 1]) > 0) n++;
   if (n < branch->n_points) branch->n_points = n;
+}
+
+/* Amplitude of the output at a point of the segment. */
+static double last_amplitude(const tracer *t, int point) {
+  return mhb_response_amplitude(t->store, &t->store->branch[t->segment], point,
+                                t->tracking->output);
+}
+
+/* The unknowns on the far side of a kink, extrapolated from the last point of the curve and solved
+ * at a few distances. False: there is no maximum near, for that one did end. */
+static bool beyond_kink(tracer *t, double *z, double *value) {
+  mhb_arclength      *curve  = t->host.curve;
+  mhb_curve_system   *system = curve->system;
+  const mhb_tracking *track  = t->tracking;
+  const mhb_branch   *branch = &t->store->branch[t->segment];
+  const int           last   = branch->n_points - 1;
+  static const double away[] = {3e-4, 1e-3, 3e-3, 1e-2};
+  const double        from = branch->value[last], a = last_amplitude(t, last);
+  const double        omega = SHB_TWO_PI * branch->frequency[last];
+  double              x[t->balance->n];
+  if (last < 1) return false;
+  double rate = SHB_TWO_PI * (branch->frequency[last] - branch->frequency[last - 1]) /
+                (from - branch->value[last - 1]);
+  for (size_t i = 0; i < sizeof away / sizeof *away; i++) {
+    double to = from + t->direction * away[i] * fmax(fabs(from), 0.01 * (track->high - track->low));
+    if (to <= track->low || to >= track->high) return false;
+    mhb_recorded_motion(branch, last, t->balance, x);
+    mhb_curve_point *point = &curve->trial;
+    mhb_peak_system_pack(system, x, omega + rate * (to - from), point->x);
+    point->value = to;
+    if (system->solve_at_value(system, curve->tolerance, point) != MHB_CONVERGED) continue;
+    mhb_peak_report report = mhb_peak_system_report(system, point);
+    double          moved  = mhb_peak_system_omega(system, point->x) / omega - 1;
+    if (report.curvature >= 0 || report.slip_share < LEAST_SLIP) continue;
+    if (fabs(report.amplitude / a - 1) > NEIGHBOUR || fabs(moved) > NEIGHBOUR) continue;
+    memcpy(z, point->x, sizeof(double) * ((size_t)t->balance->n + 1));
+    *value = to;
+    return true;
+  }
+  return false;
+}
+
+/* Whether a curve may go on beyond such an end. */
+static bool may_be_kink(const tracer *t, mhb_end end) {
+  return t->tracking->kind == MHB_TRACK_PEAK &&
+         (end == MHB_END_TURNED || end == MHB_END_STALLED || end == MHB_END_TINY_STEPS);
 }
 
 static shb_status trace_half(tracer *t, const double *z, double value, int direction, int *segment,
                              mhb_end *end) {
+  double   further[t->balance->n + 1];
   mhb_seed seed = {.kind       = MHB_SEED_SOLUTION,
                    .x          = z,
                    .value      = value,
@@ -154,9 +221,16 @@ static shb_status trace_half(tracer *t, const double *z, double value, int direc
   t->host.max_points = t->tracking->max_points;
   bool outside       = direction > 0 ? value >= t->tracking->high : value <= t->tracking->low;
   if (outside) *end = direction > 0 ? MHB_END_HIGH : MHB_END_LOW;
-  if (outside) return SHB_OK;
+  if (outside || t->spoilt) return SHB_OK;
   SHB_TRY(mhb_trace_segment(&t->host, &seed, end));
-  if (t->tracking->kind == MHB_TRACK_PEAK) keep_monotone(&t->store->branch[*segment], direction);
+  if (t->tracking->kind == MHB_TRACK_PEAK) keep_monotone(t, 0);
+  for (int kinks = 0; kinks < MOST_KINKS && may_be_kink(t, *end); kinks++) {
+    const int n = t->store->branch[*segment].n_points;
+    if (!beyond_kink(t, further, &seed.value)) break;
+    seed.x = further;
+    SHB_TRY(mhb_trace_segment(&t->host, &seed, end));
+    keep_monotone(t, n);
+  }
   return SHB_OK;
 }
 
@@ -176,6 +250,12 @@ static shb_status trace_both(tracer *t, const mhb_tracking_seed *seed, double *z
   int down, up;
   mhb_peak_system_pack(t->host.curve->system, seed->x, seed->omega, z);
   SHB_TRY(trace_half(t, z, seed->value, -1, &down, &end->low));
+  if (end->low == MHB_END_CLOSED) { /* the other way round it is the same curve */
+    end->high = MHB_END_CLOSED;
+    *found    = true;
+    return mhb_response_copy_points(response, branch, t->store, down, 0,
+                                    t->store->branch[down].n_points - 1);
+  }
   SHB_TRY(trace_half(t, z, seed->value, 1, &up, &end->high));
   SHB_TRY(mhb_join_halves(response, branch, t->store, down, up));
   *found = response->branch[branch].n_points > 0;

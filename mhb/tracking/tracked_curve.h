@@ -14,6 +14,7 @@ typedef struct {
   double            low, high;    /* of the parameter */
   double            frequency[2]; /* rad/s, the range of the peaks */
   int               max_points;
+  double            tolerance; /* > 0: stop where the truncation error exceeds it */
 } mhb_tracking;
 
 /* A point to start from: an approximate peak or fold. */

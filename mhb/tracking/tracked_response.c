@@ -29,6 +29,9 @@ static const double NEARLY_HIGHEST = 0.9;
 /* A peak is the highest of its sweep from this share of the largest amplitude on. */
 static const double HIGHEST = 0.999;
 
+/* Beyond the end of a branch another one is as high from this share of its amplitude on. */
+static const double AS_HIGH = 0.97;
+
 /* A peak of a sweep is higher than the optimum if it exceeds it by this, relative. */
 static const double HIGHER = 1e-4;
 
@@ -106,15 +109,21 @@ static mhb_settings settings_at(const mhb_settings *settings, mhb_parameter para
   return s;
 }
 
-/* A frequency sweep at a value of the parameter, curves only. */
-static shb_status sweep_at(const tracking_run *run, double value, mhb_response **response) {
-  mhb_settings s      = settings_at(run->asked, run->tracking.parameter, value);
-  s.parameter         = MHB_IN_FREQUENCY;
-  s.track             = MHB_TRACK_NOTHING;
-  s.stability         = MHB_STABILITY_NEVER;
-  s.lasting           = MHB_LASTING_NEVER;
-  s.search.starts     = 0;
-  s.resume            = false;
+/* A frequency sweep at a value of the parameter, curves only.
+ *   coarse  in  with the fewest harmonics, where the case leaves their number to the program */
+static shb_status sweep_at(const tracking_run *run, double value, bool coarse,
+                           mhb_response **response) {
+  mhb_settings s  = settings_at(run->asked, run->tracking.parameter, value);
+  s.parameter     = MHB_IN_FREQUENCY;
+  s.track         = MHB_TRACK_NOTHING;
+  s.stability     = MHB_STABILITY_NEVER;
+  s.lasting       = MHB_LASTING_NEVER;
+  s.search.starts = 0;
+  s.resume        = false;
+  if (coarse && s.motion_tolerance > 0) {
+    s.harmonics        = LEAST_HARMONICS * s.subharmonics;
+    s.motion_tolerance = 0;
+  }
   shb_progress quiet  = shb_progress_start("mhb", true, false);
   shb_status   status = mhb_forced_response(run->model, &s, NULL, NULL, &quiet, response);
   /* a curve with a gap still has peaks */
@@ -179,7 +188,10 @@ static shb_status follow_with(tracking_run *run, const mhb_branch *from, int poi
   mhb_tracking_end end;
   int              index;
   mhb_settings     settings = run->settings;
+  mhb_tracking     tracking = run->tracking;
+  bool             judge    = run->asked->harmonics == 0;
   settings.harmonics        = m;
+  tracking.tolerance        = judge && m < MOST_HARMONICS ? run->asked->motion_tolerance : 0;
   SHB_TRY(mhb_response_branch(run->response, MHB_BRANCH_TRACKED, &index));
   run->response->branch[index].n_harmonics = m;
   SHB_TRY(mhb_balance_create(run->model, &settings, &balance));
@@ -190,7 +202,7 @@ static shb_status follow_with(tracking_run *run, const mhb_branch *from, int poi
     mhb_recorded_motion(from, point, balance, x);
     status = mhb_trace_corner(balance, &run->tracking, &seed, run->response, index, found, &end);
     if (status == SHB_OK && !*found)
-      status = mhb_trace_tracked(balance, &run->tracking, &seed, run->response, index, found, &end);
+      status = mhb_trace_tracked(balance, &tracking, &seed, run->response, index, found, &end);
   }
   free(x);
   mhb_balance_destroy(balance);
@@ -201,7 +213,7 @@ static shb_status follow_with(tracking_run *run, const mhb_branch *from, int poi
   branch->reason   = strdup(reason);
   branch->searched = branch->complete = true;
   *good                               = *found;
-  for (int i = 0; i < branch->n_points && run->asked->harmonics == 0; i++)
+  for (int i = 0; i < branch->n_points && judge; i++)
     *good = *good && branch->error_truncation[i] <= run->asked->motion_tolerance;
   return SHB_OK;
 }
@@ -261,19 +273,36 @@ static shb_status make_response(tracking_run *run, mhb_response *const sweep[N_S
 
 /* A sweep at a value, and the curves through its peaks that are not known yet.
  *   most  out  highest amplitude of the sweep, m */
-static shb_status sweep_and_follow(tracking_run *run, double value, double *most) {
+static shb_status sweep_and_follow(tracking_run *run, double value, bool coarse, double *most) {
   mhb_response *sweep = NULL;
   shb_progress_show(run->progress, 90, "sweep at %s %.6g %s",
                     mhb_parameter_name(run->tracking.parameter), value,
                     mhb_parameter_unit(run->tracking.parameter));
-  shb_status status = sweep_at(run, value, &sweep);
+  shb_status status = sweep_at(run, value, coarse, &sweep);
   if (status == SHB_OK) *most = highest(run, sweep);
   if (status == SHB_OK) status = follow_all(run, sweep, value, *most);
   mhb_response_destroy(sweep);
   return status;
 }
 
-/* Where a branch ends inside the range another peak takes over: a sweep beyond each such end. */
+/* Whether another branch is as high beyond an end of a branch as that is there. */
+static bool goes_on(const tracking_run *run, int b, int point, double value) {
+  const mhb_response *r = run->response;
+  double amplitude      = mhb_response_amplitude(r, &r->branch[b], point, run->tracking.output);
+  for (int other = 0; other < r->n_branches; other++) {
+    const mhb_branch *branch = &r->branch[other];
+    for (int i = 0; other != b && i + 1 < branch->n_points; i++) {
+      if (value < branch->value[i] || value > branch->value[i + 1]) continue;
+      double low  = mhb_response_amplitude(r, branch, i, run->tracking.output);
+      double high = mhb_response_amplitude(r, branch, i + 1, run->tracking.output);
+      if (fmin(low, high) >= AS_HIGH * amplitude) return true;
+    }
+  }
+  return false;
+}
+
+/* Where a branch ends inside the range another peak takes over. A sweep beyond each such end finds
+ * it, unless a known branch is as high there. */
 static shb_status chain(tracking_run *run, int *budget) {
   for (int b = 0; b < run->response->n_branches; b++) {
     for (int end = 0; end < 2 && *budget > 0 && !shb_interrupted(); end++) {
@@ -284,8 +313,9 @@ static shb_status chain(tracking_run *run, int *budget) {
       if (value <= run->tracking.low || value >= run->tracking.high) continue;
       value += (end ? BEYOND : -BEYOND) * fabs(value);
       if (value <= run->tracking.low || value >= run->tracking.high) continue;
+      if (goes_on(run, b, point, value)) continue;
       --*budget;
-      SHB_TRY(sweep_and_follow(run, value, &most));
+      SHB_TRY(sweep_and_follow(run, value, true, &most));
     }
   }
   return SHB_OK;
@@ -299,7 +329,7 @@ static shb_status verified_optimum(tracking_run *run, int *budget) {
     SHB_TRY(mhb_find_optimum(run->model, &run->settings, &run->tracking, run->response));
     mhb_optimum *optimum = &run->response->optimum;
     if (optimum->kind == MHB_OPTIMUM_NONE || (*budget)-- <= 0) return SHB_OK;
-    SHB_TRY(sweep_and_follow(run, optimum->value, &most));
+    SHB_TRY(sweep_and_follow(run, optimum->value, false, &most));
     optimum->verified = most <= optimum->amplitude * (1 + HIGHER);
     if (optimum->verified || run->response->n_branches == before) return SHB_OK;
     SHB_TRY(chain(run, budget));
@@ -314,7 +344,7 @@ static shb_status run_all(tracking_run *run, mhb_response *sweep[N_SWEEPS]) {
                     mhb_parameter_name(run->tracking.parameter));
 #pragma omp parallel for schedule(dynamic, 1)
   for (int i = 0; i < N_SWEEPS; i++) {
-    shb_status status = shb_interrupted() ? SHB_OK : sweep_at(run, value[i], &sweep[i]);
+    shb_status status = shb_interrupted() ? SHB_OK : sweep_at(run, value[i], true, &sweep[i]);
     mhb_publisher_lock(&run->publisher, true);
     mhb_publisher_note(&run->publisher, status);
     mhb_publisher_lock(&run->publisher, false);
