@@ -16,6 +16,10 @@ static const double PART_OF_PEAK = 0.4, BEYOND = 1e-3;
 /* Points settled inside the modulated part, beside the peaks. */
 enum { BETWEEN = 1 };
 
+/* Points of auto nearer than this to a settled one are left out, relative: a quarter of the
+ * half-power bandwidth at 0.2 % of damping. */
+static const double SAME_PLACE = 1e-3;
+
 /* Operations a period of 256 steps that auto allows: some 10 ms. */
 static const double MOST_WORK = 2e8;
 
@@ -148,14 +152,22 @@ static int largest(const work *w) {
   return best;
 }
 
+/* Mark a point unless a marked one is near. */
+static void mark_apart(work *w, int point, bool *settle) {
+  const double *f = w->branch->frequency;
+  for (int i = 0; point >= 0 && i < w->branch->n_points; i++)
+    if (settle[i] && fabs(f[i] - f[point]) < SAME_PLACE * f[point]) return;
+  mark(w, point, settle);
+}
+
 static void choose_points(const lasting *l, work *w, double swept, bool *settle) {
   const mhb_branch *b = w->branch;
   mark(w, largest(w), settle);
-  if (swept > 0) mark(w, nearest(w, swept), settle);
+  if (swept > 0) mark_apart(w, nearest(w, swept), settle);
   if (w->n_asked > 0) {
     double low = b->frequency[end_of(w, -1)], high = b->frequency[end_of(w, 1)];
     for (int i = 1; i <= BETWEEN; i++)
-      mark(w, nearest(w, low + (high - low) * i / (BETWEEN + 1)), settle);
+      mark_apart(w, nearest(w, low + (high - low) * i / (BETWEEN + 1)), settle);
   }
   for (int i = 0; i < b->n_points && l->settings->lasting == MHB_LASTING_ALWAYS; i++)
     if (w->modulated[i]) mark(w, i, settle);

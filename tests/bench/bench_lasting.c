@@ -12,6 +12,7 @@
  * A point counts as regular if the standard error of both means is below 3e-4. Goal: there the
  * change from 256 to 512 steps is below 1e-3. Elsewhere it is within three errors or 1e-3. The exit
  * code depends on the goal at regular points, not on times. */
+#include <cblas.h>
 #include <math.h>
 #include <omp.h>
 #include <stdio.h>
@@ -142,6 +143,7 @@ int main(int argc, char **argv) {
   shb_status   status = SHB_OK;
   s.lasting           = MHB_LASTING_AUTO;
   omp_set_num_threads(1);
+  openblas_set_num_threads(1); /* as shroudhb-mhb: threads of small products only wait */
   if (from_file) {
     status = modal_model_read(argv[1], &model);
   } else {

@@ -10,6 +10,7 @@
  * 1 %, not judged at most a third, multipliers within 5e-3. The exit code depends on these, not on
  * seconds.
  */
+#include <cblas.h>
 #include <math.h>
 #include <omp.h>
 #include <stdio.h>
@@ -104,6 +105,7 @@ int main(int argc, char **argv) {
   row          result = {0};
   shb_status   status = SHB_OK;
   omp_set_num_threads(1);
+  openblas_set_num_threads(1); /* as shroudhb-mhb: threads of small products only wait */
   if (from_file) {
     status = modal_model_read(argv[1], &model);
   } else {

@@ -13,25 +13,24 @@
 
 #include <cmocka.h>
 
+#include "mesh/base/constants.h"
 #include "mhb/branches/forced_response.h"
 #include "tests/support/check.h"
 #include "tests/support/periodic.h"
 #include "tests/support/random_model.h"
 #include "tests/support/three_degree.h"
 
-static const double PI = 3.14159265358979323846;
-
 static mhb_response *sweep(const modal_model *model, mhb_settings *s, double from, double to) {
   mhb_response *response;
-  s->frequency[0] = from / (2 * PI);
-  s->frequency[1] = to / (2 * PI);
+  s->frequency[0] = from / SHB_TWO_PI;
+  s->frequency[1] = to / SHB_TWO_PI;
   if (mhb_forced_response(model, s, NULL, NULL, NULL, &response) != SHB_OK)
     fail_msg("%s", shb_message());
   return response;
 }
 
 static double omega(const mhb_branch *b, int point) {
-  return 2 * PI * b->frequency[point];
+  return SHB_TWO_PI * b->frequency[point];
 }
 
 static double complex multiplier(const mhb_response *r, const mhb_branch *b, int point, int i) {
@@ -191,8 +190,8 @@ static void threads_change_nothing(void **state) {
     }
     s.n_preloads = 3;
     memcpy(s.n0, (double[3]){0.05, 0.1, 0.3}, 3 * sizeof(double));
-    s.frequency[0]     = 0.9 / (2 * PI);
-    s.frequency[1]     = 1.5 / (2 * PI);
+    s.frequency[0]     = 0.9 / SHB_TWO_PI;
+    s.frequency[1]     = 1.5 / SHB_TWO_PI;
     mhb_response *r[2] = {NULL, NULL};
     for (int k = 0; k < 2; k++) {
       omp_set_num_threads(1 + 2 * k);
