@@ -3,9 +3,9 @@
  *
  * With stability: auto the expected cost decides which points are judged.
  *   up to 60 states      every point
- *   more                 every point, if the slipping ones cost 0.7 s a branch at most
+ *   more                 every point, if the slipping ones cost 1 s a branch at most
  *   else                 every linear point (no slip, opening or closing), and slipping points as
- *                        many as 0.7 s allows, at least twelve
+ *                        many as 1 s allows, at least twelve
  * The order of the latter is that of mhb/floquet/curve_verdicts.h: the largest motion, peaks, slip
  * onset and both sides of folds, then by bisection. The cost is computed from the number of states,
  * never measured.
