@@ -424,3 +424,20 @@ void mhb_receptance_probe(const mhb_receptance *r, int k, const double complex *
   memset(motion, 0, sizeof(double complex) * (size_t)q);
   if (!at_rest(r, k, p)) mhb_receptance_probe_change(r, k, p, p, 0, r->scale, motion);
 }
+
+/* zeta dL/d zeta = -2 j zeta w_i w L^2 */
+void mhb_receptance_by_damping(const mhb_receptance *r, int k, const double complex *p,
+                               double complex *motion, double complex *probe) {
+  int    m = r->n_modes, q = 3 * r->model->n_probes;
+  double w = k * r->omega / r->nu, yr[m], yi[m];
+  drive(r, k, p, yr, yi);
+  memset(probe, 0, sizeof *probe * (size_t)q);
+  for (int i = 0; i < m; i++) {
+    double         b = 2 * r->model->damping_ratio[i] * SHB_TWO_PI * r->model->frequency[i] * w;
+    double complex L = r->lambda[k * m + i], y = -I * b * L * L * CMPLX(yr[i], yi[i]);
+    yr[i] = creal(y);
+    yi[i] = cimag(y);
+    for (int s = 0; s < q; s++) probe[s] += r->model->probe[s * m + i] * y;
+  }
+  modal_sums(r, k, yr, yi, motion);
+}

@@ -127,7 +127,7 @@ static void go_to(mhb_balance *b, const mhb_tracking *tracking, double value) {
 static double output_at(mhb_balance *b, const mhb_tracking *tracking, const double *x) {
   double         by_x[b->n];
   double complex weight[3 * b->n_pairs];
-  mhb_amplitude  a = {.by_x = by_x, .weight = weight};
+  mhb_amplitude  a = {.by_x = by_x, .weight = weight, .size = tracking->size};
   mhb_output_amplitude(b, x, tracking->output, &a);
   return a.amplitude;
 }
@@ -248,6 +248,16 @@ bool mhb_corner_at(mhb_balance *balance, const mhb_tracking *tracking, bool stuc
   if (balance->n_pairs != 1 || !solve(&s, value, stuck ? -1 : 0, omega)) return false;
   *amplitude = state_at(&s, *omega, value).amplitude;
   return true;
+}
+
+double mhb_corner_slope(mhb_balance *balance, const mhb_tracking *tracking, bool stuck,
+                        double omega, double value, double *x) {
+  stuck_curve s = {balance, tracking, stuck, x};
+  double      a[2], h[2];
+  gradient(&s, omega, value, 0, &a[0], &h[0]);
+  gradient(&s, omega, value, 1, &a[1], &h[1]);
+  state_at(&s, omega, value);
+  return stuck ? a[1] : a[1] - a[0] * h[1] / h[0];
 }
 
 /* ---- along the parameter ---- */

@@ -37,6 +37,10 @@ shb_status mhb_stuck_response(mhb_balance *balance, const mhb_tracking *tracking
 bool mhb_corner_at(mhb_balance *balance, const mhb_tracking *tracking, bool stuck, double value,
                    double *omega, double *x, double *amplitude);
 
+/* dA/dq along corners (stuck false) or stuck peaks, at one of them. x[n]: scratch. NAN: singular. */
+double mhb_corner_slope(mhb_balance *balance, const mhb_tracking *tracking, bool stuck,
+                        double omega, double value, double *x);
+
 /* Follow a corner or stuck peak from a seed both ways into an empty branch that ascends in the
  * parameter. It ends at the ends of the range, where the corner is no maximum any more, or where a
  * stuck peak begins to slip (MHB_END_CORNER). Points are as dense as linear interpolation of the

@@ -10,22 +10,32 @@
 
 #include "mhb/balance/balance.h"
 
+/* The size of the ellipse a: by the formula above, or its longest half axis,
+ * A^2 = (sum |a_i|^2 + |sum a_i^2|)/2. They are equal where all components move in phase. */
+typedef enum { MHB_SIZE_ROOT_SUM, MHB_SIZE_HALF_AXIS } mhb_size;
+
 /* Gradient of the amplitude at fixed operating point (by x) and at fixed x (by omega). */
 typedef struct {
   double          amplitude; /* m */
   double         *by_x;      /* [n] */
   double          by_omega;  /* m s/rad */
   double          by_scale;  /* m */
+  double          by_damping; /* m, by a common relative change of all damping ratios */
   double complex *weight; /* [3 pairs] of the contact force: dA = Re sum weight dp_k at fixed x */
+  mhb_size        size;
 } mhb_amplitude;
 
 /* The amplitude and its gradient at x[n], which the evaluation in use was linearised at.
  *   output  in   a probe, or the number of probes plus a pair
- *   out     inout  by_x and weight are the caller's arrays */
+ *   out     inout  by_x and weight are the caller's arrays; size says which amplitude */
 void mhb_output_amplitude(mhb_balance *balance, const double *x, int output, mhb_amplitude *out);
 
 /* dA/dparameter at fixed x and omega; by_parameter[n] is the change of the contact force. */
 double mhb_amplitude_by_parameter(const mhb_balance *balance, const mhb_amplitude *amplitude,
                                   mhb_parameter parameter, const double *by_parameter);
+
+/* slope[n] <- change of the residual r by a common relative change of all damping ratios, at the
+ * point that the evaluation in use was evaluated at. */
+void mhb_slope_by_damping(mhb_balance *balance, double *slope);
 
 #endif

@@ -204,6 +204,35 @@ mhb_peak_report mhb_peak_system_report(mhb_curve_system *system, const mhb_curve
   return of(system)->report;
 }
 
+mhb_parameter mhb_peak_parameter(int derivative) {
+  static const mhb_parameter of_derivative[] = {MHB_IN_N0, MHB_IN_SCALE, MHB_IN_MU, MHB_IN_KU,
+                                                MHB_IN_KV};
+  return of_derivative[derivative];
+}
+
+void mhb_peak_system_measure(mhb_curve_system *system, mhb_size size) {
+  of(system)->amplitude.size = size;
+  of(system)->value          = NAN;
+}
+
+void mhb_peak_system_derivatives(mhb_curve_system *system, const mhb_curve_point *point,
+                                 double by[MHB_PEAK_PARAMETERS]) {
+  mhb_peak_system *s = of(system);
+  mhb_balance     *b = s->balance;
+  ensure(system, point);
+  mhb_balance_use(b, point->evaluation);
+  s->amplitude.by_x = s->moved;
+  mhb_output_amplitude(b, point->x, s->output, &s->amplitude);
+  for (int i = 0; i < MHB_PEAK_BY_DAMPING; i++) {
+    mhb_balance_slope(b, point->x, mhb_peak_parameter(i), s->by_q);
+    by[i] = mhb_amplitude_by_parameter(b, &s->amplitude, mhb_peak_parameter(i),
+                                       b->eval->by_parameter) -
+            dot(s->n, s->adjoint, s->by_q);
+  }
+  mhb_slope_by_damping(b, s->by_q);
+  by[MHB_PEAK_BY_DAMPING] = s->amplitude.by_damping - dot(s->n, s->adjoint, s->by_q);
+}
+
 static void evaluate(mhb_curve_system *system, mhb_curve_point *point) {
   linearise(system, point);
 }

@@ -52,6 +52,27 @@ mhb_curve_system *mhb_peak_system_base(mhb_peak_system *system);
 /* Linearise a point and report. */
 mhb_peak_report mhb_peak_system_report(mhb_curve_system *system, const mhb_curve_point *point);
 
+/* The derivatives of a peak, by the number of each. */
+enum {
+  MHB_PEAK_BY_N0,
+  MHB_PEAK_BY_SCALE,
+  MHB_PEAK_BY_MU,
+  MHB_PEAK_BY_KU,
+  MHB_PEAK_BY_KV,
+  MHB_PEAK_BY_DAMPING, /* m: by a common relative change of all damping ratios */
+  MHB_PEAK_PARAMETERS
+};
+
+/* The operating point's parameter of a derivative; not of the damping. */
+mhb_parameter mhb_peak_parameter(int derivative);
+
+/* Which amplitude has the peak; the root of the sum after creation. */
+void mhb_peak_system_measure(mhb_curve_system *system, mhb_size size);
+
+/* dA/dq of a peak by all parameters, from the adjoint of the point. */
+void mhb_peak_system_derivatives(mhb_curve_system *system, const mhb_curve_point *point,
+                                 double by[MHB_PEAK_PARAMETERS]);
+
 /* Unknowns from a motion x[n] of the balance at omega, and back. */
 void mhb_peak_system_pack(const mhb_curve_system *system, const double *x, double omega, double *z);
 double mhb_peak_system_omega(const mhb_curve_system *system, const double *z);

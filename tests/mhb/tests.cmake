@@ -60,6 +60,7 @@ foreach(noun branch_completion branch_stability chain forced_response harmonic_s
     secondary_branches tracer verdicts)
   shb_test(mhb/branches ${noun} tests_models)
 endforeach()
-foreach(noun corner output_amplitude peak_system tracked_curve tracked_response)
+foreach(noun corner output_amplitude peak_derivatives peak_system tracked_curve
+    tracked_response)
   shb_test(mhb/tracking ${noun} tests_models)
 endforeach()

@@ -1,0 +1,30 @@
+/* Derivatives of one peak by the parameters of contact, load and damping.
+ *
+ * A smooth peak is solved again, and one adjoint solution gives all derivatives (peak_system.h). A
+ * peak at the corner between stuck and slipping moves along the corner: dA/dq = A_q - A_omega
+ * h_q/h_omega (corner.h). On the stuck side it is A_q. Other peaks are kinks that the program has
+ * no equations for: their derivatives are not judged. */
+#ifndef MHB_TRACKING_PEAK_DERIVATIVES_H
+#define MHB_TRACKING_PEAK_DERIVATIVES_H
+
+#include "mhb/tracking/peak_system.h"
+
+typedef enum { MHB_PEAK_UNJUDGED, MHB_PEAK_SMOOTH, MHB_PEAK_CORNER, MHB_PEAK_STUCK } mhb_peak_kind;
+
+typedef struct {
+  mhb_peak_kind kind;
+  double        omega, amplitude; /* rad/s, m: of the peak as it was solved here */
+  double        by[MHB_PEAK_PARAMETERS]; /* m a unit; NAN: not judged. n0 of the leading interface */
+} mhb_peak_derivatives;
+
+/* Derivatives of a peak near a solution.
+ *   model, settings  in  those of the balance
+ *   output           in  output_amplitude.h
+ *   x, omega         in  [n], rad/s: the solution, which the balance is at; its amplitude in found
+ * The operating point of the balance is that of the solution, before and after. SHB_ERR_IO: no
+ * memory. */
+shb_status mhb_peak_derivatives_find(const modal_model *model, mhb_balance *balance, int output,
+                                     mhb_size size, const double *x, double omega, double found,
+                                     mhb_peak_derivatives *derivatives);
+
+#endif

@@ -1,0 +1,153 @@
+/* Derivatives of a peak by contact, load and damping against differences of solved peaks. */
+#include "mhb/tracking/peak_derivatives.h"
+
+#include <math.h>
+#include <string.h>
+
+#include "mesh/base/constants.h"
+#include "mhb/tracking/corner.h"
+#include "tests/support/check.h"
+#include "tests/support/settings.h"
+#include "tests/support/solution.h"
+#include "tests/support/three_degree.h"
+
+enum { H = 5, N = 3 * (2 * H + 1) };
+
+static const char *const names[] = {"n0", "scale", "mu", "ku", "kv", "damping"};
+
+typedef struct {
+  modal_model          model;
+  mhb_settings         settings;
+  mhb_balance         *balance;
+  mhb_peak_derivatives result;
+} fixture;
+
+/* One parameter times a factor; -1: none. */
+static void set_up(fixture *f, double n0, double tolerance, int parameter, double factor) {
+  three_degree_model(&f->model);
+  f->settings              = ground_settings(0.4, 0.8, 0.5, n0, H);
+  f->settings.frequency[0] = 1.1 / SHB_TWO_PI;
+  f->settings.frequency[1] = 1.6 / SHB_TWO_PI;
+  f->settings.tolerance    = tolerance;
+  assert_ok(mhb_balance_create(&f->model, &f->settings, &f->balance));
+  mhb_operating_point at = f->balance->eval->at;
+  for (int i = 0; parameter == MHB_PEAK_BY_DAMPING && i < f->model.n_modes; i++)
+    f->model.damping_ratio[i] *= factor;
+  if (parameter >= 0 && parameter < MHB_PEAK_BY_DAMPING) {
+    mhb_parameter q = mhb_peak_parameter(parameter);
+    mhb_parameter_set(&at, q, factor * mhb_parameter_get(&at, q));
+  }
+  mhb_balance_set_operating_point(f->balance, &at);
+}
+
+static void tear_down(fixture *f) {
+  mhb_balance_destroy(f->balance);
+  modal_model_free(&f->model);
+}
+
+static double value_of(const fixture *f, int parameter) {
+  return parameter == MHB_PEAK_BY_DAMPING
+             ? 1
+             : mhb_parameter_get(&f->balance->eval->at, mhb_peak_parameter(parameter));
+}
+
+/* Find the peak from a solution near it, from[N]; the balance is evaluated there. */
+static void find(fixture *f, const double *from, double omega, double amplitude) {
+  double r[N];
+  mhb_balance_linearise(f->balance, from, omega, r, NULL);
+  assert_ok(mhb_peak_derivatives_find(&f->model, f->balance, 0, MHB_SIZE_HALF_AXIS, from, omega,
+                                      amplitude, &f->result));
+}
+
+/* Largest difference of the derivatives, relative to peak/parameter, from solved peaks. */
+static double worst_of(double n0, double tolerance, double step, const double *from, double omega,
+                       mhb_peak_kind kind) {
+  fixture centre;
+  double  worst = 0;
+  set_up(&centre, n0, tolerance, -1, 1);
+  /* the amplitude from the first call with a wide guess: the peak's own */
+  double         r[N], by_x[N];
+  double complex weight[3];
+  mhb_amplitude  a = {.by_x = by_x, .weight = weight, .size = MHB_SIZE_HALF_AXIS};
+  mhb_balance_linearise(centre.balance, from, omega, r, NULL);
+  mhb_output_amplitude(centre.balance, from, 0, &a);
+  find(&centre, from, omega, a.amplitude);
+  assert_int_equal(centre.result.kind, kind);
+  for (int p = 0; p < MHB_PEAK_PARAMETERS; p++) {
+    double peak[4], value = value_of(&centre, p);
+    for (int i = 0; i < 4; i++) {
+      fixture f;
+      set_up(&f, n0, tolerance, p, 1 + step * (i < 2 ? i - 2 : i - 1));
+      find(&f, from, omega, a.amplitude);
+      assert_int_equal(f.result.kind, kind);
+      peak[i] = f.result.amplitude;
+      tear_down(&f);
+    }
+    double difference = (peak[0] - 8 * peak[1] + 8 * peak[2] - peak[3]) / (12 * step * value);
+    double error = fabs(centre.result.by[p] - difference) * value / centre.result.amplitude;
+    print_message("%-8s %14.9f, by differences %14.9f, relative %.1e\n", names[p],
+                  centre.result.by[p], difference, error);
+    worst = fmax(worst, error);
+  }
+  tear_down(&centre);
+  return worst;
+}
+
+static void a_smooth_peak_has_the_derivatives_of_solved_peaks(void **state) {
+  (void)state;
+  fixture f;
+  double  x[N], best[N], omega = 0, most = 0;
+  set_up(&f, 0.2, 1e-12, -1, 1);
+  for (int i = 0; i < 60; i++) { /* the highest of 60 solutions */
+    double         at = 1.2 + 0.3 * i / 60, by_x[N], r[N];
+    double complex weight[3];
+    mhb_amplitude  a = {.by_x = by_x, .weight = weight, .size = MHB_SIZE_HALF_AXIS};
+    cold_solution(&f.model, &f.settings, at, 1e-11, x);
+    mhb_balance_linearise(f.balance, x, at, r, NULL);
+    mhb_output_amplitude(f.balance, x, 0, &a);
+    if (a.amplitude <= most) continue;
+    most  = a.amplitude;
+    omega = at;
+    memcpy(best, x, sizeof best);
+  }
+  /* nearer, for the peak must be the one that was found */
+  for (double step = 2.5e-3; step > 1e-5; step *= 0.5)
+    for (int side = -1; side < 2; side += 2) {
+      double         at = omega + side * step, by_x[N], r[N];
+      double complex weight[3];
+      mhb_amplitude  a = {.by_x = by_x, .weight = weight, .size = MHB_SIZE_HALF_AXIS};
+      cold_solution(&f.model, &f.settings, at, 1e-11, x);
+      mhb_balance_linearise(f.balance, x, at, r, NULL);
+      mhb_output_amplitude(f.balance, x, 0, &a);
+      if (a.amplitude <= most) continue;
+      most  = a.amplitude;
+      omega = at;
+      memcpy(best, x, sizeof best);
+    }
+  tear_down(&f);
+  assert_below(worst_of(0.2, 1e-12, 2e-5, best, omega, MHB_PEAK_SMOOTH), 1e-6);
+}
+
+static void a_corner_peak_has_the_derivatives_of_solved_corners(void **state) {
+  (void)state;
+  const mhb_tracking tracking = {.parameter = MHB_IN_N0, .size = MHB_SIZE_HALF_AXIS};
+  fixture            f;
+  double             x[N], amplitude, omega = 1.25;
+  set_up(&f, 0.45, 1e-10, -1, 1);
+  bool found = false;
+  for (double guess = 1.15; guess < 1.35 && !found; guess += 0.02) {
+    omega = guess;
+    found = mhb_corner_at(f.balance, &tracking, false, 0.45, &omega, x, &amplitude);
+  }
+  assert_true(found);
+  print_message("corner at %.9f rad/s, %.9f m\n", omega, amplitude);
+  tear_down(&f);
+  assert_below(worst_of(0.45, 1e-10, 2e-5, x, omega, MHB_PEAK_CORNER), 1e-6);
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(a_smooth_peak_has_the_derivatives_of_solved_peaks),
+      cmocka_unit_test(a_corner_peak_has_the_derivatives_of_solved_corners)};
+  return cmocka_run_group_tests(tests, NULL, NULL);
+}
