@@ -136,3 +136,11 @@ shb_status point_matcher_judge(point_matcher *matcher, int *stable) {
   mhb_floquet_destroy(floquet);
   return SHB_OK;
 }
+
+shb_status point_matcher_derivatives(point_matcher *matcher, mhb_peak_derivatives *derivatives) {
+  mhb_balance *b     = matcher->balance;
+  bool         probe = matcher->output.place == POST_PLACE_PROBE;
+  int          index = matcher->output.index + (probe ? 0 : b->receptance->model->n_probes);
+  return mhb_peak_derivatives_find(b, index, MHB_SIZE_HALF_AXIS, matcher->x, matcher->omega,
+                                   amplitude(matcher), derivatives);
+}

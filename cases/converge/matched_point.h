@@ -7,6 +7,7 @@
 
 #include "mhb/problem/settings.h"
 #include "mhb/response/response.h"
+#include "mhb/tracking/peak_derivatives.h"
 #include "modal/model/model.h"
 #include "postproc/analysis/outputs.h"
 
@@ -41,5 +42,9 @@ shb_status point_matcher_record(point_matcher *matcher, mhb_response *response, 
 /* Verdict of the multipliers on the solution found last: 1 stable, 0 unstable, -1 undecided.
  * Errors: SHB_ERR_IO no memory. */
 shb_status point_matcher_judge(point_matcher *matcher, int *stable);
+
+/* Derivatives of the peak that the solution found last is at. The balance is left elsewhere: solve
+ * again before the other functions. Errors: SHB_ERR_IO no memory. */
+shb_status point_matcher_derivatives(point_matcher *matcher, mhb_peak_derivatives *derivatives);
 
 #endif

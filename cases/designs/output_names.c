@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "cases/parse/keys.h"
+#include "mhb/tracking/peak_system.h"
 #include "modal/hdf5/h5.h"
 
 static const struct {
@@ -107,4 +108,34 @@ bool study_output_parse(const char *name, const case_file *file, study_output *o
   }
   free_offer(&o);
   return what > 0;
+}
+
+int study_derivatives(int n_outputs, const study_output *output) {
+  for (int i = 0; i < n_outputs; i++)
+    if (output[i].quantity == STUDY_PEAK) return MHB_PEAK_PARAMETERS;
+  return 0;
+}
+
+static bool is_one_number(const case_file *file) {
+  return !file->modal_file &&
+         (file->damping.kind == MODAL_DAMPING_ALL || file->damping.kind == MODAL_DAMPING_LOSS);
+}
+
+double study_damping(const case_file *file) {
+  if (!is_one_number(file)) return 1;
+  return file->damping.kind == MODAL_DAMPING_ALL ? file->damping.ratio : file->damping.loss;
+}
+
+void study_derivative(const case_file *file, int i, char name[STUDY_UNIT_TEXT],
+                      char unit[STUDY_UNIT_TEXT], double *value) {
+  static const char *const  units[] = {"m/N", "m", "m", "m^2/N", "m^2/N", "m"};
+  const mhb_operating_point at      = mhb_operating_point_of(&file->mhb);
+  snprintf(unit, STUDY_UNIT_TEXT, "%s", units[i]);
+  if (i < MHB_PEAK_BY_DAMPING) {
+    snprintf(name, STUDY_UNIT_TEXT, "%s", mhb_parameter_name(mhb_peak_parameter(i)));
+    *value = mhb_parameter_get(&at, mhb_peak_parameter(i));
+    return;
+  }
+  snprintf(name, STUDY_UNIT_TEXT, "%s", is_one_number(file) ? "damping" : "damping_factor");
+  *value = study_damping(file);
 }

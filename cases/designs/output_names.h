@@ -31,4 +31,17 @@ typedef struct {
 bool study_output_parse(const char *name, const case_file *file, study_output *output, char *why,
                         size_t size);
 
+/* Number of derivatives of the peak that a study has: all where the peak is among its outputs, else
+ * 0. Their order is that of mhb/tracking/peak_system.h. */
+int study_derivatives(int n_outputs, const study_output *output);
+
+/* A derivative's parameter: name (n0, scale, mu, ku, kv, damping), unit of the derivative, and its
+ * value in a case. "damping" is modal.damping if that is one ratio or a loss factor. Otherwise it is
+ * "damping_factor": all ratios change in common, by a factor that is 1 in the case. */
+void study_derivative(const case_file *file, int i, char name[STUDY_UNIT_TEXT],
+                      char unit[STUDY_UNIT_TEXT], double *value);
+
+/* The value of that damping in a case. */
+double study_damping(const case_file *file);
+
 #endif

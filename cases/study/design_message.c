@@ -5,14 +5,15 @@
 #include <string.h>
 
 typedef struct {
-  int32_t state, n_outputs, reason, curve; /* length of the reason, points of the curve */
-  double  seconds;
+  int32_t state, n_outputs, n_derivatives, reason,
+      curve; /* length of the reason, points of the curve */
+  double seconds;
 } header;
 
 enum { PLACES = 2 }; /* value and error of each output */
 
 static size_t size_of(const header *h) {
-  size_t outputs = PLACES * (size_t)h->n_outputs * sizeof(double);
+  size_t outputs = (PLACES * (size_t)h->n_outputs + (size_t)h->n_derivatives) * sizeof(double);
   size_t points  = (size_t)h->curve * (2 * sizeof(double) + 2 * sizeof(int));
   return sizeof *h + outputs + points + (size_t)h->reason;
 }
@@ -29,6 +30,7 @@ static void move_body(bool pack, char *at, const header *h, study_design *d) {
   study_curve *c = &d->curve;
   move(pack, &at, d->value, outputs);
   move(pack, &at, d->error, outputs);
+  move(pack, &at, d->derivative, (size_t)h->n_derivatives * sizeof(double));
   if (h->curve > 0) {
     move(pack, &at, c->frequency, points * sizeof *c->frequency);
     move(pack, &at, c->amplitude, points * sizeof *c->amplitude);
@@ -38,9 +40,11 @@ static void move_body(bool pack, char *at, const header *h, study_design *d) {
   if (h->reason > 0) move(pack, &at, d->reason, (size_t)h->reason);
 }
 
-shb_status design_message_pack(const study_design *d, int n_outputs, char **bytes, size_t *size) {
-  header h = {(int32_t)d->state, n_outputs, d->reason ? (int32_t)strlen(d->reason) : 0, d->curve.n,
-              d->seconds};
+shb_status design_message_pack(const study_design *d, int n_outputs, int n_derivatives,
+                               char **bytes, size_t *size) {
+  header h = {(int32_t)d->state, n_outputs,
+              n_derivatives,     d->reason ? (int32_t)strlen(d->reason) : 0,
+              d->curve.n,        d->seconds};
   *size    = size_of(&h);
   *bytes   = malloc(*size);
   SHB_CHECK(*bytes, SHB_ERR_IO, "out of memory");
@@ -50,12 +54,13 @@ shb_status design_message_pack(const study_design *d, int n_outputs, char **byte
   return SHB_OK;
 }
 
-shb_status design_message_unpack(const char *bytes, size_t size, int n_outputs, study_design *d) {
+shb_status design_message_unpack(const char *bytes, size_t size, int n_outputs, int n_derivatives,
+                                 study_design *d) {
   header h;
   SHB_CHECK(size >= sizeof h, SHB_ERR_IO, "the message of a design is cut");
   memcpy(&h, bytes, sizeof h);
-  bool good = h.n_outputs == n_outputs && h.reason >= 0 && h.curve >= 0 && h.curve <= STUDY_CURVE &&
-              h.state >= 0 && h.state < STUDY_N_STATES;
+  bool good = h.n_outputs == n_outputs && h.n_derivatives == n_derivatives && h.reason >= 0 &&
+              h.curve >= 0 && h.curve <= STUDY_CURVE && h.state >= 0 && h.state < STUDY_N_STATES;
   SHB_CHECK(good && size == size_of(&h), SHB_ERR_IO, "the message of a design is damaged");
   SHB_TRY(study_curve_take(&d->curve, h.curve));
   free(d->reason);

@@ -110,10 +110,10 @@ static int reap(design_process *p) {
 }
 
 /* A failed design that says how the process ended. */
-static shb_status pack_death(int n_outputs, int status, char **bytes, size_t *size) {
+static shb_status pack_death(const design_process *p, int status, char **bytes, size_t *size) {
   char          reason[160];
   design_study  one;
-  shb_status    packed = design_study_create(0, n_outputs, 0, &one);
+  shb_status    packed = design_study_create(0, p->n_outputs, p->n_derivatives, &one);
   study_design *d      = packed == SHB_OK ? design_study_add(&one, NULL) : NULL;
   if (WIFSIGNALED(status)) {
     int number = WTERMSIG(status);
@@ -126,7 +126,7 @@ static shb_status pack_death(int n_outputs, int status, char **bytes, size_t *si
   if (d) {
     d->state = STUDY_FAILED;
     study_design_set_reason(d, reason);
-    packed = design_message_pack(d, n_outputs, bytes, size);
+    packed = design_message_pack(d, p->n_outputs, p->n_derivatives, bytes, size);
   } else {
     packed = shb_fail(SHB_ERR_IO, __FILE__, __LINE__, "out of memory");
   }
@@ -143,7 +143,7 @@ shb_status design_process_run(design_process *p, const double *value, char **byt
   good = good && *bytes && get_all(p->from, *bytes, *size);
   if (good) return SHB_OK;
   free(*bytes);
-  return pack_death(p->n_outputs, reap(p), bytes, size);
+  return pack_death(p, reap(p), bytes, size);
 }
 
 void design_process_stop(design_process *p) {

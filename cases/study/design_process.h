@@ -9,7 +9,7 @@
 
 typedef struct {
   const char *study; /* path of the study file */
-  int         n_keys, n_outputs;
+  int         n_keys, n_outputs, n_derivatives;
   pid_t       child; /* 0: not running */
   int         to, from;
 } design_process;

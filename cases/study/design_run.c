@@ -90,8 +90,15 @@ static void put_peak(job *j, const exact_peak *peak) {
     }
 }
 
-static shb_status find_peak(job *j, post_output output, bool judge, exact_peak *peak) {
-  return exact_peak_find(&j->model->model, &j->model->settings, j->response, output, judge, peak);
+static shb_status find_peak(job *j, post_output output, exact_peak_asked asked, exact_peak *peak) {
+  return exact_peak_find(&j->model->model, &j->model->settings, j->response, output, asked, peak);
+}
+
+static void put_derivatives(job *j, const exact_peak *peak) {
+  int n = study_derivatives(j->n, j->output);
+  for (int i = 0; i < n && peak->by.kind != MHB_PEAK_UNJUDGED; i++)
+    j->design->derivative[i] =
+        peak->by.by[i] / (i == MHB_PEAK_BY_DAMPING ? study_damping(j->file) : 1);
 }
 
 /* The peaks of other probes than the first output. */
@@ -102,7 +109,7 @@ static shb_status put_probes(job *j, post_output first, const exact_peak *peak) 
     exact_peak          own   = *peak;
     if (o->quantity != STUDY_PROBE || o->index >= j->response->n_probes) continue;
     if (first.place != probe.place || first.index != probe.index)
-      SHB_TRY(find_peak(j, probe, false, &own));
+      SHB_TRY(find_peak(j, probe, (exact_peak_asked){0}, &own));
     put(j, i, own.amplitude, own.amplitude_error);
   }
   return SHB_OK;
@@ -181,6 +188,7 @@ static shb_status fill(job *j, post_output first, const exact_peak *peak) {
     return SHB_OK;
   }
   put_peak(j, peak);
+  put_derivatives(j, peak);
   put_modes(j);
   SHB_TRY(put_probes(j, first, peak));
   SHB_TRY(thin_curves(j, first));
@@ -190,16 +198,17 @@ static shb_status fill(job *j, post_output first, const exact_peak *peak) {
 
 /* Sweep with more and more harmonics until the peak is exact. */
 static shb_status work(job *j) {
-  exact_peak  peak  = {0};
-  post_output first = {0};
-  shb_status  status;
+  const exact_peak_asked asked = {wants(j, STUDY_STABLE), study_derivatives(j->n, j->output) > 0};
+  exact_peak             peak  = {0};
+  post_output            first = {0};
+  shb_status             status;
   for (int i = 0; i < N_SWEEPS && !(peak.found && (peak.exact || peak.edge)); i++) {
     if (sweeps[i] > 0 && !is_coarse(j, sweeps[i])) continue;
     status = sweep(j, sweeps[i]);
     if (status == SHB_ERR_INPUT && sweeps[i] > 0) continue; /* the load has more harmonics */
     if (status != SHB_OK && status != SHB_NOT_CONVERGED) return status;
     first = post_output_primary(j->response);
-    SHB_TRY(find_peak(j, first, wants(j, STUDY_STABLE), &peak));
+    SHB_TRY(find_peak(j, first, asked, &peak));
   }
   return fill(j, first, &peak);
 }

@@ -4,6 +4,7 @@
 #include <stdlib.h>
 
 #include "cases/converge/matched_point.h"
+#include "mesh/base/constants.h"
 #include "postproc/analysis/response_analysis.h"
 
 /* Peaks of the coarse curve below this part of the highest are not solved again. Three harmonics
@@ -229,11 +230,12 @@ typedef struct {
   const mhb_settings *settings;
   const mhb_response *response;
   post_output         output;
+  double              best; /* m, highest peak so far */
 } work;
 
 /* Solve the peak with a number of harmonics; at: only at this t, NAN: find it. */
-static shb_status solve_peak(const work *w, int harmonics, double at, bool judge, maximum *m,
-                             exact_peak *peak) {
+static shb_status solve_peak(const work *w, int harmonics, double at, exact_peak_asked asked,
+                             maximum *m, exact_peak *peak) {
   mhb_settings settings = *w->settings;
   peak->found           = false;
   settings.subharmonics = m->branch->order;
@@ -244,7 +246,10 @@ static shb_status solve_peak(const work *w, int harmonics, double at, bool judge
   if (found && isnan(at)) found = solve(m, m->t) >= 0; /* the balance is then evaluated there */
   if (found)
     status = describe_solution(w->response, m, harmonics * m->branch->order, w->output, peak);
-  if (status == SHB_OK && found && judge) status = point_matcher_judge(m->matcher, &peak->stable);
+  if (status == SHB_OK && found && asked.multipliers)
+    status = point_matcher_judge(m->matcher, &peak->stable);
+  if (status == SHB_OK && found && asked.derivatives && m->found[1] > w->best)
+    status = point_matcher_derivatives(m->matcher, &peak->by);
   point_matcher_destroy(m->matcher);
   m->matcher  = NULL;
   peak->found = found;
@@ -258,29 +263,40 @@ static void set_errors(exact_peak *peak, const exact_peak *other) {
   peak->dissipation_error  = fabs(other->dissipation - peak->dissipation);
 }
 
+/* Where the derivatives were found, the peak itself was solved by its own equations. */
+static bool take_solved(exact_peak *peak) {
+  if (peak->by.kind == MHB_PEAK_UNJUDGED) return false;
+  peak->amplitude_error += fabs(peak->amplitude - peak->by.amplitude);
+  peak->amplitude = peak->by.amplitude;
+  peak->frequency = peak->by.omega / SHB_TWO_PI;
+  return true;
+}
+
 /* With the harmonics of the case, or as many as its tolerance asks for. */
-static shb_status refine(const work *w, const candidate *c, bool judge, exact_peak *peak) {
+static shb_status refine(const work *w, const candidate *c, exact_peak_asked asked,
+                         exact_peak *peak) {
   maximum    m       = {.branch = c->branch, .middle = c->point};
   exact_peak other   = *peak;
   int        fixed   = w->settings->motion_tolerance > 0 ? 0 : w->settings->harmonics;
   bool       settled = false;
   if (fixed) {
-    SHB_TRY(solve_peak(w, fixed / c->branch->order > 0 ? fixed / c->branch->order : 1, NAN, judge,
+    SHB_TRY(solve_peak(w, fixed / c->branch->order > 0 ? fixed / c->branch->order : 1, NAN, asked,
                        &m, &other));
     other.exact           = other.found;
-    other.amplitude_error = m.drop; /* that of the harmonics is not known */
+    other.amplitude_error = 0; /* that of the harmonics is not known */
+    if (other.found && !take_solved(&other)) other.amplitude_error = m.drop;
     if (other.found) *peak = other;
     return SHB_OK;
   }
   for (int level = 1; level + 1 < N_LEVELS && !settled; level++) {
     exact_peak more = *peak;
     m.middle        = c->point;
-    SHB_TRY(solve_peak(w, levels[level], NAN, judge, &m, &other));
+    SHB_TRY(solve_peak(w, levels[level], NAN, asked, &m, &other));
     if (!other.found) return SHB_OK;
     double t = m.t, drop = m.drop;
-    SHB_TRY(solve_peak(w, levels[level + 1], t, false, &m, &more));
+    SHB_TRY(solve_peak(w, levels[level + 1], t, (exact_peak_asked){0}, &m, &more));
     if (more.found) set_errors(&other, &more);
-    other.amplitude_error += drop;
+    if (!take_solved(&other)) other.amplitude_error += drop;
     other.exact = true;
     *peak       = other;
     settled = more.found && other.amplitude_error < w->settings->motion_tolerance * peak->amplitude;
@@ -289,11 +305,11 @@ static shb_status refine(const work *w, const candidate *c, bool judge, exact_pe
 }
 
 shb_status exact_peak_find(const modal_model *model, const mhb_settings *settings,
-                           const mhb_response *response, post_output output, bool judge,
+                           const mhb_response *response, post_output output, exact_peak_asked asked,
                            exact_peak *peak) {
-  const work w = {model, settings, response, output};
-  candidate  list[MOST_CANDIDATES];
-  int        n;
+  work      w = {model, settings, response, output, 0};
+  candidate list[MOST_CANDIDATES];
+  int       n;
   *peak = (exact_peak){.amplitude = -1};
   SHB_TRY(find_candidates(response, output, list, &n));
   for (int i = 0; i < n; i++) {
@@ -306,8 +322,9 @@ shb_status exact_peak_find(const modal_model *model, const mhb_settings *setting
     const mhb_branch *b   = list[i].branch;
     SHB_TRY(describe(response, b, list[i].point, output, &one));
     one.edge = list[i].point == 0 || list[i].point == b->n_points - 1;
-    if (!one.edge) SHB_TRY(refine(&w, &list[i], judge, &one));
+    if (!one.edge) SHB_TRY(refine(&w, &list[i], asked, &one));
     if (one.amplitude > peak->amplitude) *peak = one;
+    w.best = peak->amplitude;
   }
   return SHB_OK;
 }

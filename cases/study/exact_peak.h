@@ -8,6 +8,7 @@
 
 #include "mhb/problem/settings.h"
 #include "mhb/response/response.h"
+#include "mhb/tracking/peak_derivatives.h"
 #include "modal/model/model.h"
 #include "postproc/analysis/outputs.h"
 
@@ -18,17 +19,22 @@ typedef struct {
   bool   exact; /* solved again; false: a point of the coarse curve */
   double frequency, amplitude, peak_to_peak, dissipation; /* Hz, m, m, J */
   double frequency_error, amplitude_error, peak_to_peak_error, dissipation_error;
-  int    stable; /* 1, 0; -1: not judged or undecided */
+  int    stable;           /* 1, 0; -1: not judged or undecided */
+  mhb_peak_derivatives by; /* of kind MHB_PEAK_UNJUDGED if they were not asked for */
 } exact_peak;
+
+typedef struct {
+  bool multipliers, derivatives;
+} exact_peak_asked;
 
 /* Find the highest peak of an output over all nonlinear branches of a response.
  *
  *   settings  in  of the case: harmonics, or those that the tolerance of the motion asks for
- *   judge     in  compute the multipliers there
+ *   asked     in  what is computed there besides
  *
  * Errors: SHB_ERR_IO no memory; those of mhb_balance_create. */
 shb_status exact_peak_find(const modal_model *model, const mhb_settings *settings,
-                           const mhb_response *response, post_output output, bool judge,
+                           const mhb_response *response, post_output output, exact_peak_asked asked,
                            exact_peak *peak);
 
 #endif

@@ -52,14 +52,15 @@ static shb_status compute(void *context, const double *value, char **bytes, size
   server       *s = context;
   design_study  one;
   double        began  = cpu_seconds();
-  shb_status    status = design_study_create(s->spec.keys.n, s->spec.n_outputs, 0, &one);
+  int           by     = study_derivatives(s->spec.n_outputs, s->spec.output);
+  shb_status    status = design_study_create(s->spec.keys.n, s->spec.n_outputs, by, &one);
   study_design *design = status == SHB_OK ? design_study_add(&one, value) : NULL;
   if (status == SHB_OK && !design)
     status = shb_fail(SHB_ERR_IO, __FILE__, __LINE__, "out of memory");
   if (status == SHB_OK) status = evaluate(s, value, design);
   if (status == SHB_OK) {
     design->seconds = cpu_seconds() - began;
-    status          = design_message_pack(design, s->spec.n_outputs, bytes, size);
+    status          = design_message_pack(design, s->spec.n_outputs, by, bytes, size);
   }
   design_study_free(&one);
   return status;

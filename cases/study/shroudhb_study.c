@@ -123,15 +123,17 @@ static shb_status manage(const study_spec *spec, const command_options *options,
 /* All ranks: the manager reads and checks, the workers need the numbers of keys and outputs. */
 static int work(const command_options *options) {
   study_spec spec = {0};
-  int        rank, go[3] = {SHB_OK, 0, 0};
+  int        rank, go[4] = {SHB_OK, 0, 0, 0};
   MPI_Comm_rank(MPI_COMM_WORLD, &rank);
   shb_status status = SHB_OK;
   if (rank == 0) status = study_spec_read(options->path, true, stderr, &spec);
   go[0] = (int)status;
   go[1] = spec.keys.n;
   go[2] = spec.n_outputs;
-  MPI_Bcast(go, 3, MPI_INT, 0, MPI_COMM_WORLD);
-  design_process process = {.study = options->path, .n_keys = go[1], .n_outputs = go[2]};
+  go[3] = study_derivatives(spec.n_outputs, spec.output);
+  MPI_Bcast(go, 4, MPI_INT, 0, MPI_COMM_WORLD);
+  design_process process = {
+      .study = options->path, .n_keys = go[1], .n_outputs = go[2], .n_derivatives = go[3]};
   if (go[0] == SHB_OK) status = rank == 0 ? manage(&spec, options, &process) : crew_serve(&process);
   int code = rank == 0 ? command_finish(status) : SHB_OK;
   study_spec_free(&spec);

@@ -50,10 +50,17 @@ static void name_columns(const study_spec *spec, design_study *s) {
     snprintf(s->output[i].name, STUDY_NAME, "%s", spec->output[i].name);
     snprintf(s->output[i].unit, STUDY_UNIT, "%s", spec->output[i].unit);
   }
+  for (int i = 0; i < s->n_derivatives; i++) {
+    char name[STUDY_UNIT_TEXT], unit[STUDY_UNIT_TEXT];
+    study_derivative(&spec->base, i, name, unit, &s->derivative[i].at);
+    snprintf(s->derivative[i].name, STUDY_NAME, "%s", name);
+    snprintf(s->derivative[i].unit, STUDY_UNIT, "%s", unit);
+  }
 }
 
 static shb_status set_up(const study_spec *spec, design_study *s) {
-  SHB_TRY(design_study_create(spec->keys.n, spec->n_outputs, 0, s));
+  SHB_TRY(design_study_create(spec->keys.n, spec->n_outputs,
+                              study_derivatives(spec->n_outputs, spec->output), s));
   s->name      = strdup(spec->name);
   s->text      = strdup(spec->text);
   s->path      = strdup(spec->path);
@@ -110,9 +117,10 @@ static shb_status copy_result(const design_study *from_study, const study_design
   char  *bytes;
   size_t size;
   (void)from_study;
-  SHB_TRY(design_message_pack(from, to_study->n_outputs, &bytes, &size));
-  shb_status status = design_message_unpack(bytes, size, to_study->n_outputs, to);
-  to->seconds       = 0;
+  SHB_TRY(design_message_pack(from, to_study->n_outputs, to_study->n_derivatives, &bytes, &size));
+  shb_status status =
+      design_message_unpack(bytes, size, to_study->n_outputs, to_study->n_derivatives, to);
+  to->seconds = 0;
   free(bytes);
   return status;
 }
@@ -120,7 +128,8 @@ static shb_status copy_result(const design_study *from_study, const study_design
 /* Take over the results that another file has. A failure of a process is tried again. */
 static shb_status take_known(running *r, const design_study *known) {
   design_study *s = r->study;
-  if (known->n_outputs != s->n_outputs) return SHB_OK; /* other outputs, other digests */
+  if (known->n_outputs != s->n_outputs || known->n_derivatives != s->n_derivatives)
+    return SHB_OK; /* other outputs, other digests */
   digest_place *list   = sorted(known);
   shb_status    status = list ? SHB_OK : shb_fail(SHB_ERR_IO, __FILE__, __LINE__, "out of memory");
   for (int i = 0; i < s->n && status == SHB_OK; i++) {
@@ -217,7 +226,8 @@ static void show(running *r) {
 
 static shb_status done(void *context, int design, const char *bytes, size_t size) {
   running *r = context;
-  SHB_TRY(design_message_unpack(bytes, size, r->study->n_outputs, &r->study->design[design]));
+  SHB_TRY(design_message_unpack(bytes, size, r->study->n_outputs, r->study->n_derivatives,
+                                &r->study->design[design]));
   r->n_done++;
   r->n_computed++;
   r->changed = true;

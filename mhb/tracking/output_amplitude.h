@@ -16,10 +16,10 @@ typedef enum { MHB_SIZE_ROOT_SUM, MHB_SIZE_HALF_AXIS } mhb_size;
 
 /* Gradient of the amplitude at fixed operating point (by x) and at fixed x (by omega). */
 typedef struct {
-  double          amplitude; /* m */
-  double         *by_x;      /* [n] */
-  double          by_omega;  /* m s/rad */
-  double          by_scale;  /* m */
+  double          amplitude;  /* m */
+  double         *by_x;       /* [n] */
+  double          by_omega;   /* m s/rad */
+  double          by_scale;   /* m */
   double          by_damping; /* m, by a common relative change of all damping ratios */
   double complex *weight; /* [3 pairs] of the contact force: dA = Re sum weight dp_k at fixed x */
   mhb_size        size;

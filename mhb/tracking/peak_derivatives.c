@@ -13,19 +13,15 @@ static const double SAME_AMPLITUDE = 1e-4, SAME_FREQUENCY = 1e-3;
 /* Newton's method for a peak ends at this residual, relative to the motion. */
 static const double SETTLED = 1e-10;
 
-/* A corner or stuck peak slips for less than this share of the period. */
-static const double NO_SLIP = 2e-3;
-
 /* Relative change of the damping ratios for the differences at corners. */
 static const double DAMPING_STEP = 1e-3;
 
 typedef struct {
-  const modal_model *model;
-  mhb_balance       *balance;
-  int                output;
-  mhb_size           size;
-  const double      *x;
-  double             omega, found;
+  mhb_balance  *balance;
+  int           output;
+  mhb_size      size;
+  const double *x;
+  double        omega, found;
 } search;
 
 static bool is_same(const search *s, double omega, double amplitude) {
@@ -74,11 +70,11 @@ static shb_status smooth(const search *s, mhb_peak_derivatives *out) {
 /* Amplitude of the corner with all damping ratios times a factor; NAN: not found. */
 static double damped(const search *s, const mhb_tracking *tracking, bool stuck, double factor,
                      double omega, double *x) {
-  modal_model  model  = *s->model;
-  int          m      = model.n_modes;
-  double      *ratio  = malloc((size_t)m * sizeof *ratio), amplitude = NAN;
-  mhb_balance *other  = NULL;
-  for (int i = 0; ratio && i < m; i++) ratio[i] = factor * s->model->damping_ratio[i];
+  modal_model  model = *s->balance->receptance->model;
+  int          m     = model.n_modes;
+  double      *ratio = malloc((size_t)m * sizeof *ratio), amplitude = NAN;
+  mhb_balance *other = NULL;
+  for (int i = 0; ratio && i < m; i++) ratio[i] = factor * model.damping_ratio[i];
   model.damping_ratio = ratio;
   if (ratio && mhb_balance_create(&model, s->balance->settings, &other) == SHB_OK) {
     mhb_balance_set_operating_point(other, &s->balance->eval->at);
@@ -103,19 +99,13 @@ static void corner_derivatives(const search *s, mhb_tracking *tracking, bool stu
     if (fabs(out->by[i] * tracking->low) < 1e-9 * out->amplitude) out->by[i] = 0;
   }
   static const double place[4] = {-2, -1, 1, 2}, weight[4] = {1, -8, 8, -1};
-  double              sum      = 0;
-  tracking->parameter          = MHB_IN_N0;
+  double              sum = 0;
+  tracking->parameter     = MHB_IN_N0;
   tracking->low = tracking->high = at.n0;
   for (int i = 0; i < 4 && !s->balance->settings->run_up; i++)
-    sum += weight[i] *
-           damped(s, tracking, stuck, 1 + place[i] * DAMPING_STEP, out->omega, x) /
+    sum += weight[i] * damped(s, tracking, stuck, 1 + place[i] * DAMPING_STEP, out->omega, x) /
            (12 * DAMPING_STEP);
   out->by[MHB_PEAK_BY_DAMPING] = s->balance->settings->run_up ? NAN : sum;
-}
-
-/* Whether the only pair sticks all the time, but for round-off. */
-static bool sticks(const mhb_balance *b) {
-  return b->n_pairs == 1 && b->eval->info[0].share[MHB_STICK] > 1 - NO_SLIP;
 }
 
 /* The corner (stuck false) or the stuck peak near the solution; its distance in amplitude, relative.
@@ -135,7 +125,7 @@ static double distance_to(const search *s, const mhb_tracking *tracking, bool st
 }
 
 static void without_slip(const search *s, double *x, mhb_peak_derivatives *out) {
-  double       n0 = s->balance->eval->at.n0, omega[2], amplitude[2], distance[2];
+  double       n0       = s->balance->eval->at.n0, omega[2], amplitude[2], distance[2];
   mhb_tracking tracking = {.kind      = MHB_TRACK_PEAK,
                            .output    = s->output,
                            .parameter = MHB_IN_N0,
@@ -152,13 +142,13 @@ static void without_slip(const search *s, double *x, mhb_peak_derivatives *out) 
   corner_derivatives(s, &tracking, nearer, x, out);
 }
 
-shb_status mhb_peak_derivatives_find(const modal_model *model, mhb_balance *balance, int output,
-                                     mhb_size size, const double *x, double omega, double found,
+shb_status mhb_peak_derivatives_find(mhb_balance *balance, int output, mhb_size size,
+                                     const double *x, double omega, double found,
                                      mhb_peak_derivatives *out) {
-  const search s = {model, balance, output, size, x, omega, found};
+  const search s = {balance, output, size, x, omega, found};
   *out           = (mhb_peak_derivatives){.kind = MHB_PEAK_UNJUDGED};
   for (int i = 0; i < MHB_PEAK_PARAMETERS; i++) out->by[i] = NAN;
-  if (!sticks(balance)) SHB_TRY(smooth(&s, out));
+  SHB_TRY(smooth(&s, out));
   if (out->kind == MHB_PEAK_SMOOTH || balance->n_pairs != 1) return SHB_OK;
   double *scratch = calloc((size_t)balance->n, sizeof *scratch);
   SHB_CHECK(scratch, SHB_ERR_IO, "out of memory");

@@ -14,17 +14,16 @@ typedef enum { MHB_PEAK_UNJUDGED, MHB_PEAK_SMOOTH, MHB_PEAK_CORNER, MHB_PEAK_STU
 typedef struct {
   mhb_peak_kind kind;
   double        omega, amplitude; /* rad/s, m: of the peak as it was solved here */
-  double        by[MHB_PEAK_PARAMETERS]; /* m a unit; NAN: not judged. n0 of the leading interface */
+  double by[MHB_PEAK_PARAMETERS]; /* m a unit; NAN: not judged. n0 of the leading interface */
 } mhb_peak_derivatives;
 
 /* Derivatives of a peak near a solution.
- *   model, settings  in  those of the balance
- *   output           in  output_amplitude.h
- *   x, omega         in  [n], rad/s: the solution, which the balance is at; its amplitude in found
+ *   output    in  output_amplitude.h
+ *   x, omega  in  [n], rad/s: the solution, which the balance is at; its amplitude in found
  * The operating point of the balance is that of the solution, before and after. SHB_ERR_IO: no
  * memory. */
-shb_status mhb_peak_derivatives_find(const modal_model *model, mhb_balance *balance, int output,
-                                     mhb_size size, const double *x, double omega, double found,
+shb_status mhb_peak_derivatives_find(mhb_balance *balance, int output, mhb_size size,
+                                     const double *x, double omega, double found,
                                      mhb_peak_derivatives *derivatives);
 
 #endif

@@ -225,9 +225,9 @@ void mhb_peak_system_derivatives(mhb_curve_system *system, const mhb_curve_point
   mhb_output_amplitude(b, point->x, s->output, &s->amplitude);
   for (int i = 0; i < MHB_PEAK_BY_DAMPING; i++) {
     mhb_balance_slope(b, point->x, mhb_peak_parameter(i), s->by_q);
-    by[i] = mhb_amplitude_by_parameter(b, &s->amplitude, mhb_peak_parameter(i),
-                                       b->eval->by_parameter) -
-            dot(s->n, s->adjoint, s->by_q);
+    by[i] =
+        mhb_amplitude_by_parameter(b, &s->amplitude, mhb_peak_parameter(i), b->eval->by_parameter) -
+        dot(s->n, s->adjoint, s->by_q);
   }
   mhb_slope_by_damping(b, s->by_q);
   by[MHB_PEAK_BY_DAMPING] = s->amplitude.by_damping - dot(s->n, s->adjoint, s->by_q);

@@ -18,6 +18,7 @@ shb_status design_study_create(int n_keys, int n_outputs, int n_derivatives, des
   s->output        = calloc((size_t)n_outputs + 1, sizeof *s->output);
   s->derivative    = calloc((size_t)n_derivatives + 1, sizeof *s->derivative);
   SHB_CHECK(s->key && s->output && s->derivative, SHB_ERR_IO, "no memory for a design study");
+  for (int i = 0; i < n_derivatives; i++) s->derivative[i].at = NAN;
   return SHB_OK;
 }
 

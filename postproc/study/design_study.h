@@ -20,8 +20,9 @@ typedef enum {
 
 /* A varied key, an output, or a parameter of the derivatives. */
 typedef struct {
-  char name[STUDY_NAME]; /* "contact.n0", "peak", "modes[1].frequency" */
-  char unit[STUDY_UNIT]; /* SI; "-" for a pure number */
+  char   name[STUDY_NAME]; /* "contact.n0", "peak", "modes[1].frequency" */
+  char   unit[STUDY_UNIT]; /* SI; "-" for a pure number */
+  double at;               /* of a derivative: the parameter's value in the case; else unused */
 } study_column;
 
 /* Response curves of one design, thinned to STUDY_CURVE points. */
@@ -37,7 +38,7 @@ typedef struct {
   study_state state;
   double     *key;                  /* [n_keys] SI */
   double     *value, *error;        /* [n_outputs] SI; NAN: unknown */
-  double     *derivative;           /* [n_derivatives] d peak / d parameter; NAN: unknown */
+  double     *derivative;           /* [n_derivatives] d peak / d parameter; NAN: not judged */
   char       *reason;               /* NULL if there is none */
   char        digest[STUDY_DIGEST]; /* of everything that the outputs depend on; "": not computed */
   double      seconds;              /* CPU; 0 if the design was taken from a former one */

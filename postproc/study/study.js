@@ -820,12 +820,13 @@
       const key =
           keys.find(k => k.name === d.name) || keys.find(k => k.name.split(".").pop() === last);
       const value = D.derivative[j][i];
-      const known = value !== null && key && peak && peak.all[i];
+      const at = key ? key.list[i] : D.derivative_at[j] ?? NaN;
+      const known = value !== null && Number.isFinite(at) && peak && peak.all[i];
       return {
         name: d.name,
         unit: d.unit,
         value,
-        share: known ? value * key.list[i] / peak.all[i] : NaN
+        share: known ? value * at / peak.all[i] : NaN
       };
     });
   }
@@ -863,7 +864,7 @@
                 `, ${U ? "the median" : "the lowest"}; click another to see its own` :
                 ""}. ` +
             "Relative derivative of the peak by each parameter." +
-            (rest.length ? ` Not varied, so per unit only: ${
+            (rest.length ? ` Of unknown value, so per unit only: ${
                                rest.map(r => `${r.name} ${number(r.value, 4, false)} ${r.unit}`)
                                    .join(", ")}.` :
                            "");
@@ -1105,7 +1106,7 @@
           put = v => v === null ? "" : String(v);
     const names = [
       "design", ...D.keys.map(k => k.name), ...D.outputs.map(o => o.name),
-      ...D.derivatives.map(d => "d peak/d " + d.name), "status", "reason"
+      ...D.derivatives.map(d => "dpeak_d" + d.name), "status", "reason"
     ];
     const rows = sorted().map(
         i =>

@@ -29,7 +29,7 @@ static void put_header(const design_study *s, post_buffer *out) {
     if (has_error(s, i)) put_text(name, out);
   }
   for (int i = 0; i < s->n_derivatives; i++) {
-    snprintf(name, sizeof name, "d peak/d %s", s->derivative[i].name);
+    snprintf(name, sizeof name, "dpeak_d%s", s->derivative[i].name);
     put_text(name, out);
   }
   post_put(out, ",status,reason\r\n");

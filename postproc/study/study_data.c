@@ -41,6 +41,11 @@ static void put_columns(const design_study *s, post_buffer *out) {
     post_put(out, i ? "," : "");
     put_column(&s->derivative[i], (post_unit){s->derivative[i].unit, 1}, out);
   }
+  post_put(out, "],\"derivative_at\":[");
+  for (int i = 0; i < s->n_derivatives; i++) {
+    post_put(out, i ? "," : "");
+    put_number(s->derivative[i].at, 10, out);
+  }
   post_put(out, "]");
 }
 

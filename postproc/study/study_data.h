@@ -2,6 +2,7 @@
  *
  *   name, plan, path, n, finished
  *   keys, outputs, derivatives   [{name, unit, scale}]: shown is value in SI / scale
+ *   derivative_at                the parameter's value in the case; null: unknown
  *   key, value, error, derivative   a list for each column, with a number a design; null: unknown
  *   status [n] (study_state), reason {design: text}, seconds [n]
  *   objective (output), best (design), both -1 if there is none

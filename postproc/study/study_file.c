@@ -282,6 +282,16 @@ static shb_status put_origin(hid_t file, const design_study *s) {
   return h5_write_attribute_int(file, "/", "finished", s->finished);
 }
 
+static shb_status put_case_values(hid_t file, const design_study *s) {
+  double *all = calloc((size_t)s->n_derivatives + 1, sizeof *all);
+  if (!all) return no_memory();
+  for (int i = 0; i < s->n_derivatives; i++) all[i] = s->derivative[i].at;
+  shb_status status = put(file, "/derivative/case_value", H5_SHAPE((hsize_t)s->n_derivatives), all,
+                          "SI", "value of the parameter in the case");
+  free(all);
+  return status;
+}
+
 static shb_status put_all(hid_t file, const void *context) {
   const design_study *s = context;
   SHB_TRY(put_origin(file, s));
@@ -289,6 +299,7 @@ static shb_status put_all(hid_t file, const void *context) {
   SHB_TRY(put_columns(file, "/output/name", "/output/unit", s->n_outputs, s->output));
   SHB_TRY(
       put_columns(file, "/derivative/key", "/derivative/unit", s->n_derivatives, s->derivative));
+  SHB_TRY(put_case_values(file, s));
   SHB_TRY(put_designs(file, s));
   SHB_TRY(put_matrix(file, "/design/value", s, s->n_keys, offsetof(study_design, key),
                      "values of the varied keys"));
@@ -576,6 +587,16 @@ static shb_status get_origin(hid_t file, design_study *s) {
   return SHB_OK;
 }
 
+static shb_status get_case_values(hid_t file, design_study *s) {
+  double  *all   = NULL;
+  h5_shape shape = H5_SHAPE((hsize_t)s->n_derivatives);
+  if (s->n_derivatives == 0 || !h5_exists(file, "/derivative/case_value")) return SHB_OK;
+  SHB_TRY(h5_read_double(file, "/derivative/case_value", &shape, &all));
+  for (int i = 0; i < s->n_derivatives; i++) s->derivative[i].at = decoded(all[i]);
+  free(all);
+  return SHB_OK;
+}
+
 static shb_status get_all(hid_t file, design_study *s) {
   int n_keys, n_outputs, n_derivatives;
   SHB_TRY(h5_check_format(file, format, VERSION));
@@ -587,6 +608,7 @@ static shb_status get_all(hid_t file, design_study *s) {
   SHB_TRY(get_columns(file, "/design/key", "/design/unit", n_keys, s->key));
   SHB_TRY(get_columns(file, "/output/name", "/output/unit", n_outputs, s->output));
   SHB_TRY(get_columns(file, "/derivative/key", "/derivative/unit", n_derivatives, s->derivative));
+  SHB_TRY(get_case_values(file, s));
   SHB_TRY(get_states(file, s));
   SHB_TRY(get_design_texts(file, s));
   SHB_TRY(get_seconds(file, s));

@@ -5,7 +5,8 @@
  *   /design           key [k], unit [k], value [n,k], status [n] (0 not run, 1 done, 2 failed,
  *                     3 not converged), reason [n], digest [n], seconds [n]
  *   /output           name [m], unit [m], value [n,m], error [n,m]
- *   /derivative       key [p], unit [p], value [n,p]; only with p > 0
+ *   /derivative       key [p], unit [p], case_value [p] (of the parameter), value [n,p]; only with
+ *                     p > 0
  *   /curve            start [n+1], branch, frequency, amplitude, stable: the points of design i are
  *                     start[i] to start[i+1] - 1
  *   /optimum          attributes method, objective, note, best (design, -1: none); history [h],

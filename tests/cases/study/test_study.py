@@ -96,6 +96,32 @@ def check_values():
         assert start[0] == 0 and all(0 < b - a <= 200 for a, b in zip(start, start[1:]))
 
 
+def check_derivatives():
+    """The derivatives are those of differences of studied peaks, at smooth and at corner peaks."""
+    values, step = {'contact.n0': 0, 'contact.mu': 0.4, 'contact.ku': 0.5, 'contact.kv': 0.8}, 1e-3
+    for n0 in (0.15, 1.0):
+        values['contact.n0'] = n0
+        moves = [(key, k) for key in values for k in (-2, -1, 1, 2)]
+        designs = [values] + [{**values, key: values[key] * (1 + k * step)} for key, k in moves]
+        write('moved.csv', '\n'.join([','.join(values)] + [
+            ','.join(repr(design[key]) for key in values) for design in designs]) + '\n')
+        write('moved.yaml', 'case: case.yaml\nplan: {table: moved.csv}\noutputs: [peak]\n')
+        run(program('shroudhb-study'), '--quiet', 'moved.yaml')
+        table = rows('moved.study.csv')
+        peak = [float(row['peak']) for row in table]
+        for i, key in enumerate(values):
+            a, b, c, d = peak[1 + 4 * i:5 + 4 * i]
+            relative = (a - 8 * b + 8 * c - d) / (12 * step) / peak[0]
+            own = float(table[0]['dpeak_d' + key[8:]]) * values[key] / peak[0]
+            print(f'n0 {n0}: {key} {own:.9f}, by differences {relative:.9f}')
+            assert abs(own - relative) < 1e-6, (key, own, relative)
+    with h5py.File('moved.study.h5') as source:
+        names = [name.decode() for name in source['derivative/key'][:]]
+        assert names == ['n0', 'scale', 'mu', 'ku', 'kv', 'damping_factor'], names
+        assert source['derivative/value'].shape == (17, 6)
+        assert abs(source['derivative/case_value'][2] - 0.4) < 1e-15
+
+
 def check_ranks():
     """Three ranks give the bytes of one."""
     alone = read('grid.study.csv')
@@ -383,8 +409,8 @@ def main():
         run(sys.executable, 'write_modal.py')
         write('grid.yaml', GRID)
         run(program('shroudhb-study'), '--quiet', 'grid.yaml')
-        for check in (check_values, check_ranks, check_reuse, check_sampled_plans,
-                      check_uncertain, check_robust,
+        for check in (check_values, check_derivatives, check_ranks, check_reuse,
+                      check_sampled_plans, check_uncertain, check_robust,
                       check_crash, check_kill, check_faults,
                       check_overrides, check_one_design):
             check()

@@ -55,8 +55,8 @@ static double value_of(const fixture *f, int parameter) {
 static void find(fixture *f, const double *from, double omega, double amplitude) {
   double r[N];
   mhb_balance_linearise(f->balance, from, omega, r, NULL);
-  assert_ok(mhb_peak_derivatives_find(&f->model, f->balance, 0, MHB_SIZE_HALF_AXIS, from, omega,
-                                      amplitude, &f->result));
+  assert_ok(mhb_peak_derivatives_find(f->balance, 0, MHB_SIZE_HALF_AXIS, from, omega, amplitude,
+                                      &f->result));
 }
 
 /* Largest difference of the derivatives, relative to peak/parameter, from solved peaks. */
@@ -84,7 +84,7 @@ static double worst_of(double n0, double tolerance, double step, const double *f
       tear_down(&f);
     }
     double difference = (peak[0] - 8 * peak[1] + 8 * peak[2] - peak[3]) / (12 * step * value);
-    double error = fabs(centre.result.by[p] - difference) * value / centre.result.amplitude;
+    double error      = fabs(centre.result.by[p] - difference) * value / centre.result.amplitude;
     print_message("%-8s %14.9f, by differences %14.9f, relative %.1e\n", names[p],
                   centre.result.by[p], difference, error);
     worst = fmax(worst, error);

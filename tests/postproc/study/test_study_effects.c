@@ -91,8 +91,8 @@ static void designs_within_the_errors_are_counted(void **state) {
 
 static void columns_have_a_readers_unit(void **state) {
   (void)state;
-  const study_column length = {"peak", "m"}, angle = {"psi", "rad"}, pure = {"mu", "-"},
-                     slope = {"rate", "m/N"};
+  const study_column length = {"peak", "m", 0}, angle = {"psi", "rad", 0}, pure = {"mu", "-", 0},
+                     slope = {"rate", "m/N", 0};
   assert_string_equal(study_unit(&length, 3e-5).name, "µm");
   assert_near(study_unit(&angle, 1).scale * 180, 3.14159265358979, 1e-12);
   assert_string_equal(study_unit(&pure, 1).name, "");

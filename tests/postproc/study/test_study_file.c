@@ -140,7 +140,7 @@ static void table(void **state) {
   study_csv(&s, &out);
   assert_string_equal(
       out.text,
-      "design,contact.n0,contact.mu,peak,frequency,peak_error,d peak/d n0,status,reason\r\n"
+      "design,contact.n0,contact.mu,peak,frequency,peak_error,dpeak_dn0,status,reason\r\n"
       "1,10,0.3,3.5e-05,212.5,1e-09,-2e-07,done,\r\n"
       "2,20,0.3,,,,,failed,\"mesh: \"\"sections\"\", folded\"\r\n"
       "3,30,0.3,,,,,not run,\r\n");
