@@ -4,7 +4,7 @@
 
 packages_build="gcc libc6-dev cmake ninja-build pkg-config git
 libgmsh-dev libpetsc-real-dev libslepc-real-dev libhdf5-openmpi-dev libfftw3-dev
-liblapacke-dev libopenblas-dev libsuitesparse-dev libmumps-dev libyaml-dev libgsl-dev
+liblapacke-dev libopenblas-dev libsuitesparse-dev libmumps-dev libyaml-dev libgsl-dev libnlopt-dev
 libcmocka-dev openmpi-bin"
 
 # The tests also read files with h5dump and python3, compare frequencies with CalculiX, check case

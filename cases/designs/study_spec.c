@@ -17,7 +17,8 @@ static const case_key rows[] = {
     {"name", CASE_WORD, .help = ""},        {"case", CASE_FILE_NAME, .help = ""},
     {"vary", CASE_NUMBER, .help = ""},      {"plan", CASE_WORD, .help = ""},
     {"uncertain", CASE_NUMBER, .help = ""}, {"samples", CASE_NUMBER, .help = ""},
-    {"seed", CASE_NUMBER, .help = ""},      {"outputs", CASE_WORD, .help = ""}};
+    {"seed", CASE_NUMBER, .help = ""},      {"outputs", CASE_WORD, .help = ""},
+    {"optimise", CASE_WORD, .help = ""}};
 static const case_keys known = {sizeof rows / sizeof *rows, rows};
 
 typedef struct {
@@ -78,8 +79,16 @@ static void check_parts(reading *r, const case_node *root) {
                   *samples = case_node_find(root, "samples"), *seed = case_node_find(root, "seed");
   if (s->plan.kind == STUDY_TABLE && vary)
     fault(r, vary, "vary", "the columns of the table are the varied keys; leave vary out");
-  if (s->plan.kind != STUDY_TABLE && !vary && (plan || !uncertain))
+  if (s->plan.kind != STUDY_TABLE && !vary && !case_node_find(root, "optimise") &&
+      (plan || !uncertain))
     fault(r, root, "vary", "missing; expected a mapping of keys of the case");
+  const case_node *optimise = case_node_find(root, "optimise");
+  if (optimise && plan)
+    fault(r, optimise, "optimise", "makes its own designs; leave plan out, or optimise");
+  if (optimise && uncertain)
+    fault(r, optimise, "optimise", "has no uncertain keys; leave uncertain out, or optimise");
+  if (optimise && !vary && !plan)
+    fault(r, optimise, "optimise", "needs vary, the ranges of the keys");
   if (uncertain && !samples)
     fault(r, uncertain, "uncertain", "needs samples, their number, such as samples: 512");
   if (samples && !uncertain)
@@ -93,13 +102,18 @@ static void check_parts(reading *r, const case_node *root) {
 static const case_node *make_designs(reading *r, const case_node *root) {
   study_spec      *s    = r->spec;
   const case_node *vary = case_node_find(root, "vary"), *plan = case_node_find(root, "plan"),
-                  *uncertain = case_node_find(root, "uncertain"), *at = vary ? vary : root;
+                  *uncertain = case_node_find(root, "uncertain"),
+                  *optimise = case_node_find(root, "optimise"), *at = vary ? vary : root;
+  const study_outputs outputs = {&s->base, &s->n_outputs, s->output};
   if (plan) study_plan_read(&r->issues, plan, s->folder, &s->plan);
   study_plan_read_samples(&r->issues, case_node_find(root, "samples"), case_node_find(root, "seed"),
                           &s->plan);
   check_parts(r, root);
   if (vary) study_keys_read(&r->issues, vary, &s->keys);
-  if (r->issues.n == 0)
+  if (optimise) study_optimise_read(&r->issues, optimise, &outputs, &s->optimise);
+  if (r->issues.n == 0 && optimise)
+    study_optimise_starts(&r->issues, at, &s->optimise, &s->keys, &s->n_designs, &s->design);
+  if (r->issues.n == 0 && !optimise)
     study_plan_make(&r->issues, plan && !vary ? plan : at, &s->plan, &s->keys, &s->n_designs,
                     &s->design);
   if (r->issues.n == 0 && s->n_designs == 0) fault(r, root, "plan", "holds no design");

@@ -7,6 +7,7 @@
 #include <stdio.h>
 
 #include "cases/designs/output_names.h"
+#include "cases/designs/study_optimise.h"
 #include "cases/designs/study_plan.h"
 #include "cases/parse/case_file.h"
 #include "mesh/base/status.h"
@@ -14,18 +15,19 @@
 enum { STUDY_MAX_OUTPUTS = 64 };
 
 typedef struct {
-  char        *path, *text, *folder; /* of the study file */
-  char        *name;                 /* of the output files */
-  char        *case_path;            /* resolved */
-  study_plan   plan;
-  study_keys   keys;
-  int          n_outputs;
-  study_output output[STUDY_MAX_OUTPUTS];
-  int          n_designs;
-  double      *design; /* [n_designs][keys.n] */
-  char (*digest)[17];  /* [n_designs] of everything the outputs depend on, if checked */
-  char     *inputs;    /* fingerprints of the files that the case reads */
-  case_file base;      /* the case as it is */
+  char          *path, *text, *folder; /* of the study file */
+  char          *name;                 /* of the output files */
+  char          *case_path;            /* resolved */
+  study_plan     plan;
+  study_optimise optimise;
+  study_keys     keys;
+  int            n_outputs;
+  study_output   output[STUDY_MAX_OUTPUTS];
+  int            n_designs;
+  double        *design; /* [n_designs][keys.n]; of an optimisation study_optimise_starts */
+  char (*digest)[17];    /* [n_designs] of everything the outputs depend on, if checked */
+  char     *inputs;      /* fingerprints of the files that the case reads */
+  case_file base;        /* the case as it is */
 } study_spec;
 
 /* Read and check a study file, its case and its table. All errors are printed to errors with line,

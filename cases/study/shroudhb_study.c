@@ -11,6 +11,7 @@
 #include "cases/parse/units.h"
 #include "cases/study/study_run.h"
 #include "mesh/base/progress.h"
+#include "postproc/study/study_file.h"
 #include "postproc/summary/summary.h"
 
 static const char usage[] =
@@ -30,15 +31,30 @@ static const char usage[] =
     "Exit codes: 0 done, 2 bad input, 3 some designs failed or did not converge, 4 input/output,\n"
     "130 interrupted (results so far kept).\n";
 
+/* The designs of an optimisation are in its file only. */
+static shb_status read_designs(const study_spec *spec, design_study *done) {
+  char      *path   = study_path(spec, ".study.h5");
+  shb_status status = path ? study_file_read(path, done)
+                           : shb_fail(SHB_ERR_IO, __FILE__, __LINE__, "out of memory");
+  free(path);
+  SHB_TRY(status);
+  SHB_CHECK(done->n_keys == spec->keys.n, SHB_ERR_INPUT,
+            "the file of the study has other keys; run the study again");
+  return SHB_OK;
+}
+
 /* Replace this program by `shroudhb run` for one design, counted from 1. */
 static shb_status run_design(const study_spec *spec, int design, const command_options *options) {
   enum { MORE = 10 };
-  char *words[2 * STUDY_MAX_KEYS + MORE] = {NULL}, name[3 * CASE_NAME], run[] = "run";
-  char  set[] = "--set", into[] = "--into", quiet[] = "--quiet";
-  int   n     = 0;
-  char *store = study_path(spec, ".study.d");
-  SHB_CHECK(design >= 1 && design <= spec->n_designs, SHB_ERR_INPUT,
-            "--design=%d: the study has the designs 1 to %d", design, spec->n_designs);
+  char        *words[2 * STUDY_MAX_KEYS + MORE] = {NULL}, name[3 * CASE_NAME], run[] = "run";
+  char         set[] = "--set", into[] = "--into", quiet[] = "--quiet";
+  int          n     = 0;
+  char        *store = study_path(spec, ".study.d");
+  design_study done  = {0};
+  if (spec->optimise.wanted) SHB_TRY(read_designs(spec, &done));
+  int n_designs = spec->optimise.wanted ? done.n : spec->n_designs;
+  SHB_CHECK(design >= 1 && design <= n_designs, SHB_ERR_INPUT,
+            "--design=%d: the study has the designs 1 to %d", design, n_designs);
   snprintf(name, sizeof name, "name=%s_%d", spec->name, design);
   words[n++] = subprocess_program("shroudhb");
   words[n++] = run;
@@ -47,7 +63,9 @@ static shb_status run_design(const study_spec *spec, int design, const command_o
   words[n++]          = name;
   words[n++]          = into;
   words[n++]          = spec->folder;
-  const double *value = spec->design + (size_t)(design - 1) * (size_t)spec->keys.n;
+  const double *value = spec->optimise.wanted
+                            ? done.design[design - 1].key
+                            : spec->design + (size_t)(design - 1) * (size_t)spec->keys.n;
   int           sets  = study_spec_words(spec, value, words + n);
   if (sets >= 0) words[n + sets] = spec->case_path;
   free(store);
@@ -75,12 +93,21 @@ static shb_status check(const study_spec *spec, const command_options *options) 
     post_put_json(&text, spec->name);
     post_put(&text, ", \"case\": ");
     post_put_json(&text, spec->case_path);
-    post_put(&text, ", \"designs\": %d}\n", spec->n_designs);
+    post_put(&text, ", \"designs\": %d}\n",
+             spec->optimise.wanted ? spec->optimise.evaluations : spec->n_designs);
     if (text.text) fputs(text.text, stdout);
     post_buffer_free(&text);
     return SHB_OK;
   }
   if (options->quiet) return SHB_OK;
+  if (spec->optimise.wanted) {
+    const study_optimise *o = &spec->optimise;
+    printf("%s: ok\n  case      %s\n  optimise  %s by %s, %d starts of %d evaluations\n",
+           spec->path, spec->case_path, spec->output[o->objective].name,
+           study_algorithm_name(o->algorithm), o->starts, o->evaluations / o->starts);
+    for (int k = 0; k < spec->keys.n; k++) print_key(&spec->keys.key[k]);
+    return SHB_OK;
+  }
   study_plan_text(&spec->plan, &spec->keys, plan, sizeof plan);
   printf("%s: ok\n  case      %s\n  plan      %s\n  designs   %d\n", spec->path, spec->case_path,
          plan, spec->n_designs);

@@ -7,6 +7,7 @@
 
 #include "cases/plan/design_statistics.h"
 #include "cases/study/design_message.h"
+#include "cases/study/optimisation.h"
 #include "cases/study/study_summary.h"
 #include "postproc/draw/text_buffer.h"
 #include "postproc/study/study_csv.h"
@@ -26,6 +27,7 @@ typedef struct {
   int               n_done, n_computed, n_to_compute;
   double            started, published;
   bool              changed; /* since the last publication */
+  optimisation     *search;  /* NULL: the designs are known from the start */
 } running;
 
 char *study_path(const study_spec *spec, const char *suffix) {
@@ -67,9 +69,10 @@ static shb_status set_up(const study_spec *spec, design_study *s) {
   s->case_path = strdup(spec->case_path);
   s->case_text = strdup(spec->base.text);
   study_plan_text(&spec->plan, &spec->keys, s->plan, sizeof s->plan);
+  if (spec->optimise.wanted) snprintf(s->plan, sizeof s->plan, "optimise");
   name_columns(spec, s);
   bool good = s->name && s->text && s->path && s->case_path && s->case_text;
-  for (int d = 0; d < spec->n_designs && good; d++) {
+  for (int d = 0; d < spec->n_designs && good && !spec->optimise.wanted; d++) {
     study_design *one = design_study_add(s, spec->design + (size_t)d * (size_t)spec->keys.n);
     good              = one != NULL;
     if (one) snprintf(one->digest, STUDY_DIGEST, "%s", spec->digest[d]);
@@ -165,6 +168,10 @@ static shb_status take_all_known(running *r) {
   for (size_t i = 0; i < found.gl_pathc && status == SHB_OK; i++) {
     design_study known;
     if (study_file_read(found.gl_pathv[i], &known) != SHB_OK) continue;
+    if (r->search) {
+      status = optimisation_know(r->search, &known);
+      continue;
+    }
     status = take_known(r, &known);
     design_study_free(&known);
   }
@@ -195,6 +202,7 @@ static shb_status publish(running *r, bool finished) {
 static int next_design(void *context, const double **value) {
   running *r = context;
   if (shb_interrupted()) return -1;
+  if (r->search) return optimisation_next(r->search, value);
   while (r->next < r->study->n && (r->given[r->next] || r->twin[r->next] >= 0)) r->next++;
   if (r->next == r->study->n) return -1;
   r->given[r->next] = true;
@@ -219,8 +227,9 @@ static void show(running *r) {
   double passed   = shb_seconds() - r->started;
   int    rest     = r->n_to_compute - r->n_computed;
   if (r->n_computed > 0) put_time(passed / r->n_computed * rest, left);
-  shb_progress_show(r->progress, 100. * r->n_done / r->study->n, "design %d of %d  %d failed  %s%s",
-                    r->n_done, r->study->n, design_study_count(r->study, STUDY_FAILED), left,
+  int all = r->search ? r->n_to_compute : r->study->n;
+  shb_progress_show(r->progress, 100. * r->n_done / all, "design %d of %d  %d failed  %s%s",
+                    r->n_done, all, design_study_count(r->study, STUDY_FAILED), left,
                     left[0] ? " left" : "");
 }
 
@@ -228,6 +237,7 @@ static shb_status done(void *context, int design, const char *bytes, size_t size
   running *r = context;
   SHB_TRY(design_message_unpack(bytes, size, r->study->n_outputs, r->study->n_derivatives,
                                 &r->study->design[design]));
+  if (r->search) optimisation_done(r->search, design);
   r->n_done++;
   r->n_computed++;
   r->changed = true;
@@ -282,6 +292,35 @@ static shb_status run_all(running *r, bool force, design_process *process) {
   return study_publish(r->study, r->path); /* the page */
 }
 
+/* An optimisation: the designs come from its search. */
+static shb_status search(running *r, bool force, design_process *process) {
+  const crew_work work   = {r, next_design, done, tick};
+  shb_status      status = force ? SHB_OK : take_all_known(r);
+  r->n_to_compute        = r->spec->optimise.evaluations;
+  shb_progress_note(r->progress, "at most %d designs, %d at a time", r->n_to_compute,
+                    crew_workers());
+  r->started = r->published = shb_seconds();
+  if (status == SHB_OK)
+    status = crew_manage(&work, process);
+  else
+    crew_dismiss();
+  shb_progress_clear(r->progress);
+  if (status == SHB_OK) status = optimisation_finish(r->search);
+  SHB_TRY(status);
+  SHB_TRY(publish(r, !shb_interrupted()));
+  return study_publish(r->study, r->path);
+}
+
+static shb_status search_all(running *r, bool force, design_process *process) {
+  shb_status status = optimisation_create(r->spec, r->study, &r->search);
+  if (status == SHB_OK)
+    status = search(r, force, process);
+  else
+    crew_dismiss();
+  optimisation_destroy(r->search);
+  return status;
+}
+
 shb_status study_run(const study_spec *spec, bool force, design_process *process,
                      shb_progress *progress, design_study *s) {
   shb_status status = set_up(spec, s);
@@ -292,7 +331,9 @@ shb_status study_run(const study_spec *spec, bool force, design_process *process
   r.given           = calloc(n, sizeof *r.given);
   if (status == SHB_OK && !(r.path && r.twin && r.given))
     status = shb_fail(SHB_ERR_IO, __FILE__, __LINE__, "out of memory");
-  if (status == SHB_OK)
+  if (status == SHB_OK && spec->optimise.wanted)
+    status = search_all(&r, force, process);
+  else if (status == SHB_OK)
     status = run_all(&r, force, process);
   else
     crew_dismiss();
@@ -334,6 +375,13 @@ void study_run_summary(const study_spec *spec, const design_study *s, FILE *out)
             strcmp(s->output[i].unit, "-") == 0 ? "" : s->output[i].unit, low + 1, high + 1);
   }
   study_summary_statistics(s, out);
+  if (s->optimum.best >= 0) {
+    fprintf(out, "  optimum   design %d", s->optimum.best + 1);
+    for (int k = 0; k < s->n_keys; k++)
+      fprintf(out, ", %s %.8g", s->key[k].name, s->design[s->optimum.best].key[k]);
+    fprintf(out, "\n");
+  }
+  if (s->optimum.note) fprintf(out, "%s\n", s->optimum.note);
   fprintf(out, "table     %s\nstudy     %s\n", csv ? csv : "", h5 ? h5 : "");
   free(h5);
   free(csv);

@@ -122,6 +122,47 @@ def check_derivatives():
         assert abs(source['derivative/case_value'][2] - 0.4) < 1e-15
 
 
+OPTIMISE = """case: case.yaml
+vary:
+  contact.n0: {from: 0.1 N, to: 1 N, scale: log}
+  contact.mu: {from: 0.1, to: 0.8}
+optimise: {minimise: peak, at_most: {frequency: 0.217 Hz}, evaluations: 24, starts: 2}
+outputs: [peak]
+"""
+
+
+def check_optimise():
+    """The optimum meets its limit and is the least of them, on one and three ranks, resumed."""
+    write('best.yaml', OPTIMISE)
+    said = run(program('shroudhb-study'), '--check', 'best.yaml')
+    assert 'peak by sbplx, 2 starts of 12 evaluations' in said, said
+    run(program('shroudhb-study'), '--quiet', 'best.yaml')
+    table, bytes_alone = rows('best.study.csv'), read('best.study.csv')
+    good = [i for i, row in enumerate(table) if float(row['frequency']) <= 0.217]
+    with h5py.File('best.study.h5') as source:
+        optimum = source['optimum']
+        best, history = int(optimum.attrs['best']), list(optimum['history'][:])
+        assert b'SBPLX of NLopt' in optimum.attrs['method'], optimum.attrs['method']
+        assert sorted(set(history)) == list(range(len(table))) and len(history) <= 24, history
+    assert best == min(good, key=lambda i: float(table[i]['peak'])), (best, good)
+    run('mpiexec', '-n', '3', '--oversubscribe', program('shroudhb-study'), '--quiet', '--force',
+        'best.yaml')
+    assert read('best.study.csv') == bytes_alone
+    said = run(program('shroudhb-study'), 'best.yaml') # nothing is computed again
+    assert read('best.study.csv') == bytes_alone
+    assert 'optimum' in said and 'used up their 12 evaluations' in said, said
+    for text, fault in ((('peak,', 'peek,'), "'peek' is no output of this case"),
+                        (('0.217 Hz', '0.217 N'), 'frequency: '),
+                        (('evaluations: 24', 'evaluations: 8'), 'too few for 2 starts'),
+                        (('starts: 2', 'seeds: 2'), 'seeds: unknown key'),
+                        (('{from: 0.1, to: 0.8}', '[0.1, 0.8]'), 'needs a range'),
+                        (('minimise: peak, ', ''), 'minimise is missing'),
+                        (('outputs:', 'plan: grid\noutputs:'), 'leave plan out')):
+        write('bad.yaml', OPTIMISE.replace(*text))
+        said = run(program('shroudhb-study'), 'bad.yaml', code=2)
+        assert fault in said, said
+
+
 def check_ranks():
     """Three ranks give the bytes of one."""
     alone = read('grid.study.csv')
@@ -409,7 +450,7 @@ def main():
         run(sys.executable, 'write_modal.py')
         write('grid.yaml', GRID)
         run(program('shroudhb-study'), '--quiet', 'grid.yaml')
-        for check in (check_values, check_derivatives, check_ranks, check_reuse,
+        for check in (check_values, check_derivatives, check_optimise, check_ranks, check_reuse,
                       check_sampled_plans, check_uncertain, check_robust,
                       check_crash, check_kill, check_faults,
                       check_overrides, check_one_design):

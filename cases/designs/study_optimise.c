@@ -1,0 +1,171 @@
+#include "cases/designs/study_optimise.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+#include "cases/parse/keys.h"
+#include "cases/parse/units.h"
+#include "cases/plan/sampling.h"
+
+enum { MOST_EVALUATIONS = 100000, LEAST_A_START = 5, MOST_OUTPUTS = 64 };
+
+static const case_key members[] = {
+    {.path = "minimise"}, {.path = "at_most"}, {.path = "at_least"}, {.path = "evaluations"},
+    {.path = "starts"},   {.path = "seed"},    {.path = "algorithm"}};
+static const case_keys all = {sizeof members / sizeof *members, members};
+
+static const char *const algorithms[STUDY_N_ALGORITHMS] = {"sbplx", "crs", "isres", "direct"};
+
+typedef struct {
+  case_issues         *issues;
+  const study_outputs *outputs;
+  study_optimise      *o;
+} reading;
+
+const char *study_algorithm_name(study_algorithm algorithm) {
+  return algorithms[algorithm];
+}
+
+static void fault(reading *r, const case_node *node, const char *text) {
+  case_issue_add(r->issues, node->line, node->column, "optimise", "%s", text);
+}
+
+/* Index of an output by its name, appended if it is new; -1 after a fault. */
+static int output_of(reading *r, const case_node *node, const char *name) {
+  const study_outputs *s = r->outputs;
+  char                 why[512];
+  for (int i = 0; i < *s->n; i++)
+    if (strcmp(s->output[i].name, name) == 0) return i;
+  if (*s->n == MOST_OUTPUTS) {
+    fault(r, node, "more than 64 outputs");
+  } else if (!study_output_parse(name, s->base, &s->output[*s->n], why, sizeof why)) {
+    fault(r, node, why);
+  } else {
+    return (*s->n)++;
+  }
+  return -1;
+}
+
+static void read_limits(reading *r, const case_node *node, bool least) {
+  if (node->kind != CASE_MAPPING || node->n == 0)
+    fault(r, node, "at_most, at_least: expected a mapping such as {frequency: 150 Hz}");
+  for (int i = 0; node->kind == CASE_MAPPING && i < node->n; i++) {
+    const case_node *one = &node->child[i];
+    char             why[CASE_WHY];
+    study_limit      limit = {output_of(r, one, one->key), least, 0};
+    if (limit.output < 0) continue;
+    const char *unit = r->outputs->output[limit.output].unit;
+    if (one->kind != CASE_SCALAR) {
+      fault(r, one, "a limit is a number with its unit");
+    } else if (!case_quantity(one->text, strcmp(unit, "-") == 0 ? "" : unit, &limit.value, why)) {
+      case_issue_add(r->issues, one->line, one->column, "optimise", "%s: %s", one->key, why);
+    } else if (r->o->n_limits == STUDY_MAX_LIMITS) {
+      fault(r, one, "more than 16 limits");
+    } else {
+      r->o->limit[r->o->n_limits++] = limit;
+    }
+  }
+}
+
+static int whole(reading *r, const case_node *node, int least, int most) {
+  char why[CASE_WHY];
+  int  value = least;
+  if (node->kind != CASE_SCALAR || !case_integer(node->text, &value, why) || value < least ||
+      value > most) {
+    case_issue_add(r->issues, node->line, node->column, "optimise",
+                   "%s: expected a whole number from %d to %d", node->key, least, most);
+    return least;
+  }
+  return value;
+}
+
+static void read_algorithm(reading *r, const case_node *node) {
+  int i = 0;
+  while (i < STUDY_N_ALGORITHMS &&
+         (node->kind != CASE_SCALAR || strcmp(node->text, algorithms[i]) != 0))
+    i++;
+  if (i == STUDY_N_ALGORITHMS)
+    fault(r, node, "algorithm: expected sbplx, crs, isres or direct");
+  else
+    r->o->algorithm = (study_algorithm)i;
+}
+
+static void read_member(reading *r, const case_node *one) {
+  char hint[256];
+  if (strcmp(one->key, "minimise") == 0) {
+    if (one->kind == CASE_SCALAR) r->o->objective = output_of(r, one, one->text);
+    if (one->kind != CASE_SCALAR) fault(r, one, "minimise: expected the name of an output");
+  } else if (strcmp(one->key, "at_most") == 0 || strcmp(one->key, "at_least") == 0) {
+    read_limits(r, one, strcmp(one->key, "at_least") == 0);
+  } else if (strcmp(one->key, "evaluations") == 0) {
+    r->o->evaluations = whole(r, one, LEAST_A_START, MOST_EVALUATIONS);
+  } else if (strcmp(one->key, "starts") == 0) {
+    r->o->starts = whole(r, one, 1, STUDY_MOST_STARTS);
+  } else if (strcmp(one->key, "seed") == 0) {
+    r->o->seed = (unsigned long)whole(r, one, 0, 1 << 30);
+  } else if (strcmp(one->key, "algorithm") == 0) {
+    read_algorithm(r, one);
+  } else {
+    case_key_suggest(all, "", one->key, hint, sizeof hint);
+    case_issue_add(r->issues, one->key_line, one->key_column, "optimise", "%s: unknown key%s",
+                   one->key, hint);
+  }
+}
+
+void study_optimise_read(case_issues *issues, const case_node *node, const study_outputs *outputs,
+                         study_optimise *o) {
+  reading r = {issues, outputs, o};
+  *o =
+      (study_optimise){.wanted = true, .objective = -1, .evaluations = 200, .starts = 4, .seed = 1};
+  if (node->kind != CASE_MAPPING) {
+    fault(&r, node, "expected a mapping such as {minimise: peak, evaluations: 200}");
+    return;
+  }
+  for (int i = 0; i < node->n; i++) read_member(&r, &node->child[i]);
+  if (o->algorithm == STUDY_DIRECT && case_node_find(node, "starts") && o->starts > 1)
+    fault(&r, case_node_find(node, "starts"), "starts: direct divides the whole ranges, once");
+  if (o->algorithm == STUDY_DIRECT) o->starts = 1;
+  if (!case_node_find(node, "minimise"))
+    fault(&r, node, "minimise is missing: the output to be minimised");
+  if (o->evaluations < LEAST_A_START * o->starts)
+    case_issue_add(issues, node->line, node->column, "optimise",
+                   "%d evaluations are too few for %d starts; each takes %d or more",
+                   o->evaluations, o->starts, LEAST_A_START);
+}
+
+static bool check_keys(case_issues *issues, const case_node *at, const study_keys *keys) {
+  int before = issues->n;
+  for (int k = 0; k < keys->n; k++) {
+    const study_key *key = &keys->key[k];
+    if (!key->is_range)
+      case_issue_add(issues, at->line, at->column, key->path,
+                     "optimise needs a range {from, to}, not a list");
+    else if (key->whole)
+      case_issue_add(issues, at->line, at->column, key->path,
+                     "takes whole numbers; optimise varies any number of a range");
+  }
+  return issues->n == before;
+}
+
+void study_optimise_starts(case_issues *issues, const case_node *at, const study_optimise *o,
+                           const study_keys *keys, int *n, double **design) {
+  int d = keys->n, rows = o->starts + 2;
+  *design = NULL;
+  *n      = 0;
+  if (!check_keys(issues, at, keys)) return;
+  double *u = calloc((size_t)rows * (size_t)d + 1, sizeof *u);
+  if (!u || plan_latin_hypercube(o->starts, d, o->seed, u + 2 * d) != SHB_OK) {
+    case_issue_add(issues, at->line, at->column, "optimise", "out of memory");
+    free(u);
+    return;
+  }
+  for (int k = 0; k < d; k++) {
+    u[2 * d + k] = 0.5;
+    for (int i = 0; i < rows; i++)
+      u[i * d + k] = i == 0   ? keys->key[k].from
+                     : i == 1 ? keys->key[k].to
+                              : study_key_at(&keys->key[k], u[i * d + k]);
+  }
+  *design = u;
+  *n      = rows;
+}
