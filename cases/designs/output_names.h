@@ -36,8 +36,8 @@ bool study_output_parse(const char *name, const case_file *file, study_output *o
 int study_derivatives(int n_outputs, const study_output *output);
 
 /* A derivative's parameter: name (n0, scale, mu, ku, kv, damping), unit of the derivative, and its
- * value in a case. "damping" is modal.damping if that is one ratio or a loss factor. Otherwise it is
- * "damping_factor": all ratios change in common, by a factor that is 1 in the case. */
+ * value in a case. "damping" is modal.damping if that is one ratio or a loss factor. Otherwise it
+ * is "damping_factor": all ratios change in common, by a factor that is 1 in the case. */
 void study_derivative(const case_file *file, int i, char name[STUDY_UNIT_TEXT],
                       char unit[STUDY_UNIT_TEXT], double *value);
 

@@ -32,6 +32,7 @@ static const char usage[] =
     "  post CASE.yaml     report, curves                    -> NAME.html, NAME.csv, NAME.svg\n"
     "  converge CASE.yaml error against time, setting by setting; `shroudhb converge --help`\n"
     "  study STUDY.yaml   many designs of a case on all cores; `shroudhb study --help`\n"
+    "  eval CASE.yaml --params IN --results OUT  one design for Dakota and other drivers\n"
     "  check FILE.yaml    check a case file or a study file, run nothing\n"
     "  keys               every key of a case file: unit, range, default, meaning; --markdown\n"
     "                     prints the page docs/user/case_reference.md, --schema a JSON Schema,\n"
@@ -289,7 +290,7 @@ static const struct {
                 {"check", check_main, JSON_CHECK},   {"keys", keys_main, JSON_NONE},
                 {"inspect", inspect_main, JSON_OWN}, {"contact", contact_main, JSON_NONE},
                 {"study", study_main, JSON_OWN},     {"integrate", stage_main, JSON_SUMMARY},
-                {"field", stage_main, JSON_NONE}};
+                {"field", stage_main, JSON_NONE},    {"eval", stage_main, JSON_NONE}};
 
 enum { N_COMMANDS = sizeof commands / sizeof *commands };
 

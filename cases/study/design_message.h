@@ -7,11 +7,13 @@
 
 #include "postproc/study/design_study.h"
 
-/* Pack state, values, errors, derivatives, reason, seconds and curve. bytes: malloc'ed. Errors: SHB_ERR_IO. */
+/* Pack state, values, errors, derivatives, reason, seconds and curve. bytes: malloc'ed. Errors:
+ * SHB_ERR_IO. */
 shb_status design_message_pack(const study_design *design, int n_outputs, int n_derivatives,
                                char **bytes, size_t *size);
 
-/* Unpack into a design with as many outputs and derivatives. Errors: SHB_ERR_IO cut, or no memory. */
+/* Unpack into a design with as many outputs and derivatives. Errors: SHB_ERR_IO cut, or no
+ * memory. */
 shb_status design_message_unpack(const char *bytes, size_t size, int n_outputs, int n_derivatives,
                                  study_design *design);
 

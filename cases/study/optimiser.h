@@ -1,4 +1,4 @@
-/* Minimisation by NLopt as questions and answers: each start runs in a thread of its own, asks for
+/* Minimisation by NLopt as questions and answers. Each start runs in a thread of its own, asks for
  * the value at a point, and sleeps until it is told. Its points depend on its own answers only, so
  * that the order in which answers come does not change the result. */
 #ifndef CASES_STUDY_OPTIMISER_H

@@ -104,8 +104,8 @@ void mhb_receptance_probe_change(const mhb_receptance *receptance, int k, const 
                                  const double complex *dp, double d_omega, double d_scale,
                                  double complex *change);
 
-/* Change of harmonic k of the relative motion free - R p and of the probes under contact force
- * p[n], for a common relative change of all damping ratios: d/d ln zeta.
+/* Derivatives of harmonic k under contact force p[n] by ln zeta, common to all damping ratios.
+ * They are those of the relative motion free - R p, and of the probes.
  *   motion  out  [n] m
  *   probe   out  [3 q] m */
 void mhb_receptance_by_damping(const mhb_receptance *receptance, int k, const double complex *p,

@@ -37,7 +37,8 @@ shb_status mhb_stuck_response(mhb_balance *balance, const mhb_tracking *tracking
 bool mhb_corner_at(mhb_balance *balance, const mhb_tracking *tracking, bool stuck, double value,
                    double *omega, double *x, double *amplitude);
 
-/* dA/dq along corners (stuck false) or stuck peaks, at one of them. x[n]: scratch. NAN: singular. */
+/* dA/dq along corners (stuck false) or stuck peaks, at one of them. x[n]: scratch. NAN:
+ * singular. */
 double mhb_corner_slope(mhb_balance *balance, const mhb_tracking *tracking, bool stuck,
                         double omega, double value, double *x);
 

@@ -34,8 +34,8 @@ void mhb_output_amplitude(mhb_balance *balance, const double *x, int output, mhb
 double mhb_amplitude_by_parameter(const mhb_balance *balance, const mhb_amplitude *amplitude,
                                   mhb_parameter parameter, const double *by_parameter);
 
-/* slope[n] <- change of the residual r by a common relative change of all damping ratios, at the
- * point that the evaluation in use was evaluated at. */
+/* slope[n] <- dr/d ln zeta, common to all damping ratios, at the point of the evaluation in
+ * use. */
 void mhb_slope_by_damping(mhb_balance *balance, double *slope);
 
 #endif

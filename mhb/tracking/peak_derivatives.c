@@ -108,8 +108,8 @@ static void corner_derivatives(const search *s, mhb_tracking *tracking, bool stu
   out->by[MHB_PEAK_BY_DAMPING] = s->balance->settings->run_up ? NAN : sum;
 }
 
-/* The corner (stuck false) or the stuck peak near the solution; its distance in amplitude, relative.
- * INFINITY: there is none. */
+/* The corner (stuck false) or the stuck peak near the solution. Returns its relative distance in
+ * amplitude; INFINITY: there is none. */
 static double distance_to(const search *s, const mhb_tracking *tracking, bool stuck, double *x,
                           double *omega, double *amplitude) {
   const mhb_operating_point at = s->balance->eval->at;

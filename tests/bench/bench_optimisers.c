@@ -1,8 +1,8 @@
 /* Which of NLopt's methods for studies finds a kinked optimum with the fewest evaluations.
  *
- * The objective is shaped as the highest peak over preload and friction: the higher of two smooth
- * peaks that exchange their rank along a curved valley, with a kink at its floor and noise of 1e-9.
- * Two, three and five keys; 20 optima each, by the same optimiser as studies. */
+ * The objective is shaped as the highest peak over preload and friction. It is the higher of two
+ * smooth peaks, which exchange their rank along a curved valley. Its floor is a kink, with noise of
+ * 1e-9. Two, three and five keys; 20 optima each, by the same optimiser as studies. */
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>

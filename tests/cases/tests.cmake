@@ -78,6 +78,10 @@ if(SHROUDHB_PYTHON)
     COMMAND ${SHROUDHB_PYTHON} -B ${CMAKE_CURRENT_SOURCE_DIR}/cases/study/test_study.py
             $<TARGET_FILE_DIR:shroudhb-study> ${PROJECT_SOURCE_DIR}/cases/bring_your_own)
   set_tests_properties(cases.study.study PROPERTIES SKIP_RETURN_CODE 77)
+  add_test(NAME cases.study.eval
+    COMMAND ${SHROUDHB_PYTHON} -B ${CMAKE_CURRENT_SOURCE_DIR}/cases/study/test_eval.py
+            $<TARGET_FILE_DIR:shroudhb-study> ${PROJECT_SOURCE_DIR}/cases/bring_your_own)
+  set_tests_properties(cases.study.eval PROPERTIES SKIP_RETURN_CODE 77)
 endif()
 
 # shb_scene_test(noun scene libraries...): a shipped scene from mesh to curves.

@@ -1,4 +1,4 @@
-/* Questions and answers: the optimum of known functions, and independence of the order of answers. */
+/* Questions and answers: the optimum of known functions; the order of answers does not matter. */
 #include "cases/study/optimiser.h"
 
 #include <math.h>

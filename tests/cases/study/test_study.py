@@ -142,7 +142,7 @@ def check_optimise():
     with h5py.File('best.study.h5') as source:
         optimum = source['optimum']
         best, history = int(optimum.attrs['best']), list(optimum['history'][:])
-        assert b'SBPLX of NLopt' in optimum.attrs['method'], optimum.attrs['method']
+        assert 'SBPLX of NLopt' in str(optimum.attrs['method']), optimum.attrs['method']
         assert sorted(set(history)) == list(range(len(table))) and len(history) <= 24, history
     assert best == min(good, key=lambda i: float(table[i]['peak'])), (best, good)
     run('mpiexec', '-n', '3', '--oversubscribe', program('shroudhb-study'), '--quiet', '--force',

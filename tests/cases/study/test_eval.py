@@ -1,0 +1,105 @@
+"""cases.study.eval: a script in Dakota's place: both formats, active set, gradients, failures.
+
+Usage: test_eval.py BIN CASE_FOLDER, with the programs in BIN. Exit code 77: h5py is missing.
+"""
+import os
+import shutil
+import subprocess
+import sys
+import tempfile
+
+try:
+    import h5py # for write_modal.py
+except ImportError:
+    sys.exit(77)
+
+BIN, SCENE = os.path.abspath(sys.argv[1]), os.path.abspath(sys.argv[2])
+
+
+def standard(variables, responses, derivatives=()):
+    names = list(variables)
+    lines = [f'{len(variables):40d} variables']
+    lines += [f'{value:40.16e} {name}' for name, value in variables.items()]
+    lines += [f'{len(responses):40d} functions']
+    lines += [f'{active:40d} ASV_{i + 1}:{name}' for i, (name, active) in enumerate(responses)]
+    lines += [f'{len(derivatives):40d} derivative_variables']
+    lines += [f'{names.index(name) + 1:40d} DVV_{i + 1}:{name}'
+              for i, name in enumerate(derivatives)]
+    return '\n'.join(lines + [f'{0:40d} analysis_components', f'{1:40d} eval_id']) + '\n'
+
+
+def aprepro(variables, responses, derivatives=()):
+    names = list(variables)
+    pairs = [('DAKOTA_VARS', len(variables))] + list(variables.items())
+    pairs += [('DAKOTA_FNS', len(responses))]
+    pairs += [(f'ASV_{i + 1}:{name}', active) for i, (name, active) in enumerate(responses)]
+    pairs += [('DAKOTA_DER_VARS', len(derivatives))]
+    pairs += [(f'DVV_{i + 1}:{name}', names.index(name) + 1) for i, name in enumerate(derivatives)]
+    pairs += [('DAKOTA_AN_COMPS', 0), ('DAKOTA_EVAL_ID', 1)]
+    return ''.join(f'{{ {name:16s} = {value!r} }}\n' for name, value in pairs)
+
+
+def evaluate(text, code=0):
+    with open('params.in', 'w') as out:
+        out.write(text)
+    done = subprocess.run([os.path.join(BIN, 'shroudhb'), 'eval', 'case.yaml', '--params',
+                           'params.in', '--results', 'results.out'],
+                          capture_output=True, text=True, timeout=300)
+    assert done.returncode == code, (done.returncode, done.stdout, done.stderr)
+    with open('results.out') as source:
+        return source.read(), done.stderr
+
+
+def value_of(n0):
+    text, _ = evaluate(standard({'contact.n0': n0}, [('peak', 1)]))
+    return float(text.split()[0])
+
+
+def check():
+    variables = {'contact__n0': 0.3, 'contact__mu': 0.41}
+    responses = [('peak', 3), ('frequency', 1), ('modes__1__frequency', 0)]
+    text, _ = evaluate(standard(variables, responses, ['contact__mu', 'contact__n0']))
+    lines = text.splitlines()
+    assert [line.split()[1] for line in lines[:2]] == ['peak', 'frequency'], text
+    assert lines[2].startswith('[') and lines[2].endswith(']') and len(lines) == 3, text
+    other, _ = evaluate(aprepro(variables, responses, ['contact__mu', 'contact__n0']))
+    assert other == text, (other, text)
+
+    text, _ = evaluate(standard({'contact.n0': 0.3}, [('peak', 2)], ['contact.n0']))
+    gradient = float(text.strip('[] \n'))
+    step = 3e-4
+    a, b, c, d = (value_of(0.3 + k * step) for k in (-2, -1, 1, 2))
+    difference = (a - 8 * b + 8 * c - d) / (12 * step)
+    print(f'gradient {gradient:.9f}, by differences {difference:.9f}')
+    assert abs(gradient - difference) < 1e-6 * abs(gradient), (gradient, difference)
+
+    for text, code, said in (
+            (standard({'contact.n1': 1.0}, [('peak', 1)]), 2, 'is no key'),
+            (standard({'contact.n0': 0.3}, [('peek', 1)]), 2, 'is no output'),
+            (standard({'contact.mu': -1.0}, [('peak', 1)]), 2, 'contact.mu'),
+            (standard({'contact.n0': 0.3}, [('frequency', 2)], ['contact.n0']), 3,
+             'no derivative of frequency'),
+            (standard({'contact.n0': 0.3}, [('peak', 4)]), 3, 'no Hessian'),
+            ('nothing\n', 2, 'no parameters file')):
+        result, errors = evaluate(text, code)
+        assert result.startswith('FAIL'), result
+        assert said in errors, errors
+
+
+def main():
+    folder = tempfile.mkdtemp()
+    try:
+        for name in ('case.yaml', 'write_modal.py'):
+            shutil.copy(os.path.join(SCENE, name), folder)
+        os.chdir(folder)
+        subprocess.run([sys.executable, 'write_modal.py'], check=True)
+        with open('case.yaml') as source:
+            text = source.read()
+        with open('case.yaml', 'w') as out:
+            out.write(text.replace('n0: [-0.2 N, 0 N, 0.3 N, 1.0 N]', 'n0: 0.3 N'))
+        check()
+    finally:
+        shutil.rmtree(folder)
+
+
+main()
