@@ -122,7 +122,7 @@ static bool is_one_number(const case_file *file) {
 }
 
 double study_damping(const case_file *file) {
-  if (!is_one_number(file)) return 1;
+  if (!file || !is_one_number(file)) return 1;
   return file->damping.kind == MODAL_DAMPING_ALL ? file->damping.ratio : file->damping.loss;
 }
 

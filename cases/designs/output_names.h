@@ -41,7 +41,7 @@ int study_derivatives(int n_outputs, const study_output *output);
 void study_derivative(const case_file *file, int i, char name[STUDY_UNIT_TEXT],
                       char unit[STUDY_UNIT_TEXT], double *value);
 
-/* The value of that damping in a case. */
+/* The value of that damping in a case; 1 without one. */
 double study_damping(const case_file *file);
 
 #endif

@@ -49,7 +49,7 @@ static shb_status measure(case_model *model, row *out) {
   design_study              one;
   mhb_response             *r    = NULL;
   mhb_settings              full = model->settings;
-  SHB_TRY(design_study_create(0, OUTPUTS, 0, &one));
+  SHB_TRY(design_study_create(0, OUTPUTS, study_derivatives(OUTPUTS, output), &one));
   study_design *design = design_study_add(&one, NULL);
   double        began  = shb_processor_seconds();
   shb_status    status = design ? design_run(NULL, model, OUTPUTS, output, design) : SHB_ERR_IO;
