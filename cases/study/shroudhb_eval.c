@@ -8,6 +8,7 @@
 #include <unistd.h>
 
 #include "cases/commands/command.h"
+#include "cases/schema/case.h"
 #include "cases/study/dakota_files.h"
 #include "cases/study/design_run.h"
 #include "cases/study/modal_store.h"

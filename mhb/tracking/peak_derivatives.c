@@ -10,6 +10,9 @@
 /* The peak solved here is the one that was found if amplitude and frequency agree, relative. */
 static const double SAME_AMPLITUDE = 1e-4, SAME_FREQUENCY = 1e-3;
 
+/* The peak's matrices are dense: with more unknowns the derivatives are not judged. */
+enum { MOST_UNKNOWNS = 1300 };
+
 /* Newton's method for a peak ends at this residual, relative to the motion. */
 static const double SETTLED = 1e-10;
 
@@ -148,6 +151,7 @@ shb_status mhb_peak_derivatives_find(mhb_balance *balance, int output, mhb_size 
   const search s = {balance, output, size, x, omega, found};
   *out           = (mhb_peak_derivatives){.kind = MHB_PEAK_UNJUDGED};
   for (int i = 0; i < MHB_PEAK_PARAMETERS; i++) out->by[i] = NAN;
+  if (balance->n > MOST_UNKNOWNS) return SHB_OK;
   SHB_TRY(smooth(&s, out));
   if (out->kind == MHB_PEAK_SMOOTH || balance->n_pairs != 1) return SHB_OK;
   double *scratch = calloc((size_t)balance->n, sizeof *scratch);
