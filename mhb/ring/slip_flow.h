@@ -50,13 +50,14 @@ MHB_INLINE void mhb_slip_turn(double g0, double g1, double d0, double d1, double
                               double *w0, double *w1) {
   double span = low + high, S = span * span, D = d0 * d0 + d1 * d1;
   /* tanh(x)/x by its continued fraction: 4e-6 of tanh at x = 2, 4e-4 at 3 */
-  double num = (945 * S + 105 * D) * S + D * D, den = (945 * S + 420 * D) * S + 15 * D * D;
-  double scale = num / (span * den + 1e-300), t0 = scale * d0, t1 = scale * d1;
-  double square = t0 * t0 + t1 * t1, turn = 2 * (low + t0 * g0 + t1 * g1);
-  bool   far = D > 9 * S; /* the friction has turned along d */
-  double a0 = (1 - square) * g0 + turn * t0, a1 = (1 - square) * g1 + turn * t1;
-  *w0 = mhb_pick(far, d0, a0);
-  *w1 = mhb_pick(far, d1, a1);
+  double num = (945 * S + 105 * D) * S + D * D;
+  double den = span * ((945 * S + 420 * D) * S + 15 * D * D);
+  /* T = num/den d; the map is multiplied by den^2, as only its direction counts */
+  double keep = den * den - num * num * D;
+  double turn = 2 * num * (low * den + num * (d0 * g0 + d1 * g1));
+  bool   far  = D > 9 * S; /* the friction has turned along d */
+  *w0         = mhb_pick(far, d0, keep * g0 + turn * d0);
+  *w1         = mhb_pick(far, d1, keep * g1 + turn * d1);
 }
 
 /* The same for a general Ku, whose slider moves along Ku e: e is where its path is estimated. */
