@@ -11,6 +11,7 @@
 #include "postproc/inspect/value_range.h"
 
 enum { NAME = 256, MAX_DEPTH = 24, ATTRIBUTE = 80 };
+static const double MOST_SECONDS = 10; /* for the values of one dataset */
 
 /* One line of the output by columns. */
 typedef struct {
@@ -208,7 +209,7 @@ static void describe_dataset(hid_t dataset, post_tree_style style, line *l) {
   post_type_name(type, l->type);
   H5Tclose(type);
   put_shape(dataset, l->shape);
-  post_value_range(dataset, l->range);
+  post_value_range(dataset, MOST_SECONDS, l->range);
   attribute_text(dataset, "units", l->units, sizeof l->units);
   attribute_text(dataset, "long_name", l->about, sizeof l->about);
   if (style.verbose) all_attributes(dataset, l->about, sizeof l->about);

@@ -6,6 +6,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "mesh/base/clock.h"
 #include "postproc/draw/number_format.h"
 
 enum { PIECE = 1 << 18, MAX_STRINGS = 64, SHOWN_STRINGS = 4 };
@@ -13,6 +14,7 @@ enum { PIECE = 1 << 18, MAX_STRINGS = 64, SHOWN_STRINGS = 4 };
 typedef struct {
   double             lo, hi;
   unsigned long long finite, other;
+  double             part; /* of the values, that were read */
 } extent;
 
 /* Member names of a complex compound, {r, i} or {real, imag}; false if the type is none. */
@@ -151,7 +153,10 @@ static bool read_piece(hid_t dataset, hid_t space, hid_t type, const hsize_t *st
   return good;
 }
 
-static bool read_extent(hid_t dataset, hid_t space, hid_t type, int parts, extent *e) {
+/* Read piece by piece until all is read or the time is over. */
+static bool read_extent(hid_t dataset, hid_t space, hid_t type, int parts, double seconds,
+                        extent *e) {
+  double  end = shb_seconds() + seconds, all = (double)H5Sget_simple_extent_npoints(space);
   hsize_t dim[H5S_MAX_RANK] = {0}, piece[H5S_MAX_RANK] = {0}, start[H5S_MAX_RANK] = {0};
   int     rank   = H5Sget_simple_extent_dims(space, dim, NULL);
   double *values = malloc((size_t)PIECE * (size_t)parts * sizeof *values);
@@ -165,7 +170,8 @@ static bool read_extent(hid_t dataset, hid_t space, hid_t type, int parts, exten
     }
     good = good && read_piece(dataset, space, type, start, count, values);
     if (good) widen(e, values, (size_t)total, parts);
-  } while (good && next_piece(rank, dim, piece, start));
+  } while (good && shb_seconds() < end && next_piece(rank, dim, piece, start));
+  e->part = (double)(e->finite + e->other) / all;
   free(values);
   return good;
 }
@@ -184,6 +190,9 @@ static void put_extent(const extent *e, bool magnitude, char out[POST_VALUE_RANG
     used = (size_t)snprintf(out, POST_VALUE_RANGE, "%s%s … %s%s", bar, lo, hi, bar);
   if (e->finite > 0 && e->other > 0)
     snprintf(out + used, POST_VALUE_RANGE - used, ", %llu NaN", e->other);
+  used = strlen(out);
+  if (e->part < 1)
+    snprintf(out + used, POST_VALUE_RANGE - used, ", first %.2g %% read", 100 * e->part);
 }
 
 static void add_string(char out[POST_VALUE_RANGE], const char *text, size_t size, hssize_t i) {
@@ -213,30 +222,41 @@ static bool read_strings(hid_t dataset, hid_t space, hid_t type, hssize_t n,
   return good;
 }
 
-static void describe(hid_t dataset, hid_t space, hid_t type, char out[POST_VALUE_RANGE]) {
+/* Chunks of which none is in the file. */
+static bool not_written(hid_t dataset) {
+  hid_t list = H5Dget_create_plist(dataset);
+  bool  none = list >= 0 && H5Pget_layout(list) == H5D_CHUNKED && H5Dget_storage_size(dataset) == 0;
+  if (list >= 0) H5Pclose(list);
+  return none;
+}
+
+static void describe(hid_t dataset, hid_t space, hid_t type, double seconds,
+                     char out[POST_VALUE_RANGE]) {
   hssize_t n     = H5Sget_simple_extent_npoints(space);
   int      parts = 1;
   bool     good  = true;
   if (n == 0) {
     strcpy(out, "empty");
+  } else if (not_written(dataset)) {
+    strcpy(out, "not written");
   } else if (H5Tget_class(type) == H5T_STRING) {
     if (n <= MAX_STRINGS) good = read_strings(dataset, space, type, n, out);
   } else {
     hid_t  number = number_type(type, &parts);
-    extent e      = {INFINITY, -INFINITY, 0, 0};
+    extent e      = {.lo = INFINITY, .hi = -INFINITY};
     if (number < 0) return;
-    good = read_extent(dataset, space, number, parts, &e);
+    good = read_extent(dataset, space, number, parts, seconds, &e);
     if (good) put_extent(&e, parts == 2, out);
     H5Tclose(number);
   }
   if (!good) strcpy(out, "unreadable");
 }
 
-char *post_value_range(hid_t dataset, char out[POST_VALUE_RANGE]) {
+char *post_value_range(hid_t dataset, double seconds, char out[POST_VALUE_RANGE]) {
   hid_t space = H5Dget_space(dataset), type = H5Dget_type(dataset);
   out[0] = '\0';
   if (space >= 0 && type >= 0)
-    describe(dataset, space, type, out);
+    describe(dataset, space, type, seconds, out);
   else
     strcpy(out, "unreadable");
   if (type >= 0) H5Tclose(type);

@@ -11,8 +11,9 @@ enum { POST_VALUE_RANGE = 160 };
 char *post_type_name(hid_t type, char out[POST_VALUE_RANGE]);
 
 /* Range as text. Numbers: "103.6 … 2310", or one value if all are equal; magnitudes "|…|" of
- * complex {r, i}; ", 2 NaN" if some are no numbers. Strings: the first few. "empty", "unreadable";
- * "" for other types. Returns out. */
-char *post_value_range(hid_t dataset, char out[POST_VALUE_RANGE]);
+ * complex {r, i}; ", 2 NaN" if some are no numbers. Strings: the first few. "empty", "unreadable",
+ * "not written" if the file holds none of the values; "" for other types. Returns out.
+ *   seconds  in  the most that reading may take; then ", first 0.12 % read" follows */
+char *post_value_range(hid_t dataset, double seconds, char out[POST_VALUE_RANGE]);
 
 #endif

@@ -10,7 +10,8 @@ echo 'int LLVMFuzzerTestOneInput(const char *d, unsigned long n) { return !d && 
   { echo "skipped: clang has no fuzzer library"; exit 77; }
 cmake -S "$source" -B "$build" -G Ninja -Wno-dev -DCMAKE_C_COMPILER="$clang" \
   -DCMAKE_BUILD_TYPE=Debug -DSHROUDHB_FUZZ=ON -DOpenMP_C_FLAGS=-fopenmp=libgomp \
-  -DOpenMP_C_LIB_NAMES= >"$build.log" 2>&1 || { cat "$build.log"; exit 1; }
+  -DOpenMP_C_LIB_NAMES=gomp \
+  "-DOpenMP_gomp_LIBRARY=$(gcc -print-file-name=libgomp.so)" >"$build.log" 2>&1 || { cat "$build.log"; exit 1; }
 ninja -C "$build" fuzzers >>"$build.log" 2>&1 || { tail -30 "$build.log"; exit 1; }
 
 # inputs are files: in memory where that is there
