@@ -8,10 +8,11 @@ clang=$(command -v clang-14 || command -v clang) || { echo "skipped: no clang"; 
 echo 'int LLVMFuzzerTestOneInput(const char *d, unsigned long n) { return !d && n; }' |
   "$clang" -fsanitize=fuzzer -x c -o /dev/null - 2>/dev/null ||
   { echo "skipped: clang has no fuzzer library"; exit 77; }
+gomp=$(gcc -print-file-name=libgomp.so)
 cmake -S "$source" -B "$build" -G Ninja -Wno-dev -DCMAKE_C_COMPILER="$clang" \
   -DCMAKE_BUILD_TYPE=Debug -DSHROUDHB_FUZZ=ON -DOpenMP_C_FLAGS=-fopenmp=libgomp \
-  -DOpenMP_C_LIB_NAMES=gomp \
-  "-DOpenMP_gomp_LIBRARY=$(gcc -print-file-name=libgomp.so)" >"$build.log" 2>&1 || { cat "$build.log"; exit 1; }
+  -DOpenMP_C_LIB_NAMES=gomp -DOpenMP_gomp_LIBRARY="$gomp" >"$build.log" 2>&1 ||
+  { cat "$build.log"; exit 1; }
 ninja -C "$build" fuzzers >>"$build.log" 2>&1 || { tail -30 "$build.log"; exit 1; }
 
 # inputs are files: in memory where that is there
