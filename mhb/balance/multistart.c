@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "mhb/balance/subharmonics.h"
+#include "mhb/numerics/random.h"
 
 static const double TOLERANCE = 1e-10, SAME = 1e-5, SMALL = 1e-6;
 enum { MAX_STEPS = 40, MAX_HALVINGS = 6 };
@@ -27,18 +28,13 @@ shb_status mhb_solution_set_add(mhb_solution_set *set, int n, const double *x) {
   return SHB_OK;
 }
 
-static double uniform(unsigned long long *seed) {
-  *seed = *seed * 6364136223846793005ULL + 1442695040888963407ULL;
-  return (double)(*seed >> 11) / 4503599627370496. - 1;
-}
-
 /* A random motion with jumps of acceleration: harmonic k is bounded by that of the fundamental over
  * k^2. */
 static void draw(const mhb_balance *b, double size, unsigned long long *seed, double *x) {
   for (int row = 0; row < b->n / b->nb; row++)
     for (int j = 0; j < b->nb; j++) {
       int k              = (j + 1) / 2;
-      x[row * b->nb + j] = size * uniform(seed) / fmax(1, k * k);
+      x[row * b->nb + j] = size * mhb_random(seed) / fmax(1, k * k);
     }
 }
 

@@ -7,6 +7,7 @@
 #include <string.h>
 
 #include "mesh/base/constants.h"
+#include "mhb/numerics/random.h"
 
 static const double FIRST_BOUND = 0.05, LAST_BOUND = 0.8;
 
@@ -38,16 +39,11 @@ static void apply_flexibility(const leading *e, const double *F, const double *f
   for (int i = 0; i < e->n; i++) cblas_dscal(q, e->root[i], image + i * q, 1);
 }
 
-static double next_random(unsigned long long *seed) {
-  *seed = *seed * 6364136223846793005ULL + 1442695040888963407ULL;
-  return (double)(*seed >> 11) / 9007199254740992.0 - 0.5;
-}
-
 /* Subspace iteration with one block. 0: failed. */
 static int iterate(leading *e, const double *F, double *half, double *image, double *small) {
   int                n = e->n, q = e->block;
   unsigned long long seed = 3;
-  for (int i = 0; i < n * q; i++) e->vector[i] = next_random(&seed);
+  for (int i = 0; i < n * q; i++) e->vector[i] = 0.5 * mhb_random(&seed);
   for (int power = 0; power < POWERS; power++) {
     if (power > 0) memcpy(e->vector, image, sizeof(double) * (size_t)n * (size_t)q);
     if (LAPACKE_dgeqrf(LAPACK_ROW_MAJOR, n, q, e->vector, q, e->value) != 0 ||

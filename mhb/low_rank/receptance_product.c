@@ -7,6 +7,7 @@
 #include <string.h>
 
 #include "mesh/base/constants.h"
+#include "mhb/numerics/random.h"
 
 /* Singular values below it are left out, in the norm of the contact stiffness, where I is 1. */
 static const double NEGLIGIBLE = 1e-12;
@@ -38,11 +39,6 @@ typedef struct {
   double       *small;                     /* [columns][terms * columns] */
   double       *singular, *left, *work;
 } sketch;
-
-static double next_random(unsigned long long *seed) {
-  *seed = *seed * 6364136223846793005ULL + 1442695040888963407ULL;
-  return (double)(*seed >> 11) / 9007199254740992.0 - 0.5;
-}
 
 /* to += weight D^1/2 A D^1/2 from, D^1/2 = root; A of n columns. */
 static void add_scaled(const sketch *s, int n, int columns, int term, const double *A,
@@ -86,7 +82,7 @@ static int find_range(const mhb_receptance_product *p, sketch *s) {
   for (int t = 0; t < MHB_SMOOTH_TERMS; t++) {
     const double *A = source_of(p->receptance, t);
     if (!A) continue;
-    for (int i = 0; i < n * q; i++) s->random[i] = next_random(&seed);
+    for (int i = 0; i < n * q; i++) s->random[i] = 0.5 * mhb_random(&seed);
     add_scaled(s, n, q, t, A, s->random, s->Q);
   }
   return LAPACKE_dgeqrf(LAPACK_ROW_MAJOR, n, q, s->Q, q, s->singular) == 0 &&
@@ -119,7 +115,7 @@ static double left_out(const mhb_receptance_product *p, sketch *s, int rank) {
   for (int t = 0; t < MHB_SMOOTH_TERMS; t++) {
     const double *A = source_of(p->receptance, t);
     if (!A) continue;
-    for (int i = 0; i < PROBES * n; i++) probe[i] = next_random(&seed);
+    for (int i = 0; i < PROBES * n; i++) probe[i] = 0.5 * mhb_random(&seed);
     memset(image, 0, sizeof image);
     add_scaled(s, n, PROBES, t, A, probe, image);
     cblas_dgemm(CblasRowMajor, CblasTrans, CblasNoTrans, q, PROBES, n, 1, s->Q, q, probe, PROBES, 0,

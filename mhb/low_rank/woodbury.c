@@ -43,26 +43,19 @@ static int stiffness_holds(const mhb_woodbury *w, const mhb_law *law) {
 /* Arrays for a basis of this size. */
 static int make_room(mhb_woodbury *w, int size) {
   if (size <= w->room) return 1;
-  size_t r = (size_t)size;
-  free(w->T);
-  free(w->G);
-  free(w->KX);
-  free(w->pivot);
-  free(w->y);
-  free(w->Ky);
-  free(w->small);
-  free(w->rows);
-  w->T     = malloc(r * r * sizeof(double));
-  w->G     = malloc(r * r * sizeof(double));
-  w->KX    = malloc(r * sizeof(double));
-  w->pivot = malloc(r * sizeof(int));
-  w->y     = malloc(r * sizeof(double));
-  w->Ky    = malloc(r * sizeof(double));
-  w->small = malloc(r * sizeof(double));
-  w->rows  = malloc((size_t)(PAIRS_AT_ONCE * 3 * w->nb) * r * sizeof(double));
-  int ok   = w->T && w->G && w->KX && w->pivot && w->y && w->Ky && w->small && w->rows;
-  w->room  = ok ? size : 0;
-  return ok;
+  size_t     r = (size_t)size;
+  shb_arena *a = &w->of_basis;
+  shb_arena_free(a);
+  w->T     = shb_arena_take(a, r * r, sizeof(double));
+  w->G     = shb_arena_take(a, r * r, sizeof(double));
+  w->KX    = shb_arena_take(a, r, sizeof(double));
+  w->pivot = shb_arena_take(a, r, sizeof(int));
+  w->y     = shb_arena_take(a, r, sizeof(double));
+  w->Ky    = shb_arena_take(a, r, sizeof(double));
+  w->small = shb_arena_take(a, r, sizeof(double));
+  w->rows  = shb_arena_take(a, (size_t)(PAIRS_AT_ONCE * 3 * w->nb) * r, sizeof(double));
+  w->room  = a->failed ? 0 : size;
+  return !a->failed;
 }
 
 /* Another basis for the present stiffness. 0: there is no small one. */
@@ -89,19 +82,17 @@ shb_status mhb_woodbury_create(mhb_receptance_product *product, const mhb_law *l
   w->n         = w->n3 * w->nb;
   w->low       = low;
   w->high      = high;
-  w->stiffness = calloc((size_t)w->n3, sizeof(double));
-  w->force     = calloc((size_t)w->n, sizeof(double));
-  w->part      = calloc(2 * (size_t)w->n3, sizeof(double));
-  w->solution  = calloc((size_t)w->n + 1, sizeof(double));
-  w->border[0] = calloc((size_t)w->n + 1, sizeof(double));
-  w->border[1] = calloc((size_t)w->n + 1, sizeof(double));
+  w->stiffness = shb_arena_take(&w->arena, (size_t)w->n3, sizeof(double));
+  w->force     = shb_arena_take(&w->arena, (size_t)w->n, sizeof(double));
+  w->part      = shb_arena_take(&w->arena, 2 * (size_t)w->n3, sizeof(double));
+  w->solution  = shb_arena_take(&w->arena, (size_t)w->n + 1, sizeof(double));
+  w->border[0] = shb_arena_take(&w->arena, (size_t)w->n + 1, sizeof(double));
+  w->border[1] = shb_arena_take(&w->arena, (size_t)w->n + 1, sizeof(double));
   shb_status status =
-      w->stiffness && w->force && w->part && w->solution && w->border[0] && w->border[1]
-          ? mhb_gmres_create(w->n + 1, MHB_MOST_ITERATIONS, &w->gmres)
-          : SHB_ERR_IO;
+      w->arena.failed ? SHB_ERR_IO : mhb_gmres_create(w->n + 1, MHB_MOST_ITERATIONS, &w->gmres);
   if (status != SHB_OK) {
     mhb_woodbury_destroy(w);
-    SHB_FAIL(SHB_ERR_IO, "out of memory for %d contact pairs", w->n_pairs);
+    SHB_FAIL(SHB_ERR_IO, "out of memory for %d contact pairs", product->n / 3);
   }
   renew(w, law);
   *out = w;
@@ -112,20 +103,8 @@ void mhb_woodbury_destroy(mhb_woodbury *w) {
   if (!w) return;
   mhb_contact_basis_destroy(w->basis);
   mhb_gmres_destroy(w->gmres);
-  free(w->stiffness);
-  free(w->force);
-  free(w->part);
-  free(w->solution);
-  free(w->border[0]);
-  free(w->border[1]);
-  free(w->T);
-  free(w->G);
-  free(w->KX);
-  free(w->pivot);
-  free(w->y);
-  free(w->Ky);
-  free(w->small);
-  free(w->rows);
+  shb_arena_free(&w->of_basis);
+  shb_arena_free(&w->arena);
   free(w);
 }
 

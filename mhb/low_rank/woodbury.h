@@ -24,8 +24,7 @@ typedef enum {
   MHB_BLOCK_FULL    /* all harmonics are coupled */
 } mhb_block;
 
-/* Iterations at most; a basis that takes more than the usual number is made anew. */
-enum { MHB_MOST_ITERATIONS = 60, MHB_USUAL_ITERATIONS = 25 };
+enum { MHB_MOST_ITERATIONS = 60 };
 
 typedef struct {
   mhb_receptance_product *product; /* the caller's */
@@ -54,6 +53,8 @@ typedef struct {
   double *force, *part;   /* [n], [n3][2] */
   double *rows;           /* [16 pairs 3 nb][room] */
   double *solution;       /* [n+1] */
+
+  shb_arena arena, of_basis; /* the arrays; those whose size is that of the basis */
 } mhb_woodbury;
 
 /* On a product, which must outlive it; excitation frequencies low..high rad/s. SHB_ERR_IO: no
