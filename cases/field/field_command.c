@@ -6,6 +6,7 @@
 #include "postproc/analysis/file_origin.h"
 #include "postproc/field/field_grid.h"
 #include "postproc/field/field_scene.h"
+#include "postproc/field/kept_point.h"
 
 enum { STEPS = 24, PATH = 4096 };
 
@@ -25,15 +26,6 @@ static bool is_open_or_stuck(const mhb_branch *b) {
   return b->kind == MHB_BRANCH_OPEN || b->kind == MHB_BRANCH_STUCK;
 }
 
-static int highest_kept(const mhb_response *response, const mhb_branch *b) {
-  int at = 0;
-  for (int i = 1; i < b->modal.n; i++)
-    if (mhb_response_output(response, b, b->modal.point[i]) >
-        mhb_response_output(response, b, b->modal.point[at]))
-      at = i;
-  return at;
-}
-
 /* Kept peaks, and the highest kept point of each curve, highest first. */
 static int list_peaks(const mhb_response *response, const field_options *o, bool limits,
                       candidate *list) {
@@ -41,7 +33,7 @@ static int list_peaks(const mhb_response *response, const field_options *o, bool
   for (int i = 0; i < response->n_branches; i++) {
     const mhb_branch *b = &response->branch[i];
     if (o->branch >= 0 ? o->branch != i : is_open_or_stuck(b) != limits) continue;
-    const int highest = b->modal.n > 0 ? highest_kept(response, b) : -1;
+    const int highest = b->modal.n > 0 ? post_highest_kept(response, b) : -1;
     for (int a = 0; a < b->modal.n; a++) {
       const int point = b->modal.point[a];
       if (a == highest || b->special[point] == MHB_PEAK)

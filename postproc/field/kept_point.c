@@ -17,3 +17,12 @@ void post_put_kept_point(const mhb_branch *b, int branch, int point, post_buffer
   post_put(out, ",%d,%s,", point, specials[b->special[point]]);
   if (b->stable[point] >= 0) post_put(out, "%d", b->stable[point]);
 }
+
+int post_highest_kept(const mhb_response *response, const mhb_branch *b) {
+  int at = 0;
+  for (int i = 1; i < b->modal.n; i++)
+    if (mhb_response_output(response, b, b->modal.point[i]) >
+        mhb_response_output(response, b, b->modal.point[at]))
+      at = i;
+  return at;
+}

@@ -306,3 +306,16 @@ shb_status post_peak_stress(const post_blade_field *field, int n_harmonics, cons
   free(pending);
   return SHB_OK;
 }
+
+shb_status post_worst_places(const post_blade_field *field, const mhb_branch *branch, int kept,
+                             const post_fatigue *fatigue, post_place place[POST_PLACES], int *n) {
+  const size_t rows   = 2 * ((size_t)branch->n_harmonics + 1);
+  double      *stress = malloc(rows * POST_STRESSES * (size_t)field->n_nodes * sizeof *stress + 1);
+  SHB_CHECK(stress, SHB_ERR_IO, "out of memory for the stress of %d nodes", field->n_nodes);
+  shb_status status = post_blade_stress(field, branch, kept, stress);
+  if (status == SHB_OK)
+    status = post_peak_stress(field, post_blade_harmonics(branch, field->n_modes, kept), stress,
+                              fatigue, place, n);
+  free(stress);
+  return status;
+}

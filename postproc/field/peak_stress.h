@@ -44,6 +44,10 @@ typedef struct {
 shb_status post_peak_stress(const post_blade_field *field, int n_harmonics, const double *stress,
                             const post_fatigue *fatigue, post_place place[POST_PLACES], int *n);
 
+/* The same at a kept point, from its amplitudes. Errors: SHB_ERR_IO no memory. */
+shb_status post_worst_places(const post_blade_field *field, const mhb_branch *branch, int kept,
+                             const post_fatigue *fatigue, post_place place[POST_PLACES], int *n);
+
 /* Signed von Mises stress; greatest modulus of its principal stresses. Pa. */
 double post_signed_mises(const double stress[POST_STRESSES]);
 double post_greatest_principal(const double stress[POST_STRESSES]);

@@ -1,9 +1,9 @@
 #include "postproc/field/stress_section.h"
 
 #include <math.h>
-#include <stdlib.h>
 
 #include "postproc/draw/number_format.h"
+#include "postproc/field/kept_point.h"
 
 enum { DIGITS = 4, MOST_CURVES = 40 };
 
@@ -124,36 +124,15 @@ static void put_all(const post_blade_field *field, const worst *list, int n, boo
   post_put(out, "</section>\n");
 }
 
-static int highest_kept(const mhb_response *response, const mhb_branch *b) {
-  int at = 0;
-  for (int i = 1; i < b->modal.n; i++)
-    if (mhb_response_output(response, b, b->modal.point[i]) >
-        mhb_response_output(response, b, b->modal.point[at]))
-      at = i;
-  return at;
-}
-
 /* Curves with kept points: nonlinear ones, or the others. */
 static int choose(const mhb_response *response, bool nonlinear, worst *list) {
   int n = 0;
   for (int i = 0; i < response->n_branches && n < MOST_CURVES; i++) {
     const mhb_branch *b = &response->branch[i];
     if (b->modal.n == 0 || (b->kind == MHB_BRANCH_NONLINEAR) != nonlinear) continue;
-    list[n++] = (worst){.branch = b, .index = i, .kept = highest_kept(response, b)};
+    list[n++] = (worst){.branch = b, .index = i, .kept = post_highest_kept(response, b)};
   }
   return n;
-}
-
-static shb_status evaluate(const post_blade_field *field, const post_fatigue *fatigue, worst *w) {
-  const size_t rows = 2 * ((size_t)w->branch->n_harmonics + 1), n = (size_t)field->n_nodes;
-  double      *stress = malloc(rows * POST_STRESSES * n * sizeof *stress + 1);
-  SHB_CHECK(stress, SHB_ERR_IO, "out of memory for the stress of %zu nodes", n);
-  shb_status status = post_blade_stress(field, w->branch, w->kept, stress);
-  if (status == SHB_OK)
-    status = post_peak_stress(field, post_blade_harmonics(w->branch, field->n_modes, w->kept),
-                              stress, fatigue, w->place, &w->n);
-  free(stress);
-  return status;
 }
 
 shb_status post_stress_section(const post_blade_field *field, const mhb_response *response,
@@ -161,7 +140,9 @@ shb_status post_stress_section(const post_blade_field *field, const mhb_response
   worst list[MOST_CURVES];
   int   n = choose(response, true, list);
   if (n == 0) n = choose(response, false, list);
-  for (int i = 0; i < n; i++) SHB_TRY(evaluate(field, fatigue, &list[i]));
+  for (int i = 0; i < n; i++)
+    SHB_TRY(
+        post_worst_places(field, list[i].branch, list[i].kept, fatigue, list[i].place, &list[i].n));
   if (n > 0) put_all(field, list, n, post_fatigue_given(fatigue), out);
   SHB_CHECK(!out->failed, SHB_ERR_IO, "out of memory for the stress at the peaks");
   return SHB_OK;

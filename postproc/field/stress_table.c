@@ -1,6 +1,5 @@
 #include "postproc/field/stress_table.h"
 
-#include <stdlib.h>
 
 #include "postproc/field/kept_point.h"
 
@@ -18,14 +17,11 @@ static void put_place(const mhb_branch *b, int branch, int point, const post_bla
 }
 
 static shb_status put_point(const post_blade_field *field, const mhb_branch *b, int branch,
-                            int kept, const post_fatigue *fatigue, double *stress,
-                            post_buffer *out) {
+                            int kept, const post_fatigue *fatigue, post_buffer *out) {
   const int  point = b->modal.point[kept];
   post_place place[POST_PLACES];
   int        n;
-  SHB_TRY(post_blade_stress(field, b, kept, stress));
-  SHB_TRY(post_peak_stress(field, post_blade_harmonics(b, field->n_modes, kept), stress, fatigue,
-                           place, &n));
+  SHB_TRY(post_worst_places(field, b, kept, fatigue, place, &n));
   for (int i = 0; i < n; i++) put_place(b, branch, point, field, i, &place[i], out);
   return SHB_OK;
 }
@@ -46,16 +42,12 @@ shb_status post_stress_table(const post_blade_field *field, const mhb_response *
   for (int i = 0; i < response->n_branches && status == SHB_OK; i++) {
     const mhb_branch *b = &response->branch[i];
     if (b->modal.n == 0) continue;
-    const size_t rows    = 2 * ((size_t)b->n_harmonics + 1);
-    const int    highest = highest_point(response, b);
-    double *stress = malloc(rows * POST_STRESSES * (size_t)field->n_nodes * sizeof *stress + 1);
-    SHB_CHECK(stress, SHB_ERR_IO, "out of memory for the stress of %d nodes", field->n_nodes);
+    const int highest = highest_point(response, b);
     for (int a = 0; a < b->modal.n && status == SHB_OK; a++) {
       int point = b->modal.point[a];
       if (b->modal.n < b->n_points || b->special[point] == MHB_PEAK || point == highest)
-        status = put_point(field, b, i, a, fatigue, stress, out);
+        status = put_point(field, b, i, a, fatigue, out);
     }
-    free(stress);
   }
   return status;
 }

@@ -37,15 +37,7 @@ shb_status post_stress_put(const post_stress_source *source, const mhb_branch *b
     post_json_null(json, "stress");
     return SHB_OK;
   }
-  const size_t rows   = 2 * ((size_t)branch->n_harmonics + 1);
-  double      *stress = malloc(rows * POST_STRESSES * (size_t)field->n_nodes * sizeof *stress + 1);
-  SHB_CHECK(stress, SHB_ERR_IO, "out of memory for the stress of %d nodes", field->n_nodes);
-  shb_status status = post_blade_stress(field, branch, kept, stress);
-  if (status == SHB_OK)
-    status = post_peak_stress(field, post_blade_harmonics(branch, field->n_modes, kept), stress,
-                              &fatigue, place, &n);
-  free(stress);
-  SHB_TRY(status);
+  SHB_TRY(post_worst_places(field, branch, kept, &fatigue, place, &n));
   if (n > 0)
     put_place(field, &place[0], json);
   else
