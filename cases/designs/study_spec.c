@@ -123,36 +123,16 @@ static const case_node *make_designs(reading *r, const case_node *root) {
   return vary || !uncertain ? at : uncertain;
 }
 
-/* The first line of the messages of a case, without the name of its file. */
-static void first_line(const char *text, const char *path, char *out, size_t size) {
-  size_t n = strlen(path);
-  if (strncmp(text, path, n) == 0 && text[n] == ':') text += n + 1;
-  const char *error = strstr(text, "error: ");
-  if (error) text = error + strlen("error: ");
-  snprintf(out, size, "%.*s", (int)strcspn(text, "\n"), text);
-}
-
 /* Read every design as a case, and report the first that are refused. */
 static void check_designs(reading *r, const case_node *at) {
   study_spec *s   = r->spec;
   int         bad = 0;
   s->digest       = calloc((size_t)s->n_designs + 1, sizeof *s->digest);
   for (int d = 0; s->digest && d < s->n_designs; d++) {
-    char     *text = NULL, line[512];
-    size_t    size = 0;
-    FILE     *out  = open_memstream(&text, &size);
-    case_file file;
-    if (!out) return;
-    shb_status status =
-        study_spec_design(s, s->design + (size_t)d * (size_t)s->keys.n, NULL, NULL, out, &file);
-    if (status == SHB_OK) {
-      digest_design(&file, s->inputs, s->n_outputs, s->output, s->digest[d]);
-      case_free(&file);
-    }
-    fclose(out);
-    first_line(text, s->case_path, line, sizeof line);
-    free(text);
-    if (status != SHB_OK && bad++ < TOLD)
+    char line[512];
+    bool good = study_spec_digest(s, s->design + (size_t)d * (size_t)s->keys.n, s->digest[d], line,
+                                  sizeof line);
+    if (!good && bad++ < TOLD)
       case_issue_add(&r->issues, at->line, at->column, NULL, "design %d: %s", d + 1, line);
   }
   if (bad > TOLD)
@@ -289,4 +269,30 @@ shb_status study_spec_design(const study_spec *s, const double *value, const cha
   if (status == SHB_OK) status = case_read_with(s->case_path, &overrides, STAGES, errors, file);
   for (int i = 0; i < 2 * STUDY_MAX_KEYS; i++) free(words[i]);
   return status;
+}
+
+/* The first line of the messages of a case, without the name of its file. */
+static void first_line(const char *text, const char *path, char *out, size_t size) {
+  size_t n = strlen(path);
+  if (strncmp(text, path, n) == 0 && text[n] == ':') text += n + 1;
+  const char *error = strstr(text, "error: ");
+  if (error) text = error + strlen("error: ");
+  snprintf(out, size, "%.*s", (int)strcspn(text, "\n"), text);
+}
+
+bool study_spec_digest(const study_spec *s, const double *value, char digest[DIGEST_TEXT],
+                       char *why, size_t size) {
+  char     *text = NULL;
+  size_t    length;
+  case_file file;
+  FILE     *messages = open_memstream(&text, &length);
+  digest[0] = why[0] = '\0';
+  if (!messages) return false;
+  bool good = study_spec_design(s, value, NULL, NULL, messages, &file) == SHB_OK;
+  if (good) digest_design(&file, s->inputs, s->n_outputs, s->output, digest);
+  if (good) case_free(&file);
+  fclose(messages);
+  if (!good && text) first_line(text, s->case_path, why, size);
+  free(text);
+  return good;
 }

@@ -6,6 +6,7 @@
 #include <stdbool.h>
 #include <stdio.h>
 
+#include "cases/designs/digest.h"
 #include "cases/designs/output_names.h"
 #include "cases/designs/study_optimise.h"
 #include "cases/designs/study_plan.h"
@@ -24,10 +25,10 @@ typedef struct {
   int            n_outputs;
   study_output   output[STUDY_MAX_OUTPUTS];
   int            n_designs;
-  double        *design; /* [n_designs][keys.n]; of an optimisation study_optimise_starts */
-  char (*digest)[17];    /* [n_designs] of everything the outputs depend on, if checked */
-  char     *inputs;      /* fingerprints of the files that the case reads */
-  case_file base;        /* the case as it is */
+  double        *design;       /* [n_designs][keys.n]; of an optimisation study_optimise_starts */
+  char (*digest)[DIGEST_TEXT]; /* [n_designs] of everything the outputs depend on, if checked */
+  char     *inputs;            /* fingerprints of the files that the case reads */
+  case_file base;              /* the case as it is */
 } study_spec;
 
 /* Read and check a study file, its case and its table. All errors are printed to errors with line,
@@ -43,6 +44,12 @@ void       study_spec_free(study_spec *spec);
 /* Read a case with the values of a design. Errors as of case_read, printed to errors. */
 shb_status study_spec_design(const study_spec *spec, const double *value, const char *name,
                              const char *into, FILE *errors, case_file *file);
+
+/* Read a case with the values of a design as its digest.
+ *   why  out  [size] the first fault of a case that is refused, "" if none is known
+ * False: it is refused, or there is no memory; the digest is "" then. */
+bool study_spec_digest(const study_spec *spec, const double *value, char digest[DIGEST_TEXT],
+                       char *why, size_t size);
 
 /* Words "--set", "PATH=VALUE", ... of a design; malloc'ed texts, at most [2 keys.n]. Returns their
  * number; -1: no memory. */

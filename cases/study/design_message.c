@@ -71,3 +71,14 @@ shb_status design_message_unpack(const char *bytes, size_t size, int n_outputs, 
   move_body(false, (char *)bytes + sizeof h, &h, d);
   return SHB_OK;
 }
+
+shb_status design_message_copy(const study_design *from, int n_outputs, int n_derivatives,
+                               study_design *to) {
+  char  *bytes;
+  size_t size;
+  SHB_TRY(design_message_pack(from, n_outputs, n_derivatives, &bytes, &size));
+  shb_status status = design_message_unpack(bytes, size, n_outputs, n_derivatives, to);
+  to->seconds       = 0;
+  free(bytes);
+  return status;
+}

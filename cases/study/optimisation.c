@@ -5,7 +5,6 @@
 #include <string.h>
 
 #include "cases/designs/digest.h"
-#include "cases/schema/case.h"
 #include "cases/study/design_message.h"
 #include "cases/study/optimiser.h"
 
@@ -72,27 +71,6 @@ static double unit_of(const study_key *key, double value) {
                   : (value - key->from) / (key->to - key->from);
 }
 
-/* Digest of the values; "" if the case refuses them, with the reason. */
-static void digest_of(const optimisation *o, const double *value, char digest[DIGEST_TEXT],
-                      char *why, size_t size) {
-  const study_spec *s    = o->spec;
-  char             *text = NULL;
-  size_t            length;
-  case_file         file;
-  FILE             *out = open_memstream(&text, &length);
-  digest[0] = why[0] = '\0';
-  if (!out) return;
-  if (study_spec_design(s, value, NULL, NULL, out, &file) == SHB_OK) {
-    digest_design(&file, s->inputs, s->n_outputs, s->output, digest);
-    case_free(&file);
-  }
-  fclose(out);
-  const char *error = text ? strstr(text, "error: ") : NULL;
-  if (error) error += strlen("error: ");
-  if (error) snprintf(why, size, "%.*s", (int)strcspn(error, "\n"), error);
-  free(text);
-}
-
 static int find(const design_study *s, const char *digest) {
   for (int i = 0; i < s->n && digest[0]; i++)
     if (strcmp(s->design[i].digest, digest) == 0) return i;
@@ -103,18 +81,11 @@ static int find(const design_study *s, const char *digest) {
 static bool take_known(optimisation *o, study_design *to) {
   design_study *s = o->study;
   for (int i = 0; i < o->n_known; i++) {
-    char  *bytes = NULL;
-    size_t size;
-    int    at = find(&o->known[i], to->digest);
+    int at = find(&o->known[i], to->digest);
     if (at < 0) continue;
     const study_design *from = &o->known[i].design[at];
     if (from->state == STUDY_WAITING || from->state == STUDY_FAILED) continue;
-    if (design_message_pack(from, s->n_outputs, s->n_derivatives, &bytes, &size) != SHB_OK)
-      return false;
-    bool good = design_message_unpack(bytes, size, s->n_outputs, s->n_derivatives, to) == SHB_OK;
-    free(bytes);
-    to->seconds = 0;
-    return good;
+    return design_message_copy(from, s->n_outputs, s->n_derivatives, to) == SHB_OK;
   }
   return false;
 }
@@ -127,7 +98,7 @@ static int design_at(optimisation *o, const double *point, bool *open) {
   char              digest[DIGEST_TEXT], why[512];
   *open = false;
   for (int k = 0; k < keys->n; k++) value[k] = key_at(&keys->key[k], point[k]);
-  digest_of(o, value, digest, why, sizeof why);
+  study_spec_digest(o->spec, value, digest, why, sizeof why);
   int known = find(o->study, digest);
   if (known >= 0) return known;
   study_design *d = design_study_add(o->study, value);

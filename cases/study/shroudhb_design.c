@@ -3,8 +3,6 @@
 #include <cblas.h>
 #include <omp.h>
 #include <stdio.h>
-#include <stdlib.h>
-#include <time.h>
 
 #include "cases/commands/command.h"
 #include "cases/schema/case.h"
@@ -12,6 +10,7 @@
 #include "cases/study/design_process.h"
 #include "cases/study/design_run.h"
 #include "cases/study/modal_store.h"
+#include "mesh/base/clock.h"
 #include "mesh/base/progress.h"
 
 static const char usage[] =
@@ -24,12 +23,6 @@ typedef struct {
   study_spec  spec;
   modal_store store;
 } server;
-
-static double cpu_seconds(void) {
-  struct timespec t = {0};
-  clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &t);
-  return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
-}
 
 /* The outputs of a design. What is wrong with a design becomes its reason. */
 static shb_status evaluate(server *s, const double *value, study_design *design) {
@@ -51,7 +44,7 @@ static shb_status evaluate(server *s, const double *value, study_design *design)
 static shb_status compute(void *context, const double *value, char **bytes, size_t *size) {
   server       *s = context;
   design_study  one;
-  double        began  = cpu_seconds();
+  double        began  = shb_processor_seconds();
   int           by     = study_derivatives(s->spec.n_outputs, s->spec.output);
   shb_status    status = design_study_create(s->spec.keys.n, s->spec.n_outputs, by, &one);
   study_design *design = status == SHB_OK ? design_study_add(&one, value) : NULL;
@@ -59,7 +52,7 @@ static shb_status compute(void *context, const double *value, char **bytes, size
     status = shb_fail(SHB_ERR_IO, __FILE__, __LINE__, "out of memory");
   if (status == SHB_OK) status = evaluate(s, value, design);
   if (status == SHB_OK) {
-    design->seconds = cpu_seconds() - began;
+    design->seconds = shb_processor_seconds() - began;
     status          = design_message_pack(design, s->spec.n_outputs, by, bytes, size);
   }
   design_study_free(&one);

@@ -48,9 +48,8 @@ static shb_status run_design(const study_spec *spec, int design, const command_o
   enum { MORE = 10 };
   char        *words[2 * STUDY_MAX_KEYS + MORE] = {NULL}, name[3 * CASE_NAME], run[] = "run";
   char         set[] = "--set", into[] = "--into", quiet[] = "--quiet";
-  int          n     = 0;
-  char        *store = study_path(spec, ".study.d");
-  design_study done  = {0};
+  int          n    = 0;
+  design_study done = {0};
   if (spec->optimise.wanted) SHB_TRY(read_designs(spec, &done));
   int n_designs = spec->optimise.wanted ? done.n : spec->n_designs;
   SHB_CHECK(design >= 1 && design <= n_designs, SHB_ERR_INPUT,
@@ -68,7 +67,6 @@ static shb_status run_design(const study_spec *spec, int design, const command_o
                             : spec->design + (size_t)(design - 1) * (size_t)spec->keys.n;
   int           sets  = study_spec_words(spec, value, words + n);
   if (sets >= 0) words[n + sets] = spec->case_path;
-  free(store);
   SHB_CHECK(sets >= 0 && words[0], SHB_ERR_IO, "out of memory");
   execvp(words[0], words);
   SHB_FAIL(SHB_ERR_IO, "%s: cannot be started: %s", words[0], strerror(errno));

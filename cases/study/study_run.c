@@ -114,20 +114,6 @@ static shb_status find_twins(running *r) {
   return SHB_OK;
 }
 
-/* Copy the result of a design with equal inputs. */
-static shb_status copy_result(const design_study *from_study, const study_design *from,
-                              design_study *to_study, study_design *to) {
-  char  *bytes;
-  size_t size;
-  (void)from_study;
-  SHB_TRY(design_message_pack(from, to_study->n_outputs, to_study->n_derivatives, &bytes, &size));
-  shb_status status =
-      design_message_unpack(bytes, size, to_study->n_outputs, to_study->n_derivatives, to);
-  to->seconds = 0;
-  free(bytes);
-  return status;
-}
-
 /* Take over the results that another file has. A failure of a process is tried again. */
 static shb_status take_known(running *r, const design_study *known) {
   design_study *s = r->study;
@@ -149,7 +135,7 @@ static shb_status take_known(running *r, const design_study *known) {
       continue;
     const study_design *from = &known->design[list[low].design];
     if (from->state == STUDY_WAITING || from->state == STUDY_FAILED) continue;
-    status      = copy_result(known, from, s, &s->design[i]);
+    status      = design_message_copy(from, s->n_outputs, s->n_derivatives, &s->design[i]);
     r->given[i] = true;
     r->n_done++;
   }
@@ -256,7 +242,8 @@ static shb_status copy_twins(running *r) {
   for (int i = 0; i < r->study->n; i++) {
     const study_design *from = r->twin[i] >= 0 ? &r->study->design[r->twin[i]] : NULL;
     if (r->given[i] || !from || from->state == STUDY_WAITING) continue;
-    SHB_TRY(copy_result(r->study, from, r->study, &r->study->design[i]));
+    SHB_TRY(design_message_copy(from, r->study->n_outputs, r->study->n_derivatives,
+                                &r->study->design[i]));
     r->n_done++;
   }
   return SHB_OK;
