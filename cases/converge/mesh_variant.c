@@ -7,7 +7,7 @@
 #include <string.h>
 #include <sys/stat.h>
 
-#include "cases/commands/subprocess.h"
+#include "cases/commands/stage.h"
 #include "cases/converge/resized_case.h"
 #include "cases/schema/case.h"
 #include "cases/schema/case_paths.h"
@@ -28,21 +28,12 @@ static char *join(const char *folder, const char *leaf) {
   return path;
 }
 
-/* Runs one stage of a case file, which prints its own messages on stderr. */
+/* Runs a stage. Its exit code is the status; its own message is the only one. */
 static shb_status run_stage(const char *stage, const command_options *options,
                             subprocess_result *result) {
-  char        name[32];
-  const char *words[COMMAND_WORDS];
-  snprintf(name, sizeof name, "shroudhb-%s", stage);
-  char *program = subprocess_program(name);
-  SHB_CHECK(program, SHB_ERR_IO, "out of memory");
-  words[0] = program;
-  command_forward(options, words, 1);
-  shb_status status = subprocess_run((char *const *)words, result);
-  free(program);
-  if (status == SHB_OK && result->code != 0)
-    return shb_fail((shb_status)result->code, __FILE__, __LINE__, "%s", "");
-  return status;
+  SHB_TRY(stage_run(stage, options, result));
+  return result->code == 0 ? SHB_OK
+                           : shb_fail((shb_status)result->code, __FILE__, __LINE__, "%s", "");
 }
 
 /* Unknowns of the finite-element model in a modal file written by the modal stage. */

@@ -5,7 +5,7 @@
 #include <string.h>
 #include <unistd.h>
 
-#include "cases/commands/subprocess.h"
+#include "cases/commands/stage.h"
 #include "cases/parse/damping.h"
 #include "cases/schema/case.h"
 #include "cases/schema/case_paths.h"
@@ -45,22 +45,6 @@ static void print_results(const case_file *file, bool no_report, int code) {
   fflush(stdout);
 }
 
-static shb_status run_stage(const char *stage, const command_options *options,
-                            subprocess_result *result) {
-  char        name[32];
-  const char *words[COMMAND_WORDS];
-  snprintf(name, sizeof name, "shroudhb-%s", stage);
-  char *program = subprocess_program(name);
-  SHB_CHECK(program, SHB_ERR_IO, "out of memory");
-  words[0] = program;
-  int n    = 1;
-  if (options->no_report && strcmp(stage, "post") == 0) words[n++] = "--no-report";
-  command_forward(options, words, n);
-  shb_status status = subprocess_run((char *const *)words, result);
-  free(program);
-  return status;
-}
-
 /* A response that has not converged everywhere is still reported. Modes that have not converged
  * stop the run. */
 static bool goes_on(int stage, int code) {
@@ -74,7 +58,7 @@ static shb_status run_stages(const case_file *file, const command_options *optio
                              subprocess_result result[N_STAGES]) {
   *code = SHB_OK;
   for (int i = file->modal_file ? 2 : 0; i < N_STAGES; i++) {
-    SHB_TRY(run_stage(stage_name[i], options, &result[i]));
+    SHB_TRY(stage_run(stage_name[i], options, &result[i]));
     if (result[i].code == SHB_OK) continue;
     *code = result[i].code;
     if (!goes_on(i, *code)) return SHB_OK;
