@@ -58,6 +58,18 @@ static void free_branch(mhb_branch *branch) {
   free_modal(&branch->modal);
 }
 
+const char *mhb_branch_kind_name(mhb_branch_kind kind) {
+  static const char *const name[MHB_N_BRANCH_KINDS] = {"nonlinear", "open", "stuck", "integration",
+                                                       "tracked"};
+  return name[kind];
+}
+
+const char *mhb_special_name(int special) {
+  static const char *const name[MHB_N_SPECIALS] = {"",     "fold",           "peak",
+                                                   "flip", "Neimark-Sacker", "optimum"};
+  return name[special];
+}
+
 bool mhb_response_is_linear(const mhb_response *r, const mhb_branch *b, int point) {
   const double *share = b->state + 3 * (size_t)point * (size_t)r->n_pairs;
   for (int a = 0; a < r->n_pairs; a++)

@@ -15,6 +15,11 @@ mhb_response *mhb_response_like(const mhb_response *response);
 shb_status mhb_response_interfaces(mhb_response *response, int n, char *const *name,
                                    const int *interface, int lead);
 
+/* Names in files and tables: of a kind of branch, such as "nonlinear"; of special, "" for
+ * MHB_ORDINARY. */
+const char *mhb_branch_kind_name(mhb_branch_kind kind);
+const char *mhb_special_name(int special);
+
 /* Whether all contacts stick or are open throughout, at a point. */
 bool mhb_response_is_linear(const mhb_response *response, const mhb_branch *branch, int point);
 /* Amplitude at the excitation's frequency, m; its square is the sum over the three components.

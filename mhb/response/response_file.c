@@ -15,9 +15,6 @@ enum { RESPONSE_VERSION = 1, MAX_COUNT = 100000 };
 static const char *const origin_name[] = {"end", "search", "flip", "aside"};
 enum { N_ORIGINS = sizeof origin_name / sizeof *origin_name };
 
-static const char *const kind_name[] = {"nonlinear", "open", "stuck", "integration", "tracked"};
-enum { N_KINDS = sizeof kind_name / sizeof *kind_name };
-
 /* ---- writing ---- */
 
 static const char *scale_of(char letter) {
@@ -287,7 +284,7 @@ static shb_status write_modal(hid_t group, const mhb_response *response, const m
 }
 
 static shb_status fill_branch(hid_t group, const mhb_response *response, const mhb_branch *branch) {
-  SHB_TRY(h5_write_attribute_text(group, ".", "kind", kind_name[branch->kind]));
+  SHB_TRY(h5_write_attribute_text(group, ".", "kind", mhb_branch_kind_name(branch->kind)));
   SHB_TRY(h5_write_attribute_text(group, ".", "reason", branch->reason));
   SHB_TRY(h5_write_attribute_int(group, ".", "complete", branch->complete));
   if (!branch->searched) SHB_TRY(h5_write_attribute_int(group, ".", "searched", 0));
@@ -479,8 +476,10 @@ static shb_status read_kind(hid_t group, const char *path, int index, mhb_branch
   char *text = NULL;
   SHB_TRY(h5_read_attribute_text(group, ".", "kind", &text));
   int kind = 0;
-  while (text && kind < N_KINDS && strcmp(text, kind_name[kind]) != 0) kind++;
-  bool known = text && kind < N_KINDS;
+  while (text && kind < MHB_N_BRANCH_KINDS &&
+         strcmp(text, mhb_branch_kind_name((mhb_branch_kind)kind)) != 0)
+    kind++;
+  bool known = text && kind < MHB_N_BRANCH_KINDS;
   free(text);
   SHB_CHECK(known, SHB_ERR_INPUT,
             "%s: /branch_%d: attribute kind must be nonlinear, open, stuck, integration or tracked",

@@ -7,14 +7,10 @@ void post_put_cell(post_buffer *out, double value) {
 }
 
 void post_put_kept_point(const mhb_branch *b, int branch, int point, post_buffer *out) {
-  static const char *const kinds[MHB_N_BRANCH_KINDS] = {"nonlinear", "open", "stuck", "integration",
-                                                        "tracked"};
-  static const char *const specials[MHB_N_SPECIALS]  = {"",     "fold",           "peak",
-                                                        "flip", "Neimark-Sacker", "optimum"};
-  post_put(out, "%d,%s", branch, kinds[b->kind]);
+  post_put(out, "%d,%s", branch, mhb_branch_kind_name(b->kind));
   post_put_cell(out, b->kind == MHB_BRANCH_NONLINEAR ? b->n0[point] : NAN);
   post_put_cell(out, b->frequency[point]);
-  post_put(out, ",%d,%s,", point, specials[b->special[point]]);
+  post_put(out, ",%d,%s,", point, mhb_special_name(b->special[point]));
   if (b->stable[point] >= 0) post_put(out, "%d", b->stable[point]);
 }
 

@@ -79,7 +79,7 @@ static void put_stability(const mhb_response *response, const mhb_branch *branch
                           post_buffer *out) {
   static const char *const judged[] = {"no",        "multipliers", "marginal",
                                        "undecided", "neighbours",  "folds"};
-  static const char *const loss[]   = {"", "fold", "flip", "Neimark-Sacker", "optimum"};
+  static const char *const loss[]   = {"", "fold", "flip", "Neimark-Sacker"};
   int                      kept     = response->n_multipliers;
   if (branch->kind != MHB_BRANCH_NONLINEAR) {
     post_put(out, ",,,");
@@ -109,10 +109,9 @@ static void put_lasting(const mhb_branch *branch, int point, post_buffer *out) {
 
 static void put_quality(const mhb_response *response, const mhb_branch *branch, int point,
                         post_buffer *out) {
-  static const char *const special[] = {"", "fold", "peak", "flip", "Neimark-Sacker"};
-  static const char *const origin[]  = {"end", "search", "flip", "aside"};
+  static const char *const origin[] = {"end", "search", "flip", "aside"};
   post_put(out, branch->stable[point] < 0 ? "," : ",%d", branch->stable[point]);
-  post_put(out, ",%s", special[branch->special[point]]);
+  post_put(out, ",%s", mhb_special_name(branch->special[point]));
   put_stability(response, branch, point, out);
   post_put(out, ",%d", branch->iterations[point]);
   put_number(out, branch->seconds[point]);
@@ -126,11 +125,10 @@ static void put_quality(const mhb_response *response, const mhb_branch *branch, 
 }
 
 static void put_point(const mhb_response *response, int b, int point, post_buffer *out) {
-  static const char *const kind[] = {"nonlinear", "open", "stuck", "integration", "tracked"};
-  const mhb_branch        *branch = &response->branch[b];
-  size_t                   m1 = (size_t)branch->n_harmonics + 1, i = (size_t)point;
-  size_t                   pairs = (size_t)response->n_pairs, probes = (size_t)response->n_probes;
-  post_put(out, "%d,%s", b, kind[branch->kind]);
+  const mhb_branch *branch = &response->branch[b];
+  size_t            m1 = (size_t)branch->n_harmonics + 1, i = (size_t)point;
+  size_t            pairs = (size_t)response->n_pairs, probes = (size_t)response->n_probes;
+  post_put(out, "%d,%s", b, mhb_branch_kind_name(branch->kind));
   bool nonlinear = branch->kind != MHB_BRANCH_OPEN && branch->kind != MHB_BRANCH_STUCK;
   put_number(out, nonlinear || response->parameter == MHB_IN_N0 ? branch->n0[point] : NAN);
   put_number(out, branch->frequency[point]);

@@ -13,12 +13,6 @@ typedef struct {
   post_json                *json;
 } work;
 
-static const char *kind_name(mhb_branch_kind kind) {
-  static const char *const name[MHB_N_BRANCH_KINDS] = {"nonlinear", "open", "stuck", "integration",
-                                                       "tracked"};
-  return name[kind];
-}
-
 static const char *verdict_name(const mhb_branch *branch, int point) {
   static const char *const name[POST_N_VERDICTS] = {"stable", "not judged", "modulated",
                                                     "unstable"};
@@ -102,7 +96,7 @@ static shb_status put_curve(const work *w, int group) {
     complete = complete && one->complete;
   }
   post_json_object(w->json, NULL);
-  post_json_text(w->json, "kind", kind_name(g->kind));
+  post_json_text(w->json, "kind", mhb_branch_kind_name(g->kind));
   post_json_number(w->json, "n0", g->n0);
   post_json_bool(w->json, "complete", complete);
   post_json_text(w->json, "reason", reason);

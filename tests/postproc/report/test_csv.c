@@ -90,6 +90,7 @@ static void whole(void **state) {
   for (int b = 2; b < r->n_branches; b++)
     r->branch[b].multipliers = calloc((size_t)r->branch[b].n_points * 2, sizeof(double complex));
   r->branch[3].special[5]        = MHB_NEIMARK_SACKER;
+  r->branch[3].special[6]        = MHB_OPTIMUM;
   r->branch[3].judged[5]         = MHB_BY_MULTIPLIERS;
   r->branch[3].loss[5]           = MHB_LOSS_NEIMARK_SACKER;
   r->branch[3].multipliers[10]   = CMPLX(0.3, 1.4);
@@ -119,6 +120,7 @@ static void whole(void **state) {
         assert_string_equal(cell[column(name, n, "stable")], "");
         assert_string_equal(cell[column(name, n, "special")], "fold");
       }
+      if (b == 3 && p == 6) assert_string_equal(cell[column(name, n, "special")], "optimum");
       bool turn = b == 3 && p == 5;
       assert_string_equal(cell[column(name, n, "judged")], !nonlinear ? ""
                                                            : turn     ? "multipliers"
