@@ -19,10 +19,8 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <sys/resource.h>
-#include <sys/wait.h>
-#include <unistd.h>
 
+#include "child.h"
 #include "contact_faces.h"
 #include "mesh/base/constants.h"
 #include "mesh/base/progress.h"
@@ -292,39 +290,19 @@ static shb_status run_pairs(int pairs, int harmonics, pairs_row *row) {
   return status;
 }
 
-/* In a child, whose largest memory is its own. */
-static shb_status fork_pairs(int pairs, pairs_row *row, double *megabytes) {
-  int           ends[2], state;
-  struct rusage usage;
-  SHB_CHECK(pipe(ends) == 0, SHB_ERR_IO, "no pipe");
-  fflush(stdout);
-  pid_t child = fork();
-  SHB_CHECK(child >= 0, SHB_ERR_IO, "no process");
-  if (child == 0) {
-    close(ends[0]);
-    shb_status status = run_pairs(pairs, 7, row);
-    if (status != SHB_OK) fprintf(stderr, "bench_response: %s\n", shb_message());
-    if (status == SHB_OK && write(ends[1], row, sizeof *row) != (ssize_t)sizeof *row)
-      status = SHB_ERR_IO;
-    _exit(status);
-  }
-  close(ends[1]);
-  ssize_t got = read(ends[0], row, sizeof *row);
-  close(ends[0]);
-  wait4(child, &state, 0, &usage);
-  *megabytes = (double)usage.ru_maxrss / 1024;
-  SHB_CHECK(got == (ssize_t)sizeof *row && state == 0, SHB_NOT_CONVERGED, "%d pairs: no result",
-            pairs);
-  return SHB_OK;
+static shb_status run_row(const void *pairs, void *row) {
+  return run_pairs(*(const int *)pairs, 7, row);
 }
 
 static shb_status bench_pairs(const int *pairs, int n, int *failed) {
   double count[8], ms[8], megabytes[8];
+  char   name[32];
   printf("\n%6s %7s %9s %10s %9s %9s %9s\n", "pairs", "moving", "unknowns", "s/point", "first s",
          "MB", "residual");
   for (int i = 0; i < n; i++) {
     pairs_row row = {0};
-    SHB_TRY(fork_pairs(pairs[i], &row, &megabytes[i]));
+    snprintf(name, sizeof name, "%d pairs", pairs[i]);
+    SHB_TRY(bench_in_child(name, run_row, &pairs[i], &row, sizeof row, &megabytes[i]));
     count[i] = pairs[i];
     ms[i]    = row.ms;
     printf("%6d %7d %9d %10.5f %9.3f %9.1f %9.1e\n", pairs[i], row.moving, 45 * pairs[i],

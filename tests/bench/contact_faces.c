@@ -6,11 +6,9 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <sys/resource.h>
-#include <sys/wait.h>
-#include <time.h>
-#include <unistd.h>
 
+#include "child.h"
+#include "mesh/base/clock.h"
 #include "mesh/base/constants.h"
 #include "mhb/balance/truncation_error.h"
 #include "mhb/continuation/balance_curve.h"
@@ -33,9 +31,7 @@ typedef struct {
 } face_row;
 
 static double processor_ms(void) {
-  struct timespec t;
-  clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &t);
-  return 1e3 * (double)t.tv_sec + 1e-6 * (double)t.tv_nsec;
+  return 1e3 * shb_processor_seconds();
 }
 
 static mhb_settings face_settings(void) {
@@ -188,29 +184,8 @@ static shb_status run_face(const char *file, face_row *row) {
   return status;
 }
 
-/* In a child, whose largest memory is its own. */
-static shb_status fork_face(const char *file, face_row *row, double *megabytes) {
-  int           ends[2], state;
-  struct rusage usage;
-  SHB_CHECK(pipe(ends) == 0, SHB_ERR_IO, "no pipe");
-  fflush(stdout);
-  pid_t child = fork();
-  SHB_CHECK(child >= 0, SHB_ERR_IO, "no process");
-  if (child == 0) {
-    close(ends[0]);
-    shb_status status = run_face(file, row);
-    if (status != SHB_OK) fprintf(stderr, "bench_response: %s\n", shb_message());
-    if (status == SHB_OK && write(ends[1], row, sizeof *row) != (ssize_t)sizeof *row)
-      status = SHB_ERR_IO;
-    _exit(status);
-  }
-  close(ends[1]);
-  ssize_t got = read(ends[0], row, sizeof *row);
-  close(ends[0]);
-  wait4(child, &state, 0, &usage);
-  *megabytes = (double)usage.ru_maxrss / 1024;
-  SHB_CHECK(got == (ssize_t)sizeof *row && state == 0, SHB_NOT_CONVERGED, "%s: no result", file);
-  return SHB_OK;
+static shb_status run(const void *file, void *row) {
+  return run_face(file, row);
 }
 
 /* Goal, ms a point with the estimate. */
@@ -225,7 +200,7 @@ shb_status bench_contact_faces(char **files, int n, int *failed) {
          "smooth", "first s", "MB", "residual", "dense ms", "peak um", "apart");
   for (int i = 0; i < n && i < MOST_FILES; i++) {
     double megabytes = 0, all;
-    SHB_TRY(fork_face(files[i], &row[i], &megabytes));
+    SHB_TRY(bench_in_child(files[i], run, files[i], &row[i], sizeof row[i], &megabytes));
     const face_row *r = &row[i];
     all               = r->ms + r->estimate;
     printf(

@@ -15,6 +15,22 @@ void scene_run(const char *folder, const char *source, const char *case_file, co
   if (mhb_response_read(line, response) != SHB_OK) fail_msg("%s", shb_message());
 }
 
+int scene_run_study(const char *folder, const char *source, const char *name) {
+  char line[8 * SCRATCH_PATH];
+  snprintf(line, sizeof line,
+           "mkdir '%s/z_notch_blade' '%s/%s' && cp '%s/../z_notch_blade/case.yaml' "
+           "'%s/z_notch_blade' && cp '%s/study.yaml' '%s/%s' && cd '%s/%s' && "
+           "'%s' study --quiet study.yaml",
+           folder, folder, name, source, folder, source, folder, name, folder, name, SHROUDHB);
+  return system(line);
+}
+
+int scene_remove(const char *folder) {
+  char line[SCRATCH_PATH + 16];
+  snprintf(line, sizeof line, "rm -rf '%s'", folder);
+  return system(line);
+}
+
 const mhb_branch *scene_branch(const mhb_response *response, mhb_branch_kind kind, double n0) {
   for (int i = 0; i < response->n_branches; i++) {
     const mhb_branch *b = &response->branch[i];

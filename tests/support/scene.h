@@ -24,6 +24,13 @@ typedef struct {
 void scene_run(const char *folder, const char *source, const char *case_file, const char *name,
                mhb_response **response);
 
+/* Copy source/study.yaml, and the case of the example beside it, into folder/name. Run the study
+ * there. Returns 0 if it succeeds. */
+int scene_run_study(const char *folder, const char *source, const char *name);
+
+/* Remove a folder with all that is in it. Returns 0 if it succeeds. */
+int scene_remove(const char *folder);
+
 /* The curve of a kind and preload (N; any for the limits). Fails the test if there is none. */
 const mhb_branch *scene_branch(const mhb_response *response, mhb_branch_kind kind, double n0);
 

@@ -13,7 +13,7 @@
 #include "postproc/study/study_effects.h"
 #include "postproc/study/study_file.h"
 #include "tests/support/check.h"
-#include "tests/support/scratch.h"
+#include "tests/support/scene.h"
 
 enum { GROUPS = 5, EACH = 72, LEVELS = 3 };
 
@@ -22,24 +22,17 @@ static design_study study;
 
 static int run_study(void **state) {
   (void)state;
-  char command[8 * SCRATCH_PATH], path[SCRATCH_PATH + 64];
+  char path[SCRATCH_PATH + 64];
   scratch_create(folder);
-  snprintf(command, sizeof command,
-           "mkdir '%s/z_notch_blade' '%s/robust_preload' && cp '%s/../z_notch_blade/case.yaml' "
-           "'%s/z_notch_blade' && cp '%s/study.yaml' '%s/robust_preload' && "
-           "cd '%s/robust_preload' && '%s' study --quiet study.yaml",
-           folder, folder, SCENE, folder, SCENE, folder, folder, SHROUDHB);
-  if (system(command) != 0) return 1;
+  if (scene_run_study(folder, SCENE, "robust_preload") != 0) return 1;
   snprintf(path, sizeof path, "%s/robust_preload/robust_preload.study.h5", folder);
   return study_file_read(path, &study) != SHB_OK;
 }
 
 static int clean(void **state) {
   (void)state;
-  char command[SCRATCH_PATH + 16];
   design_study_free(&study);
-  snprintf(command, sizeof command, "rm -rf '%s'", folder);
-  return system(command);
+  return scene_remove(folder);
 }
 
 static const double *percentiles(const double *of, int group) {

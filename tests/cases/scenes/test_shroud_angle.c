@@ -12,7 +12,7 @@
 
 #include "mesh/base/constants.h"
 #include "tests/support/check.h"
-#include "tests/support/scratch.h"
+#include "tests/support/scene.h"
 
 enum { ANGLES = 9, PRELOADS = 5 };
 
@@ -37,14 +37,9 @@ static const char *field(const char *row, int column) {
 
 static int run_study(void **state) {
   (void)state;
-  char command[8 * SCRATCH_PATH], path[SCRATCH_PATH + 64], head[500], row[500];
+  char path[SCRATCH_PATH + 64], head[500], row[500];
   scratch_create(folder);
-  snprintf(command, sizeof command,
-           "mkdir '%s/z_notch_blade' '%s/shroud_angle' && cp '%s/../z_notch_blade/case.yaml' "
-           "'%s/z_notch_blade' && cp '%s/study.yaml' '%s/shroud_angle' && cd '%s/shroud_angle' && "
-           "'%s' study --quiet study.yaml",
-           folder, folder, SCENE, folder, SCENE, folder, folder, SHROUDHB);
-  if (system(command) != 0) return 1;
+  if (scene_run_study(folder, SCENE, "shroud_angle") != 0) return 1;
   snprintf(path, sizeof path, "%s/shroud_angle/shroud_angle.study.csv", folder);
   FILE *file = fopen(path, "r");
   if (!file || !fgets(head, sizeof head, file)) return 1;
@@ -63,9 +58,7 @@ static int run_study(void **state) {
 
 static int clean(void **state) {
   (void)state;
-  char command[SCRATCH_PATH + 16];
-  snprintf(command, sizeof command, "rm -rf '%s'", folder);
-  return system(command);
+  return scene_remove(folder);
 }
 
 /* um and Hz */
