@@ -5,16 +5,17 @@ Usage: test_json.py SHROUDHB CASE_FOLDER PAGE. Exit code 77: h5py is missing.
 import json
 import os
 import re
-import shutil
 import subprocess
 import sys
-import tempfile
 
 try:
     import h5py
     import numpy as np
 except ImportError:
     sys.exit(77)
+
+sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), '../../support'))
+from programs import bring_your_own
 
 SHROUDHB, SCENE, PAGE = (os.path.abspath(word) for word in sys.argv[1:4])
 
@@ -125,11 +126,7 @@ def scene():
 
 
 def main():
-    folder = tempfile.mkdtemp()
-    try:
-        for name in ('case.yaml', 'write_modal.py'):
-            shutil.copy(os.path.join(SCENE, name), folder)
-        os.chdir(folder)
+    with bring_your_own(SCENE):
         os.environ['OMPI_ALLOW_RUN_AS_ROOT'] = os.environ['OMPI_ALLOW_RUN_AS_ROOT_CONFIRM'] = '1'
         errors()
         found, page = bracket() | scene(), documented()
@@ -139,9 +136,6 @@ def main():
         print('not in the results:', sorted(page - found - seldom))
         assert found <= page and page - found <= seldom
         print(f'{len(found)} keys are those of the page')
-    finally:
-        os.chdir('/')
-        shutil.rmtree(folder)
 
 
 main()

@@ -6,7 +6,6 @@ import csv
 import json
 import os
 import struct
-import subprocess
 import sys
 import tempfile
 
@@ -16,8 +15,11 @@ try:
 except ImportError:
     sys.exit(77)
 
+sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), '../../support'))
+import programs
+from programs import write
+
 BIN = os.path.abspath(sys.argv[1])
-ENVIRONMENT = dict(os.environ, OMPI_ALLOW_RUN_AS_ROOT='1', OMPI_ALLOW_RUN_AS_ROOT_CONFIRM='1')
 BLADES, ORDER = 7, 2
 
 CASE = f"""name: blade
@@ -48,17 +50,7 @@ mhb: {{frequency: [230 Hz, 330 Hz], harmonics: 3}}
 
 
 def run(*words, code=0):
-    words = [os.path.join(BIN, words[0]), *words[1:]]
-    done = subprocess.run(words, capture_output=True, text=True, env=ENVIRONMENT, timeout=300)
-    if done.returncode != code:
-        raise AssertionError(f'{words}: code {done.returncode}, not {code}\n{done.stdout}'
-                             f'{done.stderr}')
-    return done.stdout + done.stderr
-
-
-def write(name, text):
-    with open(name, 'w') as out:
-        out.write(text)
+    return programs.run(os.path.join(BIN, words[0]), *words[1:], code=code)
 
 
 def check(what, error, bound):

@@ -3,15 +3,16 @@
 Usage: test_eval.py BIN CASE_FOLDER, with the programs in BIN. Exit code 77: h5py is missing.
 """
 import os
-import shutil
 import subprocess
 import sys
-import tempfile
 
 try:
     import h5py # for write_modal.py
 except ImportError:
     sys.exit(77)
+
+sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), '../../support'))
+from programs import bring_your_own
 
 BIN, SCENE = os.path.abspath(sys.argv[1]), os.path.abspath(sys.argv[2])
 
@@ -87,19 +88,13 @@ def check():
 
 
 def main():
-    folder = tempfile.mkdtemp()
-    try:
-        for name in ('case.yaml', 'write_modal.py'):
-            shutil.copy(os.path.join(SCENE, name), folder)
-        os.chdir(folder)
+    with bring_your_own(SCENE):
         subprocess.run([sys.executable, 'write_modal.py'], check=True)
         with open('case.yaml') as source:
             text = source.read()
         with open('case.yaml', 'w') as out:
             out.write(text.replace('n0: [-0.2 N, 0 N, 0.3 N, 1.0 N]', 'n0: 0.3 N'))
         check()
-    finally:
-        shutil.rmtree(folder)
 
 
 main()

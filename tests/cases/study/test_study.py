@@ -4,11 +4,9 @@ Usage: test_study.py BIN CASE_FOLDER, with the programs in BIN. Exit code 77: h5
 """
 import csv
 import os
-import shutil
 import signal
 import subprocess
 import sys
-import tempfile
 import time
 
 try:
@@ -16,8 +14,10 @@ try:
 except ImportError:
     sys.exit(77)
 
+sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), '../../support'))
+from programs import ENVIRONMENT, bring_your_own, run, write
+
 BIN, SCENE = os.path.abspath(sys.argv[1]), os.path.abspath(sys.argv[2])
-ENVIRONMENT = dict(os.environ, OMPI_ALLOW_RUN_AS_ROOT='1', OMPI_ALLOW_RUN_AS_ROOT_CONFIRM='1')
 
 GRID = """name: grid
 case: case.yaml
@@ -31,20 +31,6 @@ outputs: [peak, frequency, peak_to_peak, stable, dissipation, mass, 'modes[1].fr
 
 def program(name):
     return os.path.join(BIN, name)
-
-
-def run(*words, code=0):
-    done = subprocess.run(words, capture_output=True, text=True, env=ENVIRONMENT, timeout=300)
-    if done.returncode != code:
-        raise AssertionError(f'{words}: code {done.returncode}, not {code}\n{done.stdout}'
-                             f'{done.stderr}')
-    return done.stdout + done.stderr
-
-
-def write(name, text):
-    with open(name, 'w') as out:
-        out.write(text)
-    return name
 
 
 def read(name):
@@ -442,11 +428,7 @@ def check_one_design():
 
 
 def main():
-    folder = tempfile.mkdtemp()
-    try:
-        for name in ('case.yaml', 'write_modal.py'):
-            shutil.copy(os.path.join(SCENE, name), folder)
-        os.chdir(folder)
+    with bring_your_own(SCENE):
         run(sys.executable, 'write_modal.py')
         write('grid.yaml', GRID)
         run(program('shroudhb-study'), '--quiet', 'grid.yaml')
@@ -456,8 +438,6 @@ def main():
                       check_overrides, check_one_design):
             check()
             print(check.__name__, 'passed')
-    finally:
-        shutil.rmtree(folder)
 
 
 main()

@@ -1,0 +1,38 @@
+"""What Python tests of the programs share: runs of a program, and a case in a folder of its own."""
+import contextlib
+import os
+import shutil
+import subprocess
+import tempfile
+
+ENVIRONMENT = dict(os.environ, OMPI_ALLOW_RUN_AS_ROOT='1', OMPI_ALLOW_RUN_AS_ROOT_CONFIRM='1')
+
+
+def run(*words, code=0):
+    """Run a program to its end; what it said. AssertionError: another exit code."""
+    done = subprocess.run(words, capture_output=True, text=True, env=ENVIRONMENT, timeout=300)
+    if done.returncode != code:
+        raise AssertionError(f'{words}: code {done.returncode}, not {code}\n{done.stdout}'
+                             f'{done.stderr}')
+    return done.stdout + done.stderr
+
+
+def write(name, text):
+    """Write a file and return its name."""
+    with open(name, 'w') as out:
+        out.write(text)
+    return name
+
+
+@contextlib.contextmanager
+def bring_your_own(scene):
+    """Work in a folder of its own that holds case.yaml and write_modal.py of the scene."""
+    folder, before = tempfile.mkdtemp(), os.getcwd()
+    try:
+        for name in ('case.yaml', 'write_modal.py'):
+            shutil.copy(os.path.join(scene, name), folder)
+        os.chdir(folder)
+        yield folder
+    finally:
+        os.chdir(before)
+        shutil.rmtree(folder)
