@@ -93,37 +93,31 @@ static double worst_of(double n0, double tolerance, double step, const double *f
   return worst;
 }
 
+/* best <- the solution at a frequency if its amplitude is above most. */
+static void take_higher(fixture *f, double at, double *most, double *omega, double best[N]) {
+  double         x[N], by_x[N], r[N];
+  double complex weight[3];
+  mhb_amplitude  a = {.by_x = by_x, .weight = weight, .size = MHB_SIZE_HALF_AXIS};
+  cold_solution(&f->model, &f->settings, at, 1e-11, x);
+  mhb_balance_linearise(f->balance, x, at, r, NULL);
+  mhb_output_amplitude(f->balance, x, 0, &a);
+  if (a.amplitude <= *most) return;
+  *most  = a.amplitude;
+  *omega = at;
+  memcpy(best, x, sizeof x);
+}
+
 static void a_smooth_peak_has_the_derivatives_of_solved_peaks(void **state) {
   (void)state;
   fixture f;
-  double  x[N], best[N], omega = 0, most = 0;
+  double  best[N], omega = 0, most = 0;
   set_up(&f, 0.2, 1e-12, -1, 1);
-  for (int i = 0; i < 60; i++) { /* the highest of 60 solutions */
-    double         at = 1.2 + 0.3 * i / 60, by_x[N], r[N];
-    double complex weight[3];
-    mhb_amplitude  a = {.by_x = by_x, .weight = weight, .size = MHB_SIZE_HALF_AXIS};
-    cold_solution(&f.model, &f.settings, at, 1e-11, x);
-    mhb_balance_linearise(f.balance, x, at, r, NULL);
-    mhb_output_amplitude(f.balance, x, 0, &a);
-    if (a.amplitude <= most) continue;
-    most  = a.amplitude;
-    omega = at;
-    memcpy(best, x, sizeof best);
-  }
+  for (int i = 0; i < 60; i++) /* the highest of 60 solutions */
+    take_higher(&f, 1.2 + 0.3 * i / 60, &most, &omega, best);
   /* nearer, for the peak must be the one that was found */
   for (double step = 2.5e-3; step > 1e-5; step *= 0.5)
-    for (int side = -1; side < 2; side += 2) {
-      double         at = omega + side * step, by_x[N], r[N];
-      double complex weight[3];
-      mhb_amplitude  a = {.by_x = by_x, .weight = weight, .size = MHB_SIZE_HALF_AXIS};
-      cold_solution(&f.model, &f.settings, at, 1e-11, x);
-      mhb_balance_linearise(f.balance, x, at, r, NULL);
-      mhb_output_amplitude(f.balance, x, 0, &a);
-      if (a.amplitude <= most) continue;
-      most  = a.amplitude;
-      omega = at;
-      memcpy(best, x, sizeof best);
-    }
+    for (int side = -1; side < 2; side += 2)
+      take_higher(&f, omega + side * step, &most, &omega, best);
   tear_down(&f);
   assert_below(worst_of(0.2, 1e-12, 2e-5, best, omega, MHB_PEAK_SMOOTH), 1e-6);
 }
