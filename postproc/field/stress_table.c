@@ -1,6 +1,5 @@
 #include "postproc/field/stress_table.h"
 
-
 #include "postproc/field/kept_point.h"
 
 static void put_place(const mhb_branch *b, int branch, int point, const post_blade_field *field,
