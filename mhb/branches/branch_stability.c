@@ -26,7 +26,7 @@ enum {
   SUBSTEPS_DEAR = 128,
   LEAST_POINTS  = 12
 };
-static const double BUDGET = 1, SECONDS_A_CUBE = 1.5e-9, SECONDS_A_STATE = 1e-5;
+static const double BUDGET = 0.8, SECONDS_A_CUBE = 1.5e-9, SECONDS_A_STATE = 1e-5;
 
 /* Distances of a modulus from 1: the margin outside that counts as unstable, the accuracy of a
  * located bifurcation, and the end of the search. It is COARSE above DEAR states. A search takes

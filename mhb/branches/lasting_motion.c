@@ -28,7 +28,7 @@ typedef struct {
   mhb_response *curves;
   mhb_branch   *branch;
   double       *size;      /* [point] m, output of the wave */
-  bool         *asked;     /* [point] modulated, and large enough for the sweep */
+  bool         *asked;     /* [point] modulated or not judged, and large enough for the sweep */
   bool         *modulated; /* [point] */
   int           n_asked, n_modulated, n_points; /* n_points: settled */
   const char   *refused;                        /* NULL: computed */
@@ -52,6 +52,11 @@ typedef struct {
 } lasting;
 
 /* ---- choice ---- */
+
+/* A point that no verdict calls stable may be modulated: the sweep covers it. */
+static bool is_unjudged(const mhb_response *r, const mhb_branch *b, int point) {
+  return b->stable[point] < 0 && !mhb_response_is_linear(r, b, point);
+}
 
 static bool is_modulated(const mhb_response *r, const mhb_branch *b, int point) {
   bool pair = b->loss[point] == MHB_LOSS_FLIP || b->loss[point] == MHB_LOSS_NEIMARK_SACKER;
@@ -84,7 +89,8 @@ static shb_status choose(const lasting *l, work *w) {
   }
   for (int i = 0; i < b->n_points; i++) {
     w->modulated[i] = is_modulated(w->curves, b, i);
-    w->asked[i]     = w->modulated[i] && w->size[i] >= PART_OF_PEAK * peak;
+    bool covered    = w->modulated[i] || is_unjudged(w->curves, b, i);
+    w->asked[i]     = covered && w->size[i] >= PART_OF_PEAK * peak;
     w->n_modulated += w->modulated[i];
     w->n_asked += w->asked[i];
   }
@@ -116,7 +122,7 @@ static mhb_wave wave_at(const work *w, int point) {
 
 /* ---- the sweep ---- */
 
-/* Modulated point of the lowest or highest frequency that the sweep covers. */
+/* Point of the lowest or highest frequency that the sweep covers. */
 static int end_of(const work *w, int sign) {
   int best = -1;
   for (int i = 0; i < w->branch->n_points; i++)

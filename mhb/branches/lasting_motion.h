@@ -1,8 +1,9 @@
 /* The motion that lasts, on main branches. Where a wave is unstable other than by a fold, the whole
  * ring is integrated (mhb/ring).
  *
- *   auto    a slow sweep over the modulated part of the branch, where the wave exceeds 0.4 of its
- *           peak; then points: of the wave's largest output, at the sweep's largest, one between
+ *   auto    a slow sweep over the points that are modulated or not judged, where the wave exceeds
+ *           0.4 of its peak; then points: of the wave's largest output, at the sweep's largest, one
+ *           between
  *   always  the sweep, and every modulated point
  *   never   nothing
  * A point is modulated if it slips or opens, is unstable, and lost stability by a flip or a pair of

@@ -181,19 +181,26 @@ static shb_status stored(void *context, double share, double n0, double frequenc
   return SHB_OK;
 }
 
-/* An interrupted branch has no text, and a second call completes it as if nothing had been. */
-static void an_interrupted_branch_is_completed(void **state) {
-  (void)state;
-  mhb_settings s = settings_of();
-  modal_model  model;
-  s.n_preloads    = 1;
-  mhb_response *r = run(&s, NULL), *own = mhb_response_like(r);
+/* The main curve of a response, alone, with no lasting motion. */
+static mhb_response *main_curve_of(const mhb_response *r) {
+  mhb_response *own = mhb_response_like(r);
   int           index;
   assert_ok(mhb_response_branch(own, MHB_BRANCH_NONLINEAR, &index));
   mhb_branch *b  = &own->branch[0];
   b->n_harmonics = r->branch[2].n_harmonics;
   assert_ok(mhb_response_copy_points(own, 0, r, 2, 0, r->branch[2].n_points - 1));
   memset(b->lasting_kind, 0, sizeof(int) * (size_t)b->n_points);
+  return own;
+}
+
+/* An interrupted branch has no text, and a second call completes it as if nothing had been. */
+static void an_interrupted_branch_is_completed(void **state) {
+  (void)state;
+  mhb_settings s = settings_of();
+  modal_model  model;
+  s.n_preloads             = 1;
+  mhb_response          *r = run(&s, NULL), *own = main_curve_of(r);
+  mhb_branch            *b   = &own->branch[0];
   counter                few = {.most = 3500}, all = {.most = 1 << 30};
   const mhb_lasting_host stop = {&few, goes_on, lock, stored}, go = {&all, goes_on, lock, stored};
   int                    threads = omp_get_max_threads();
@@ -208,6 +215,35 @@ static void an_interrupted_branch_is_completed(void **state) {
   assert_ok(mhb_lasting_motion(&model, &s, 1, &own, &go)); /* done: nothing happens */
   assert_true(all.calls - calls < 10);
   omp_set_num_threads(threads);
+  modal_model_free(&model);
+  mhb_response_destroy(own);
+  mhb_response_destroy(r);
+}
+
+/* Points that were not judged may be modulated: the sweep covers them as if they were. */
+static void the_sweep_covers_points_that_were_not_judged(void **state) {
+  (void)state;
+  mhb_settings s = settings_of();
+  modal_model  model;
+  s.n_preloads    = 1;
+  mhb_response *r = run(&s, NULL), *own = main_curve_of(r);
+  mhb_branch   *b  = &own->branch[0];
+  counter       c  = {.most = 1 << 30};
+  double        at = r->branch[2].lasting_curve.frequency[0];
+  int           n  = 0;
+  for (int i = 0; i < b->n_points; i++) {
+    if (b->frequency[i] > 1.01 * at || !is_modulated(b, i)) continue;
+    b->stable[i] = -1;
+    n++;
+  }
+  model_of(&model);
+  assert_ok(
+      mhb_lasting_motion(&model, &s, 1, &own, &(mhb_lasting_host){&c, goes_on, lock, stored}));
+  print_message("%d not judged\n", n);
+  assert_true(n > 3);
+  assert_float_equal(b->lasting_curve.frequency[0], at, 1e-12);
+  for (int i = 0; i < b->n_points; i++)
+    if (b->stable[i] < 0) assert_int_equal(b->lasting_kind[i], MHB_LASTING_UNKNOWN);
   modal_model_free(&model);
   mhb_response_destroy(own);
   mhb_response_destroy(r);
@@ -242,6 +278,7 @@ int main(void) {
       cmocka_unit_test(nothing_else_is_computed_and_the_file_says_so),
       cmocka_unit_test(threads_do_not_change_the_result),
       cmocka_unit_test(an_interrupted_branch_is_completed),
+      cmocka_unit_test(the_sweep_covers_points_that_were_not_judged),
       cmocka_unit_test(a_resumed_run_completes_it),
   };
   return cmocka_run_group_tests(tests, scratch_make, scratch_remove);
