@@ -8,6 +8,7 @@
 #include <unistd.h>
 
 #include "cases/commands/command.h"
+#include "cases/commands/fatigue_lines.h"
 #include "cases/commands/up_to_date.h"
 #include "cases/schema/case.h"
 #include "cases/schema/case_paths.h"
@@ -122,42 +123,16 @@ static char *current_modal(const case_file *file) {
 /* The stress of the whole blade, where the modal file has it. */
 typedef struct {
   post_blade_field field;
-  post_fatigue     fatigue;
-  int             *region; /* [node] with several materials, else NULL */
-  post_goodman     line[MESH_MAX_VOLUMES];
+  case_fatigue     lines;
   mhb_response    *response; /* NULL: there is no stress */
   post_buffer      section;  /* of the report */
 } stress_work;
 
 static void stress_free(stress_work *s) {
-  free(s->region);
+  case_fatigue_free(&s->lines);
   post_blade_field_free(&s->field);
   mhb_response_destroy(s->response);
   post_buffer_free(&s->section);
-}
-
-/* Whether a material of the case has Goodman's line. */
-static bool has_fatigue(const case_file *file) {
-  for (int i = 0; i < file->n_materials; i++)
-    if (file->materials[i].endurance > 0) return true;
-  return file->endurance > 0;
-}
-
-/* Each material has its own line. */
-static shb_status set_fatigue(const case_file *file, const char *modal, stress_work *s) {
-  const char *name[MESH_MAX_VOLUMES];
-  double      stiffness[MESH_MAX_VOLUMES];
-  s->fatigue = (post_fatigue){.endurance = file->endurance, .ultimate = file->ultimate};
-  if (file->n_materials == 0 || !has_fatigue(file)) return SHB_OK;
-  for (int i = 0; i < file->n_materials; i++) {
-    name[i]      = file->materials[i].group;
-    stiffness[i] = file->materials[i].material.E;
-    s->line[i]   = (post_goodman){file->materials[i].endurance, file->materials[i].ultimate};
-  }
-  SHB_TRY(
-      post_blade_regions(modal, s->field.n_nodes, file->n_materials, name, stiffness, &s->region));
-  s->fatigue = (post_fatigue){.region = s->region, .n_regions = file->n_materials, .of = s->line};
-  return SHB_OK;
 }
 
 /* Both files must be of the present case.
@@ -165,14 +140,14 @@ static shb_status set_fatigue(const case_file *file, const char *modal, stress_w
 static shb_status stress_read(const case_file *file, const char *modal, const char *response,
                               bool page, stress_work *s) {
   if (!modal || !up_to_date_keys(file, CASE_MHB, response)) return SHB_OK;
-  if (!page && !has_fatigue(file) && file->n_gauges == 0) return SHB_OK;
+  if (!page && !case_has_fatigue(file) && file->n_gauges == 0) return SHB_OK;
   SHB_TRY(post_blade_field_read(modal, &s->field));
   if (s->field.n_nodes == 0) return SHB_OK;
   SHB_TRY(mhb_response_read(response, &s->response));
   SHB_TRY(post_blade_field_match(&s->field, s->response, modal));
-  SHB_TRY(set_fatigue(file, modal, s));
+  SHB_TRY(case_fatigue_read(file, modal, s->field.n_nodes, &s->lines));
   if (!page) return SHB_OK;
-  return post_stress_section(&s->field, s->response, &s->fatigue, &s->section);
+  return post_stress_section(&s->field, s->response, &s->lines.fatigue, &s->section);
 }
 
 /* Write NAME.stress.csv. It is made for cases with material.fatigue only: a point takes a few
@@ -183,7 +158,8 @@ static shb_status stress_publish(const case_file *file, const stress_work *s,
   char       *path   = case_output(file, ".stress.csv");
   shb_status  status = path ? SHB_OK : shb_fail(SHB_ERR_IO, __FILE__, __LINE__, "no memory");
   shb_progress_show(progress, 90, "stress");
-  if (status == SHB_OK) status = post_stress_table(&s->field, s->response, &s->fatigue, &table);
+  if (status == SHB_OK)
+    status = post_stress_table(&s->field, s->response, &s->lines.fatigue, &table);
   if (status == SHB_OK) status = post_buffer_publish(&table, path);
   post_buffer_free(&table);
   free(path);
@@ -320,7 +296,7 @@ static shb_status publish(const case_file *file, const command_options *options)
                           stress.section.text,
                           file->axis};
     if (status == SHB_OK) status = post_publish(&job, &progress, &summary);
-    if (status == SHB_OK && stress.response && has_fatigue(file))
+    if (status == SHB_OK && stress.response && case_has_fatigue(file))
       status = stress_publish(file, &stress, &progress);
     if (status == SHB_OK && stress.response && file->n_gauges > 0)
       status = gauge_publish(file, modal, stress.response);

@@ -62,7 +62,13 @@ void digest_modes(const case_file *file, const char *inputs, char out[DIGEST_TEX
 
 void digest_design(const case_file *file, const char *inputs, int n_outputs,
                    const study_output *output, char out[DIGEST_TEXT]) {
-  uint64_t hash = add_stage(add(modes(file, inputs), method), file, CASE_MHB);
-  for (int i = 0; i < n_outputs; i++) hash = add(hash, output[i].name);
+  uint64_t hash  = add_stage(add(modes(file, inputs), method), file, CASE_MHB);
+  bool     field = false; /* fatigue and gauges count */
+  for (int i = 0; i < n_outputs; i++) {
+    study_quantity q = output[i].quantity;
+    hash             = add(hash, output[i].name);
+    field            = field || q == STUDY_STRESS || q == STUDY_SAFETY || q == STUDY_GAUGE;
+  }
+  if (field) hash = add_stage(hash, file, CASE_POST);
   print(hash, out);
 }

@@ -10,11 +10,8 @@
 
 static const struct {
   const char *name, *unit;
-} words[] = {{"peak", "m"},
-             {"frequency", "Hz"},
-             {"peak_to_peak", "m"},
-             {"stable", "-"},
-             {"dissipation", "J"}};
+} words[] = {{"peak", "m"},        {"frequency", "Hz"}, {"peak_to_peak", "m"}, {"stable", "-"},
+             {"dissipation", "J"}, {"stress", "Pa"},    {"safety", "-"}};
 enum { N_WORDS = sizeof words / sizeof *words };
 
 static void set(study_output *out, study_quantity quantity, int index, const char *name,
@@ -29,6 +26,7 @@ typedef struct {
   int    n_modes; /* 0: not known before the modes are computed */
   int    n_probes;
   char **probe; /* [n_probes] of a modal file, else NULL */
+  bool   has_no_stress;
 } offer;
 
 static void read_modal_file(const char *path, offer *o) {
@@ -41,6 +39,7 @@ static void read_modal_file(const char *path, offer *o) {
   if (h5_exists(file, "/modes/frequency") &&
       h5_shape_of(file, "/modes/frequency", &shape) == SHB_OK && shape.rank == 1)
     o->n_modes = (int)shape.dim[0];
+  o->has_no_stress = !h5_exists(file, "/mesh") || !h5_exists(file, "/modes/stress");
   h5_close(file);
 }
 
@@ -79,20 +78,52 @@ static int parse_mode(const char *name, const offer *o, study_output *out, char 
   return 1;
 }
 
+/* Whether any material of the case has Goodman's line. */
+static bool has_fatigue(const case_file *file) {
+  for (int i = 0; i < file->n_materials; i++)
+    if (file->materials[i].endurance > 0) return true;
+  return file->endurance > 0;
+}
+
+/* Whether the case gives what stress, safety and strain need; else a reason. */
+static bool check_field(const char *name, study_quantity quantity, const case_file *file,
+                        const offer *o, char *why, size_t size) {
+  why[0] = '\0';
+  if (o->has_no_stress)
+    snprintf(why, size, "'%s' needs the stress of the modes, which modal.file has not", name);
+  else if (file->run_up)
+    snprintf(why, size, "'%s' is not known in a run-up: its modes change with the speed", name);
+  else if (quantity == STUDY_SAFETY && !has_fatigue(file))
+    snprintf(why, size, "'safety' needs material.fatigue: {endurance, ultimate}");
+  return !why[0];
+}
+
+static int parse_gauge(const char *name, const case_file *file, const offer *o, study_output *out,
+                       char *why, size_t size) {
+  for (int i = 0; i < file->n_gauges; i++) {
+    if (strcmp(name, file->gauge[i].name) != 0) continue;
+    set(out, STUDY_GAUGE, i, name, "-");
+    return check_field(name, STUDY_GAUGE, file, o, why, size) ? 1 : -1;
+  }
+  return 0;
+}
+
 /* Returns 1 if the name is an output, -1 with a reason if it is a wrong one, 0 if it is none. */
 static int parse(const char *name, const case_file *file, const offer *o, study_output *out,
                  char *why, size_t size) {
   for (int i = 0; i < N_WORDS; i++)
     if (strcmp(name, words[i].name) == 0) {
+      bool field = i == STUDY_STRESS || i == STUDY_SAFETY;
       set(out, (study_quantity)i, 0, name, words[i].unit);
-      return 1;
+      return !field || check_field(name, (study_quantity)i, file, o, why, size) ? 1 : -1;
     }
   for (int i = 0; i < o->n_probes; i++)
     if (strcmp(name, probe_of(o, file, i)) == 0) {
       set(out, STUDY_PROBE, i, name, "m");
       return 1;
     }
-  return parse_mode(name, o, out, why, size);
+  int gauge = parse_gauge(name, file, o, out, why, size);
+  return gauge != 0 ? gauge : parse_mode(name, o, out, why, size);
 }
 
 bool study_output_parse(const char *name, const case_file *file, study_output *out, char *why,
@@ -104,6 +135,7 @@ bool study_output_parse(const char *name, const case_file *file, study_output *o
     case_append(why, size, "'%s' is no output of this case; known: ", name);
     for (int i = 0; i < N_WORDS; i++) case_append(why, size, "%s, ", words[i].name);
     for (int i = 0; i < o.n_probes; i++) case_append(why, size, "%s, ", probe_of(&o, file, i));
+    for (int i = 0; i < file->n_gauges; i++) case_append(why, size, "%s, ", file->gauge[i].name);
     case_append(why, size, "modes[I].frequency");
   }
   free_offer(&o);

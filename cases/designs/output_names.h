@@ -6,7 +6,7 @@
 
 #include "cases/parse/case_file.h"
 
-enum { STUDY_UNIT_TEXT = 32, STUDY_OUTPUT_TEXT = 96 };
+enum { STUDY_UNIT_TEXT = 32, STUDY_OUTPUT_TEXT = 96, STUDY_MAX_OUTPUTS = 64 };
 
 typedef enum {
   STUDY_PEAK,           /* m, highest first harmonic of the first output over all curves */
@@ -14,20 +14,23 @@ typedef enum {
   STUDY_PEAK_TO_PEAK,   /* m, there */
   STUDY_STABLE,         /* 1, 0, -1: not judged; there */
   STUDY_DISSIPATION,    /* J a cycle, all pairs; there */
+  STUDY_STRESS,         /* Pa, greatest amplitude of the signed von Mises stress; there */
+  STUDY_SAFETY,         /* -, least safety against Goodman's line; there */
   STUDY_PROBE,          /* m, highest first harmonic of a probe over all curves */
+  STUDY_GAUGE,          /* -, amplitude of the strain at a gauge; at the highest peak */
   STUDY_MODE_FREQUENCY, /* Hz, of a mode with free contacts */
   STUDY_N_QUANTITIES
 } study_quantity;
 
 typedef struct {
   study_quantity quantity;
-  int            index; /* of the probe; of the mode, from 0 */
+  int            index; /* of the probe or gauge; of the mode, from 0 */
   char           name[STUDY_OUTPUT_TEXT];
   char           unit[STUDY_UNIT_TEXT];
 } study_output;
 
-/* Understand a name: peak, frequency, peak_to_peak, stable, dissipation, the name of a probe, or
- * modes[I].frequency with I from 1. False with a reason otherwise. */
+/* Understand a name: peak, frequency, peak_to_peak, stable, dissipation, stress, safety, the name of
+ * a probe or gauge, or modes[I].frequency with I from 1. False with a reason otherwise. */
 bool study_output_parse(const char *name, const case_file *file, study_output *output, char *why,
                         size_t size);
 

@@ -13,8 +13,6 @@
 #include "cases/parse/case_file.h"
 #include "mesh/base/status.h"
 
-enum { STUDY_MAX_OUTPUTS = 64 };
-
 typedef struct {
   char          *path, *text, *folder; /* of the study file */
   char          *name;                 /* of the output files */

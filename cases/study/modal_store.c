@@ -36,9 +36,15 @@ shb_status modal_store_open(const study_spec *spec, modal_store *s) {
   return SHB_OK;
 }
 
+static void clear(modal_store *s, int at) {
+  if (s->entry[at].digest[0]) case_model_free(&s->entry[at].model);
+  peak_field_destroy(s->entry[at].field);
+  s->entry[at].field     = NULL;
+  s->entry[at].digest[0] = '\0';
+}
+
 void modal_store_close(modal_store *s) {
-  for (int i = 0; i < STORE_MODELS; i++)
-    if (s->entry[i].digest[0]) case_model_free(&s->entry[i].model);
+  for (int i = 0; i < STORE_MODELS; i++) clear(s, i);
   if (s->log) unlink(s->log);
   free(s->folder);
   free(s->log);
@@ -157,13 +163,14 @@ static shb_status load(modal_store *s, const double *value, const case_file *fil
                        const char *digest, int at) {
   char      *path   = NULL;
   shb_status status = SHB_OK;
-  if (s->entry[at].digest[0]) case_model_free(&s->entry[at].model);
-  s->entry[at].digest[0] = '\0';
+  clear(s, at);
   if (file->modal_file) path = case_modal_path(file);
   if (!file->modal_file) path = find_file(s, digest);
   if (!path) status = make_file(s, value, digest, &path);
   if (status == SHB_OK) {
     status = case_model_read(file, path, 0, true, &s->entry[at].model);
+    if (status == SHB_OK && peak_field_wanted(s->spec->n_outputs, s->spec->output))
+      status = peak_field_create(path, s->spec->n_outputs, s->spec->output, &s->entry[at].field);
     if (status != SHB_OK) case_model_free(&s->entry[at].model);
   }
   if (status == SHB_OK) snprintf(s->entry[at].digest, DIGEST_TEXT, "%s", digest);
@@ -172,7 +179,7 @@ static shb_status load(modal_store *s, const double *value, const case_file *fil
 }
 
 shb_status modal_store_get(modal_store *s, const double *value, const case_file *file,
-                           case_model *model) {
+                           case_model *model, peak_field **field) {
   char digest[DIGEST_TEXT];
   digest_modes(file, s->spec->inputs, digest);
   int at = entry_of(s, digest);
@@ -182,6 +189,7 @@ shb_status modal_store_get(modal_store *s, const double *value, const case_file 
   }
   s->entry[at].used      = ++s->clock;
   *model                 = s->entry[at].model;
+  *field                 = s->entry[at].field;
   model->settings        = file->mhb;
   model->settings.run_up = s->entry[at].model.run_up;
   return SHB_OK;

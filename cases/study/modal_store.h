@@ -7,6 +7,7 @@
 
 #include "cases/commands/load_model.h"
 #include "cases/designs/study_spec.h"
+#include "cases/peaks/peak_field.h"
 
 enum { STORE_MODELS = 4 };
 
@@ -15,9 +16,10 @@ typedef struct {
   char             *folder; /* NAME.study.d beside the study file */
   char             *log;    /* of this process: messages of the stages */
   struct {
-    char       digest[17]; /* "": free */
-    case_model model;
-    long       used; /* time of the last use */
+    char        digest[17]; /* "": free */
+    case_model  model;
+    peak_field *field; /* NULL: not wanted */
+    long        used;  /* time of the last use */
   } entry[STORE_MODELS];
   long clock;
 } modal_store;
@@ -31,8 +33,9 @@ void       modal_store_close(modal_store *store);
  *   value  in   [n_keys] of the design
  *   file   in   its case
  *   model  out  owned by the store
+ *   field  out  likewise; NULL if no output of the study needs it
  * Errors: SHB_ERR_INPUT no mesh or no modes, with the message of the stage; SHB_ERR_IO. */
 shb_status modal_store_get(modal_store *store, const double *value, const case_file *file,
-                           case_model *model);
+                           case_model *model, peak_field **field);
 
 #endif

@@ -5,10 +5,10 @@
 #include <stdio.h>
 
 #include "cases/commands/command.h"
+#include "cases/peaks/design_run.h"
 #include "cases/schema/case.h"
 #include "cases/study/design_message.h"
 #include "cases/study/design_process.h"
-#include "cases/study/design_run.h"
 #include "cases/study/modal_store.h"
 #include "mesh/base/clock.h"
 #include "mesh/base/progress.h"
@@ -26,13 +26,14 @@ typedef struct {
 
 /* The outputs of a design. What is wrong with a design becomes its reason. */
 static shb_status evaluate(server *s, const double *value, study_design *design) {
-  case_file  file;
-  case_model model;
-  shb_status status = study_spec_design(&s->spec, value, NULL, NULL, stderr, &file);
+  case_file   file;
+  case_model  model;
+  peak_field *field;
+  shb_status  status = study_spec_design(&s->spec, value, NULL, NULL, stderr, &file);
   if (status == SHB_OK) {
-    status = modal_store_get(&s->store, value, &file, &model);
+    status = modal_store_get(&s->store, value, &file, &model, &field);
     if (status == SHB_OK)
-      status = design_run(&file, &model, s->spec.n_outputs, s->spec.output, design);
+      status = design_run(&file, &model, field, s->spec.n_outputs, s->spec.output, design);
     case_free(&file);
   }
   if (status == SHB_OK || status == SHB_INTERRUPTED) return status;

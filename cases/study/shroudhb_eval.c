@@ -8,9 +8,9 @@
 #include <unistd.h>
 
 #include "cases/commands/command.h"
+#include "cases/peaks/design_run.h"
 #include "cases/schema/case.h"
 #include "cases/study/dakota_files.h"
-#include "cases/study/design_run.h"
 #include "cases/study/modal_store.h"
 #include "mesh/base/progress.h"
 #include "postproc/draw/text_buffer.h"
@@ -124,14 +124,16 @@ static shb_status compute(evaluation *e, design_study *one, study_design **desig
   modal_store       store;
   case_file         file;
   case_model        model;
+  peak_field       *field;
   SHB_TRY(design_study_create(s->keys.n, s->n_outputs, by, one));
   *design = design_study_add(one, s->design);
   SHB_CHECK(*design, SHB_ERR_IO, "out of memory");
   SHB_TRY(modal_store_open(s, &store));
   shb_status status = study_spec_design(s, s->design, NULL, NULL, stderr, &file);
   if (status == SHB_OK) {
-    status = modal_store_get(&store, s->design, &file, &model);
-    if (status == SHB_OK) status = design_run(&file, &model, s->n_outputs, s->output, *design);
+    status = modal_store_get(&store, s->design, &file, &model, &field);
+    if (status == SHB_OK)
+      status = design_run(&file, &model, field, s->n_outputs, s->output, *design);
     case_free(&file);
   }
   modal_store_close(&store);

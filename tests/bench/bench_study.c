@@ -13,7 +13,7 @@
 #include <stdio.h>
 #include <string.h>
 
-#include "cases/study/design_run.h"
+#include "cases/peaks/design_run.h"
 #include "mesh/base/constants.h"
 #include "mesh/base/progress.h"
 #include "mhb/branches/forced_response.h"
@@ -52,8 +52,8 @@ static shb_status measure(case_model *model, row *out) {
   SHB_TRY(design_study_create(0, OUTPUTS, study_derivatives(OUTPUTS, output), &one));
   study_design *design = design_study_add(&one, NULL);
   double        began  = shb_processor_seconds();
-  shb_status    status = design ? design_run(NULL, model, OUTPUTS, output, design) : SHB_ERR_IO;
-  out->cpu             = shb_processor_seconds() - began;
+  shb_status status = design ? design_run(NULL, model, NULL, OUTPUTS, output, design) : SHB_ERR_IO;
+  out->cpu          = shb_processor_seconds() - began;
   if (design) {
     out->peak  = design->value[0];
     out->error = design->error[0] / design->value[0];

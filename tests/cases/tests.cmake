@@ -82,6 +82,9 @@ if(SHROUDHB_PYTHON)
     COMMAND ${SHROUDHB_PYTHON} -B ${CMAKE_CURRENT_SOURCE_DIR}/cases/study/test_eval.py
             $<TARGET_FILE_DIR:shroudhb-study> ${PROJECT_SOURCE_DIR}/cases/bring_your_own)
   set_tests_properties(cases.study.eval PROPERTIES SKIP_RETURN_CODE 77)
+  add_test(NAME cases.study.blade_study
+    COMMAND ${SHROUDHB_PYTHON} -B ${CMAKE_CURRENT_SOURCE_DIR}/cases/study/test_blade_study.py
+            $<TARGET_FILE_DIR:shroudhb-study>)
 endif()
 
 # shb_scene_test(noun scene libraries...): a shipped scene from mesh to curves.

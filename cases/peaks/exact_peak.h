@@ -3,9 +3,10 @@
  * A sweep with few harmonics shows where the peaks are. Beside each that may be the highest the
  * balance is solved with more harmonics in planes across the coarse curve. The maximum over these
  * planes is the peak of the fine curve. The error is the change by about twice the harmonics. */
-#ifndef CASES_STUDY_EXACT_PEAK_H
-#define CASES_STUDY_EXACT_PEAK_H
+#ifndef CASES_PEAKS_EXACT_PEAK_H
+#define CASES_PEAKS_EXACT_PEAK_H
 
+#include "cases/peaks/peak_field.h"
 #include "mhb/problem/settings.h"
 #include "mhb/response/response.h"
 #include "mhb/tracking/peak_derivatives.h"
@@ -21,10 +22,12 @@ typedef struct {
   double frequency_error, amplitude_error, peak_to_peak_error, dissipation_error;
   int    stable;           /* 1, 0; -1: not judged or undecided */
   mhb_peak_derivatives by; /* of kind MHB_PEAK_UNJUDGED if they were not asked for */
+  double field[STUDY_MAX_OUTPUTS], field_error[STUDY_MAX_OUTPUTS]; /* of peak_field; NAN: none */
 } exact_peak;
 
 typedef struct {
-  bool multipliers, derivatives;
+  bool        multipliers, derivatives;
+  peak_field *field; /* NULL: not asked for */
 } exact_peak_asked;
 
 /* Find the highest peak of an output over all nonlinear branches of a response.
@@ -34,7 +37,7 @@ typedef struct {
  *
  * Errors: SHB_ERR_IO no memory; those of mhb_balance_create. */
 shb_status exact_peak_find(const modal_model *model, const mhb_settings *settings,
-                           const mhb_response *response, post_output output, exact_peak_asked asked,
+                           mhb_response *response, post_output output, exact_peak_asked asked,
                            exact_peak *peak);
 
 #endif

@@ -1,9 +1,10 @@
 /* One design: the outputs of a case that may differ from its file in some keys. */
-#ifndef CASES_STUDY_DESIGN_RUN_H
-#define CASES_STUDY_DESIGN_RUN_H
+#ifndef CASES_PEAKS_DESIGN_RUN_H
+#define CASES_PEAKS_DESIGN_RUN_H
 
 #include "cases/commands/load_model.h"
 #include "cases/designs/output_names.h"
+#include "cases/peaks/peak_field.h"
 #include "postproc/study/design_study.h"
 
 /* Compute the outputs on a modal model. Sets state, value, error, reason and curve of the design.
@@ -11,11 +12,12 @@
  *
  *   file      in  the case of the design
  *   model     in  of its modal file
+ *   field     in  of the same, for these outputs; NULL where peak_field_wanted says no
  *   n_modes, mode_frequency   through the model
  *
  * The sweep has few harmonics and no multipliers; the highest peak is then solved with enough
  * (exact_peak.h). Errors: SHB_ERR_IO no memory; SHB_INTERRUPTED. */
-shb_status design_run(const case_file *file, const case_model *model, int n_outputs,
-                      const study_output *output, study_design *design);
+shb_status design_run(const case_file *file, const case_model *model, peak_field *field,
+                      int n_outputs, const study_output *output, study_design *design);
 
 #endif

@@ -1,10 +1,10 @@
-#include "cases/study/design_run.h"
+#include "cases/peaks/design_run.h"
 
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
-#include "cases/study/exact_peak.h"
+#include "cases/peaks/exact_peak.h"
 #include "mhb/branches/forced_response.h"
 
 /* Harmonics of the sweeps, tried in turn until the peak can be solved beside the curve. 0: those of
@@ -23,6 +23,7 @@ typedef struct {
   const study_output *output;
   study_design       *design;
   mhb_response       *response;
+  peak_field         *field; /* NULL: not wanted */
 } job;
 
 static bool wants(const job *j, study_quantity quantity) {
@@ -43,6 +44,7 @@ static shb_status sweep(job *j, int harmonics) {
   few.lasting      = MHB_LASTING_NEVER;
   few.flips        = false;
   few.resume       = false;
+  few.save         = (mhb_save_settings){MHB_SAVE_LISTED, 0, {0}}; /* nothing */
   if (harmonics > 0) {
     few.motion_tolerance = 0;
     few.harmonics        = harmonics * few.subharmonics;
@@ -84,6 +86,11 @@ static void put_peak(job *j, const exact_peak *peak) {
         break;
       case STUDY_STABLE:
         put(j, i, peak->stable, NAN);
+        break;
+      case STUDY_STRESS:
+      case STUDY_SAFETY:
+      case STUDY_GAUGE:
+        put(j, i, peak->field[i], peak->field_error[i]);
         break;
       default:
         break;
@@ -198,7 +205,8 @@ static shb_status fill(job *j, post_output first, const exact_peak *peak) {
 
 /* Sweep with more and more harmonics until the peak is exact. */
 static shb_status work(job *j) {
-  const exact_peak_asked asked = {wants(j, STUDY_STABLE), study_derivatives(j->n, j->output) > 0};
+  const exact_peak_asked asked = {wants(j, STUDY_STABLE), study_derivatives(j->n, j->output) > 0,
+                                  j->field};
   exact_peak             peak  = {0};
   post_output            first = {0};
   shb_status             status;
@@ -213,10 +221,11 @@ static shb_status work(job *j) {
   return fill(j, first, &peak);
 }
 
-shb_status design_run(const case_file *file, const case_model *model, int n_outputs,
-                      const study_output *output, study_design *design) {
-  job        j      = {file, model, n_outputs, output, design, NULL};
-  shb_status status = work(&j);
+shb_status design_run(const case_file *file, const case_model *model, peak_field *field,
+                      int n_outputs, const study_output *output, study_design *design) {
+  job        j      = {file, model, n_outputs, output, design, NULL, field};
+  shb_status status = field ? peak_field_use(field, file) : SHB_OK;
+  if (status == SHB_OK) status = work(&j);
   if (status == SHB_ERR_INPUT) {
     fail(design, shb_message());
     status = SHB_OK;

@@ -1,4 +1,4 @@
-#include "cases/study/exact_peak.h"
+#include "cases/peaks/exact_peak.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -208,10 +208,27 @@ static shb_status describe(const mhb_response *response, const mhb_branch *branc
   return SHB_OK;
 }
 
+typedef struct {
+  const modal_model  *model;
+  const mhb_settings *settings;
+  mhb_response       *response;
+  post_output         output;
+  double              best; /* m, highest peak so far */
+} work;
+
+/* Stress and strain there, where they are asked for. */
+static shb_status describe_field(const work *w, mhb_response *response, int branch, int point,
+                                 exact_peak_asked asked, exact_peak *peak) {
+  for (int i = 0; i < STUDY_MAX_OUTPUTS; i++) peak->field[i] = peak->field_error[i] = NAN;
+  if (!asked.field || !(peak->amplitude > w->best)) return SHB_OK;
+  return peak_field_evaluate(asked.field, w->model, w->settings, response, branch, point,
+                             peak->field);
+}
+
 /* Numbers at the solution that the matcher found last. */
-static shb_status describe_solution(const mhb_response *like, maximum *m, int harmonics,
-                                    post_output output, exact_peak *peak) {
-  mhb_response *one = mhb_response_like(like);
+static shb_status describe_solution(const work *w, maximum *m, int harmonics,
+                                    exact_peak_asked asked, exact_peak *peak) {
+  mhb_response *one = mhb_response_like(w->response);
   int           index;
   SHB_CHECK(one, SHB_ERR_IO, "out of memory");
   shb_status status = mhb_response_branch(one, MHB_BRANCH_NONLINEAR, &index);
@@ -220,18 +237,11 @@ static shb_status describe_solution(const mhb_response *like, maximum *m, int ha
     one->branch[index].n_harmonics = harmonics;
     status                         = point_matcher_record(m->matcher, one, index);
   }
-  if (status == SHB_OK) status = describe(one, &one->branch[index], 0, output, peak);
+  if (status == SHB_OK) status = describe(one, &one->branch[index], 0, w->output, peak);
+  if (status == SHB_OK) status = describe_field(w, one, index, 0, asked, peak);
   mhb_response_destroy(one);
   return status;
 }
-
-typedef struct {
-  const modal_model  *model;
-  const mhb_settings *settings;
-  const mhb_response *response;
-  post_output         output;
-  double              best; /* m, highest peak so far */
-} work;
 
 /* Solve the peak with a number of harmonics; at: only at this t, NAN: find it. */
 static shb_status solve_peak(const work *w, int harmonics, double at, exact_peak_asked asked,
@@ -244,8 +254,7 @@ static shb_status solve_peak(const work *w, int harmonics, double at, exact_peak
   bool       found  = isnan(at) ? climb(w->response, w->output, m) : solve(m, at) >= 0;
   shb_status status = SHB_OK;
   if (found && isnan(at)) found = solve(m, m->t) >= 0; /* the balance is then evaluated there */
-  if (found)
-    status = describe_solution(w->response, m, harmonics * m->branch->order, w->output, peak);
+  if (found) status = describe_solution(w, m, harmonics * m->branch->order, asked, peak);
   if (status == SHB_OK && found && asked.multipliers)
     status = point_matcher_judge(m->matcher, &peak->stable);
   if (status == SHB_OK && found && asked.derivatives && m->found[1] > w->best)
@@ -256,17 +265,27 @@ static shb_status solve_peak(const work *w, int harmonics, double at, exact_peak
   return status;
 }
 
+/* The errors by harmonics. */
 static void set_errors(exact_peak *peak, const exact_peak *other) {
+  for (int i = 0; i < STUDY_MAX_OUTPUTS; i++)
+    peak->field_error[i] = fabs(other->field[i] - peak->field[i]);
   peak->frequency_error    = fabs(other->frequency - peak->frequency);
   peak->amplitude_error    = fabs(other->amplitude - peak->amplitude);
   peak->peak_to_peak_error = fabs(other->peak_to_peak - peak->peak_to_peak);
   peak->dissipation_error  = fabs(other->dissipation - peak->dissipation);
 }
 
+/* The place of the peak is not exact: the amplitude is too low by at most this. */
+static void add_error(exact_peak *peak, double drop) {
+  peak->amplitude_error += drop;
+  for (int i = 0; i < STUDY_MAX_OUTPUTS; i++)
+    peak->field_error[i] += fabs(peak->field[i]) * drop / peak->amplitude;
+}
+
 /* Where the derivatives were found, the peak itself was solved by its own equations. */
 static bool take_solved(exact_peak *peak) {
   if (peak->by.kind == MHB_PEAK_UNJUDGED) return false;
-  peak->amplitude_error += fabs(peak->amplitude - peak->by.amplitude);
+  add_error(peak, fabs(peak->amplitude - peak->by.amplitude));
   peak->amplitude = peak->by.amplitude;
   peak->frequency = peak->by.omega / SHB_TWO_PI;
   return true;
@@ -284,7 +303,7 @@ static shb_status refine(const work *w, const candidate *c, exact_peak_asked ask
                        &m, &other));
     other.exact           = other.found;
     other.amplitude_error = 0; /* that of the harmonics is not known */
-    if (other.found && !take_solved(&other)) other.amplitude_error = m.drop;
+    if (other.found && !take_solved(&other)) add_error(&other, m.drop);
     if (other.found) *peak = other;
     return SHB_OK;
   }
@@ -294,9 +313,10 @@ static shb_status refine(const work *w, const candidate *c, exact_peak_asked ask
     SHB_TRY(solve_peak(w, levels[level], NAN, asked, &m, &other));
     if (!other.found) return SHB_OK;
     double t = m.t, drop = m.drop;
-    SHB_TRY(solve_peak(w, levels[level + 1], t, (exact_peak_asked){0}, &m, &more));
+    SHB_TRY(
+        solve_peak(w, levels[level + 1], t, (exact_peak_asked){.field = asked.field}, &m, &more));
     if (more.found) set_errors(&other, &more);
-    if (!take_solved(&other)) other.amplitude_error += drop;
+    if (!take_solved(&other)) add_error(&other, drop);
     other.exact = true;
     *peak       = other;
     settled = more.found && other.amplitude_error < w->settings->motion_tolerance * peak->amplitude;
@@ -305,7 +325,7 @@ static shb_status refine(const work *w, const candidate *c, exact_peak_asked ask
 }
 
 shb_status exact_peak_find(const modal_model *model, const mhb_settings *settings,
-                           const mhb_response *response, post_output output, exact_peak_asked asked,
+                           mhb_response *response, post_output output, exact_peak_asked asked,
                            exact_peak *peak) {
   work      w = {model, settings, response, output, 0};
   candidate list[MOST_CANDIDATES];
@@ -322,6 +342,8 @@ shb_status exact_peak_find(const modal_model *model, const mhb_settings *setting
     const mhb_branch *b   = list[i].branch;
     SHB_TRY(describe(response, b, list[i].point, output, &one));
     one.edge = list[i].point == 0 || list[i].point == b->n_points - 1;
+    SHB_TRY(describe_field(&w, response, (int)(b - response->branch), list[i].point,
+                           one.edge ? asked : (exact_peak_asked){0}, &one));
     if (!one.edge) SHB_TRY(refine(&w, &list[i], asked, &one));
     if (one.amplitude > peak->amplitude) *peak = one;
     w.best = peak->amplitude;
