@@ -14,7 +14,7 @@ typedef enum {
   STUDY_PEAK_TO_PEAK,   /* m, there */
   STUDY_STABLE,         /* 1, 0, -1: not judged; there */
   STUDY_DISSIPATION,    /* J a cycle, all pairs; there */
-  STUDY_STRESS,         /* Pa, largest amplitude of the von Mises stress, with sign; there */
+  STUDY_STRESS,         /* Pa, greatest amplitude of the signed von Mises stress; there */
   STUDY_SAFETY,         /* -, least safety against Goodman's line; there */
   STUDY_PROBE,          /* m, highest first harmonic of a probe over all curves */
   STUDY_GAUGE,          /* -, amplitude of the strain at a gauge; at the highest peak */
@@ -29,8 +29,8 @@ typedef struct {
   char           unit[STUDY_UNIT_TEXT];
 } study_output;
 
-/* Understand a name: peak, frequency, peak_to_peak, stable, dissipation, stress, safety, the name of
- * a probe or gauge, or modes[I].frequency with I from 1. False with a reason otherwise. */
+/* Understand a name: peak, frequency, peak_to_peak, stable, dissipation, stress, safety, the name
+ * of a probe or gauge, or modes[I].frequency with I from 1. False with a reason otherwise. */
 bool study_output_parse(const char *name, const case_file *file, study_output *output, char *why,
                         size_t size);
 
