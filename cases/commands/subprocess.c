@@ -3,7 +3,6 @@
 #include <errno.h>
 #include <signal.h>
 #include <spawn.h>
-#include <stdbool.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -114,4 +113,8 @@ shb_status subprocess_run_to(char *const argv[], int out, int err, subprocess_re
              strsignal(number), number == SIGKILL ? "; out of memory?" : "");
   }
   return SHB_OK;
+}
+
+bool subprocess_mpiexec_refuses_root(void) {
+  return geteuid() == 0 && !getenv("OMPI_ALLOW_RUN_AS_ROOT");
 }

@@ -2,6 +2,8 @@
 #ifndef CASES_COMMANDS_SUBPROCESS_H
 #define CASES_COMMANDS_SUBPROCESS_H
 
+#include <stdbool.h>
+
 #include "mesh/base/status.h"
 
 typedef struct {
@@ -21,5 +23,8 @@ char *subprocess_program(const char *name);
 shb_status subprocess_run(char *const argv[], subprocess_result *result);
 /* The same with descriptors for its standard output and error; negative: those of this program. */
 shb_status subprocess_run_to(char *const argv[], int out, int err, subprocess_result *result);
+
+/* mpiexec of Open MPI refuses root unless two variables allow it. That is the user's choice. */
+bool subprocess_mpiexec_refuses_root(void);
 
 #endif

@@ -168,29 +168,22 @@ static bool in_path(const char *name) {
   return false;
 }
 
-/* mpiexec of Open MPI refuses root unless two variables allow it. That is the user's choice. */
-static bool refuses_root(void) {
-  if (geteuid() != 0 || getenv("OMPI_ALLOW_RUN_AS_ROOT")) return false;
-  fputs(
-      "shroudhb: warning: mpiexec refuses to run as root, so one core computes; set "
-      "OMPI_ALLOW_RUN_AS_ROOT=1\nand OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1 to use all\n",
-      stderr);
-  return true;
-}
-
 /* Does a word ask for something that needs no workers? */
 static bool runs_alone(int argc, char **argv) {
   for (int i = 1; i < argc; i++)
     if (strcmp(argv[i], "--help") == 0 || strcmp(argv[i], "--check") == 0 ||
         strcmp(argv[i], "--version") == 0 || strncmp(argv[i], "--design", 8) == 0)
       return true;
-  return argc < 2 || !in_path("mpiexec") || refuses_root();
+  return argc < 2 || !in_path("mpiexec") || subprocess_mpiexec_refuses_root();
 }
 
 /* shroudhb-study with a worker a core and a manager, which sleeps. The processes are not bound to
  * cores: those that compute are children of the ranks. */
 static int study_main(const char *name, int argc, char **argv, run_words end) {
   if (runs_alone(argc, argv)) return become("study", NULL, argc, argv, end);
+  command_options options; /* a wrong word is told once, not by every process */
+  int             code = parse(argc, argv, &options);
+  if (code >= 0) return code;
   static char *const start[] = {"mpiexec", "--quiet", "--bind-to", "none", "--oversubscribe", "-n"};
   enum { STARTS = sizeof start / sizeof *start };
   char   ranks[16];

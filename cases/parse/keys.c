@@ -88,8 +88,11 @@ bool case_key_nearest(case_keys keys, const char *block, const char *word, char 
   best[0]    = '\0';
   for (int i = 0; i < keys.n; i++) {
     if (!case_key_part(keys.key[i].path, block, part)) continue;
-    int distance = case_edit_distance(word, part);
-    if (distance >= least || distance >= (int)strlen(part)) continue;
+    int  distance = case_edit_distance(word, part);
+    bool nearer = distance < least, alike = lower(part[0]) == lower(word[0]),
+         tie = distance == least;
+    if (tie && best[0]) nearer = alike && lower(best[0]) != lower(word[0]);
+    if (!nearer || distance >= (int)strlen(part)) continue;
     least = distance;
     strcpy(best, part);
   }

@@ -1,5 +1,6 @@
 #include "cases/parse/yaml.h"
 
+#include <ctype.h>
 #include <errno.h>
 #include <stdarg.h>
 #include <stdlib.h>
@@ -9,6 +10,7 @@
 typedef struct {
   yaml_parser_t parser;
   case_issues  *issues;
+  bool          indexed; /* indices are written <1> */
 } builder;
 
 shb_status case_text_read(const char *path, char **text, size_t *length) {
@@ -205,6 +207,18 @@ static bool build_mapping(builder *b, const char *path, int depth, case_node *ou
   }
 }
 
+/* Rewrite the brackets of every index behind a word, such as modes[1], to other ones. In a flow
+ * list YAML ends a word at '[', so indices are parsed as modes<1>. Places stay what they are. */
+static void set_index_brackets(char *text, const char from[2], const char to[2]) {
+  for (char *at = text; (at = strchr(at, from[0])); at++) {
+    size_t digits = strspn(at + 1, "0123456789");
+    bool   word   = at > text && (isalnum((unsigned char)at[-1]) || at[-1] == '_');
+    if (!word || digits == 0 || at[digits + 1] != from[1]) continue;
+    at[0]          = to[0];
+    at[digits + 1] = to[1];
+  }
+}
+
 static bool build_scalar(builder *b, const yaml_event_t *event, const char *path, case_node *out) {
   if (strlen((const char *)event->data.scalar.value) != event->data.scalar.length) {
     out->kind = CASE_BROKEN;
@@ -214,6 +228,7 @@ static bool build_scalar(builder *b, const yaml_event_t *event, const char *path
   }
   out->kind = is_null(event) ? CASE_NULL : CASE_SCALAR;
   out->text = strdup((const char *)event->data.scalar.value);
+  if (out->text && b->indexed) set_index_brackets(out->text, "<>", "[]");
   if (!out->text) case_issue_add(b->issues, 0, 0, NULL, "out of memory");
   return out->text != NULL;
 }
@@ -276,12 +291,16 @@ static bool expect_end(builder *b) {
 }
 
 case_node *case_document_parse(case_issues *issues) {
-  builder b = {.issues = issues};
-  if (!yaml_parser_initialize(&b.parser)) {
+  builder b    = {.issues = issues, .indexed = !memchr(issues->text, '<', issues->length)};
+  char   *text = calloc(issues->length + 1, 1);
+  if (!text || !yaml_parser_initialize(&b.parser)) {
+    free(text);
     case_issue_add(issues, 0, 0, NULL, "out of memory");
     return NULL;
   }
-  yaml_parser_set_input_string(&b.parser, (const unsigned char *)issues->text, issues->length);
+  memcpy(text, issues->text, issues->length);
+  if (b.indexed) set_index_brackets(text, "[]", "<>");
+  yaml_parser_set_input_string(&b.parser, (const unsigned char *)text, issues->length);
   case_node   *root = NULL;
   yaml_event_t event;
   if (first_event(&b, &event)) {
@@ -294,6 +313,7 @@ case_node *case_document_parse(case_issues *issues) {
     }
   }
   yaml_parser_delete(&b.parser);
+  free(text);
   return root;
 }
 

@@ -127,13 +127,23 @@ static shb_status print_json(const study_spec *spec) {
   return status;
 }
 
+/* `shroudhb study` starts a worker a core; where mpiexec refuses, one process does everything. */
+static void tell_one_core(void) {
+  if (getenv("OMPI_COMM_WORLD_SIZE") || !subprocess_mpiexec_refuses_root()) return;
+  fputs(
+      "shroudhb: warning: mpiexec refuses to run as root, so one core computes; set "
+      "OMPI_ALLOW_RUN_AS_ROOT=1\nand OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1 to use all\n",
+      stderr);
+}
+
 /* The study on the manager. */
 static shb_status manage(const study_spec *spec, const command_options *options,
                          design_process *process) {
   shb_progress progress = shb_progress_start("study", options->quiet, options->verbose);
   design_study study    = {0};
-  shb_status   status   = study_run(spec, options->force, process, &progress, &study);
-  bool         whole    = status == SHB_OK || status == SHB_NOT_CONVERGED;
+  tell_one_core();
+  shb_status status = study_run(spec, options->force, process, &progress, &study);
+  bool       whole  = status == SHB_OK || status == SHB_NOT_CONVERGED;
   if (whole && options->json) {
     shb_status printed = print_json(spec);
     if (printed != SHB_OK) status = printed;

@@ -25,7 +25,7 @@ vary:
   contact.n0: {from: 0.1 N, to: 0.5 N, points: 5}
   contact.mu: [0.3, 0.4]
 plan: grid
-outputs: [peak, frequency, peak_to_peak, stable, dissipation, mass, 'modes[1].frequency']
+outputs: [peak, frequency, peak_to_peak, stable, dissipation, mass, modes[1].frequency]
 """
 
 
@@ -365,6 +365,7 @@ FAULTS = [
      'add relative: true'),
     ('samples: 32\nuncertain: {contact.mu: {normal: [0, 0.1]}}', 'contact.mu: is -'),
     ('vary: {contact.mv: [1, 2]}', "contact.mv: is no key of a case; did you mean 'mu'?"),
+    ('vary: {contact.no: [1, 2]}', "contact.no: is no key of a case; did you mean 'n0'?"),
     ('vary: {contct.mu: [1, 2]}', "contct.mu: is no key of a case; did you mean 'contact'?"),
     ('vary: {contact.to: [1, 2]}', 'contact.to: is not a number'),
     ('vary: {contact.mu: [0.3, -1]}', 'design 2: contact.mu: is -1, must be 0 to'),
@@ -375,7 +376,7 @@ FAULTS = [
     ('vary: {contact.n0: {from: 0 N, to: 1 N, points: 3, scale: log}}', 'a range above 0'),
     ('vary: {contact.n0: {form: 0 N, to: 1 N, points: 3}}', "did you mean 'from'?"),
     ('vary: {contact.mu: [0.3]}\noutputs: [peek]', "'peek' is no output of this case"),
-    ('vary: {contact.mu: [0.3]}\noutputs: [modes[0].frequency]', 'outputs'),
+    ('vary: {contact.mu: [0.3]}\noutputs: [modes[0].frequency]', 'the modes of the case'),
     ("vary: {contact.mu: [0.3]}\noutputs: ['modes[0].frequency']", 'the modes of the case'),
     ('vary: {contact.mu: [0.3]}\nplan: gird', 'plan: expected grid'),
     ('vray: {contact.mu: [0.3]}', "did you mean 'vary'?"),
@@ -399,6 +400,8 @@ def check_faults():
         said = run(program('shroudhb-study'), '--check', 'fault.yaml', code=2)
         assert message in said, f'{text}: {said}'
     assert 'designs   10' in run(program('shroudhb'), 'check', 'grid.yaml')
+    said = run(program('shroudhb'), 'study', 'grid.yaml', 'grid.yaml', code=2)
+    assert said.count('error:') == 1, said
 
 
 def check_overrides():
