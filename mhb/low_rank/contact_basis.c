@@ -14,6 +14,10 @@ static const double FIRST_BOUND = 0.05, LAST_BOUND = 0.8;
 /* Candidates that depend on the others to this part are dropped. */
 static const double DEPENDENT = 1e-9;
 
+/* Numbers of room behind a matrix. zgemv_n of OpenBLAS 0.3.21 reads a strided vector, here a row,
+ * beyond its end where the matrix has 4 i + 2 rows. It crashes where the heap ends there. */
+enum { BEYOND = 1024 };
+
 enum { FREQUENCIES = 5, FIRST_BLOCK = 16, POWERS = 4 };
 
 static const double complex ONE = 1, ZERO = 0;
@@ -108,7 +112,7 @@ typedef struct {
   double complex *C;      /* [n][columns] D^1/2 [B S E], then an orthonormal basis [n][kept] */
   double complex *square; /* [columns][columns] */
   double complex *G;      /* [columns][poles] Q^H D^1/2 [B S] */
-  double complex *H;      /* [columns][blocks * columns] */
+  double complex *H;      /* [2 blocks][columns][columns], kept of both */
   double complex *left;   /* [columns][columns] */
   double         *value;  /* [columns] */
   double complex *work;   /* [columns][poles] */
@@ -157,12 +161,12 @@ static double complex receptance_of(const mhb_receptance *r, int i, double w) {
   return 1.0 / CMPLX(wi * wi - w * w, 2 * zeta * wi * w);
 }
 
-/* Block of H: Q^H D^1/2 R_k D^1/2 Q at w, and its conjugate transpose beside it. */
+/* Block of H: Q^H D^1/2 R_k D^1/2 Q at w, and its conjugate transpose below it. */
 static void add_frequency(const mhb_receptance *r, candidates *c, const leading *e,
-                          const double complex *QE, double w, int block, int blocks) {
-  int             q = c->kept, poles = n_poles(r), wide = 2 * blocks * q;
+                          const double complex *QE, double w, int block) {
+  int             q = c->kept, poles = n_poles(r);
   modal_series    series = modal_series_at(r->model, w);
-  double complex *at     = c->H + 2 * block * q;
+  double complex *at = c->H + 2 * block * q * q, *below = at + q * q;
   double          slope;
   for (int j = 0; j < poles; j++) {
     double complex L = j < r->n_modes
@@ -171,13 +175,13 @@ static void add_frequency(const mhb_receptance *r, candidates *c, const leading 
     for (int i = 0; i < q; i++) c->work[i * poles + j] = L * c->G[i * poles + j];
   }
   cblas_zgemm(CblasRowMajor, CblasNoTrans, CblasConjTrans, q, q, poles, &ONE, c->work, poles, c->G,
-              poles, &ZERO, at, wide);
+              poles, &ZERO, at, q);
   for (int i = 0; i < q; i++)
     for (int j = 0; j < q; j++)
       for (int l = 0; l < e->count; l++)
-        at[i * wide + j] += e->value[l] * QE[i * e->count + l] * conj(QE[j * e->count + l]);
+        at[i * q + j] += e->value[l] * QE[i * e->count + l] * conj(QE[j * e->count + l]);
   for (int i = 0; i < q; i++)
-    for (int j = 0; j < q; j++) at[i * wide + q + j] = conj(at[j * wide + i]);
+    for (int j = 0; j < q; j++) below[i * q + j] = conj(at[j * q + i]);
 }
 
 /* Frequencies of harmonic k, w rad/s: across the range, and the resonances that it passes. */
@@ -205,16 +209,19 @@ static void candidates_free(candidates *c) {
 static int candidates_allocate(candidates *c, const mhb_receptance *r, int blocks) {
   size_t q = (size_t)c->columns, poles = (size_t)n_poles(r) + q;
   c->C      = calloc((size_t)r->n * q, sizeof *c->C);
-  c->square = calloc(q * q, sizeof *c->square);
+  c->square = calloc(q * q + BEYOND, sizeof *c->square);
   c->G      = calloc(q * poles, sizeof *c->G);
-  c->H      = calloc(q * q * 2 * (size_t)blocks, sizeof *c->H);
+  c->H      = calloc(q * q * 2 * (size_t)blocks + BEYOND, sizeof *c->H);
   c->left   = calloc(q * q, sizeof *c->left);
   c->value  = calloc(q, sizeof *c->value);
   c->work   = calloc(q * poles, sizeof *c->work);
   return c->C && c->square && c->G && c->H && c->left && c->value && c->work;
 }
 
-/* C and G and H of a harmonic; singular vectors of H to `left`, values to `value`. */
+/* C and G and H of a harmonic; right singular vectors of H to `left`, values to `value`.
+ *
+ * LAPACK takes H transposed, as it stands. A copy that LAPACKE makes would have no room behind it
+ * (BEYOND). */
 static int decompose(mhb_contact_basis *b, int k, const leading *e, const double *w, int count,
                      candidates *c) {
   const mhb_receptance *r = b->receptance;
@@ -233,12 +240,14 @@ static int decompose(mhb_contact_basis *b, int k, const leading *e, const double
       for (int j = 0; j < poles; j++) c->G[a * poles + j] += x * e->root[i] * shape(r, k, i, j);
       for (int l = 0; l < e->count; l++) QE[a * e->count + l] += x * e->vector[i * e->block + l];
     }
-  for (int i = 0; i < count && ok; i++) add_frequency(r, c, e, QE, w[i], i, count);
+  for (int i = 0; i < count && ok; i++) add_frequency(r, c, e, QE, w[i], i);
   free(QE);
-  int    wide = 2 * count * q;
   double rest[q + 1];
-  return ok && LAPACKE_zgesvd(LAPACK_ROW_MAJOR, 'S', 'N', q, wide, c->H, wide, c->value, c->left, q,
-                              NULL, wide, rest) == 0;
+  ok = ok && LAPACKE_zgesvd(LAPACK_COL_MAJOR, 'S', 'N', q, 2 * count * q, c->H, q, c->value,
+                            c->square, q, NULL, 1, rest) == 0;
+  for (int i = 0; i < q && ok; i++)
+    for (int j = 0; j < q; j++) c->left[i * q + j] = conj(c->square[j * q + i]);
+  return ok;
 }
 
 /* Real form of the columns D^-1/2 Q left. */
