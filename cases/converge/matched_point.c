@@ -8,14 +8,21 @@
 #include "mhb/branches/record.h"
 #include "mhb/continuation/nearest_solution.h"
 #include "mhb/floquet/floquet.h"
+#include "mhb/numerics/fourier.h"
+
+/* Of the residual, relative to the motion. */
+static const double TOLERANCE = 1e-10;
 
 struct point_matcher {
   mhb_settings    settings;
   mhb_balance    *balance;
   mhb_newton     *newton;
   post_output     output;
-  double         *x, *normal;     /* [n], [n+1] */
-  double          omega;          /* rad/s, of the solution in x */
+  double         *x, *normal;   /* [n], [n+1] */
+  double          omega;        /* rad/s, of the solution in x */
+  double         *last, *start; /* [n+1] the solution found last, and what it was searched from */
+  bool            has_last;
+  double          tolerance;      /* of the residual */
   double complex *force, *motion; /* [3 pairs], [3 probes] of one harmonic */
 };
 
@@ -24,10 +31,12 @@ static shb_status make(const modal_model *model, point_matcher *matcher) {
   size_t n        = (size_t)matcher->balance->n;
   matcher->x      = calloc(n, sizeof *matcher->x);
   matcher->normal = calloc(n + 1, sizeof *matcher->normal);
+  matcher->last   = calloc(n + 1, sizeof *matcher->last);
+  matcher->start  = calloc(n + 1, sizeof *matcher->start);
   matcher->force  = calloc(3 * (size_t)model->n_pairs, sizeof *matcher->force);
   matcher->motion = calloc(3 * (size_t)model->n_probes + 1, sizeof *matcher->motion);
-  SHB_CHECK(matcher->x && matcher->normal && matcher->force && matcher->motion, SHB_ERR_IO,
-            "out of memory");
+  bool good       = matcher->x && matcher->normal && matcher->force && matcher->motion;
+  SHB_CHECK(good && matcher->last && matcher->start, SHB_ERR_IO, "out of memory");
   return mhb_newton_create(matcher->balance->n, &matcher->newton);
 }
 
@@ -39,6 +48,7 @@ shb_status point_matcher_create(const modal_model *model, const mhb_settings *se
   matcher->settings.harmonics        = harmonics;
   matcher->settings.motion_tolerance = 0;
   matcher->output                    = output;
+  matcher->tolerance                 = TOLERANCE;
   shb_status status                  = make(model, matcher);
   if (status == SHB_OK) *out = matcher;
   if (status != SHB_OK) point_matcher_destroy(matcher);
@@ -51,6 +61,8 @@ void point_matcher_destroy(point_matcher *matcher) {
   mhb_balance_destroy(matcher->balance);
   free(matcher->x);
   free(matcher->normal);
+  free(matcher->last);
+  free(matcher->start);
   free(matcher->force);
   free(matcher->motion);
   free(matcher);
@@ -89,32 +101,124 @@ static double amplitude(const point_matcher *matcher) {
   return post_semi_major_axis(3, u, 1);
 }
 
-int point_matcher_solve(point_matcher *matcher, const curve_place *place, bool same_frequency,
-                        double found[2]) {
-  const mhb_settings *s    = &matcher->settings;
-  mhb_balance        *b    = matcher->balance;
-  const double       *f    = place->branch->frequency;
-  size_t              n    = (size_t)b->n;
-  double              span = SHB_TWO_PI * (s->frequency[1] - s->frequency[0]);
-  memset(matcher->x, 0, n * sizeof *matcher->x);
-  memset(matcher->normal, 0, (n + 1) * sizeof *matcher->normal);
+void point_matcher_set_tolerance(point_matcher *matcher, double tolerance) {
+  matcher->tolerance = tolerance;
+}
+
+/* The width of the frequency range, rad/s. */
+static double span_of(const point_matcher *matcher) {
+  const double *range = matcher->settings.frequency;
+  return SHB_TWO_PI * (range[1] - range[0]);
+}
+
+/* x <- the motion at a place of the curve; returns its frequency, rad/s. */
+static double set_start(point_matcher *matcher, const curve_place *place) {
+  const double *f = place->branch->frequency;
+  memset(matcher->x, 0, (size_t)matcher->balance->n * sizeof *matcher->x);
   add_motion(matcher, place, place->from, 1 - place->part, matcher->x);
   add_motion(matcher, place, place->to, place->part, matcher->x);
-  if (!same_frequency) {
+  mhb_balance_set_preload(matcher->balance, place->branch->n0[place->from]);
+  return SHB_TWO_PI * ((1 - place->part) * f[place->from] + place->part * f[place->to]);
+}
+
+/* place NULL: at the same frequency */
+static void set_normal(point_matcher *matcher, const curve_place *place) {
+  size_t n = (size_t)matcher->balance->n;
+  memset(matcher->normal, 0, (n + 1) * sizeof *matcher->normal);
+  if (place) {
+    const double *f = place->branch->frequency;
     add_motion(matcher, place, place->low, -1, matcher->normal);
     add_motion(matcher, place, place->high, 1, matcher->normal);
+    matcher->normal[n] = SHB_TWO_PI * (f[place->high] - f[place->low]);
+  } else {
+    matcher->normal[n] = span_of(matcher);
   }
-  matcher->normal[n] = same_frequency ? span : SHB_TWO_PI * (f[place->high] - f[place->low]);
-  double omega = SHB_TWO_PI * ((1 - place->part) * f[place->from] + place->part * f[place->to]);
-  double scale = mhb_norm(matcher->x, b->n);
-  mhb_balance_set_preload(b, place->branch->n0[place->from]);
+}
+
+/* Newton's method from x and omega, in units of scale. */
+static int solve_from(point_matcher *matcher, double omega, double scale, double found[2]) {
+  mhb_balance *b = matcher->balance;
   if (!(scale > 0) ||
-      !mhb_nearest_solution(matcher->newton, b, matcher->normal, scale, span, matcher->x, &omega))
+      !mhb_nearest_solution(matcher->newton, b, matcher->normal, scale, span_of(matcher),
+                            matcher->tolerance, matcher->x, &omega))
     return 0;
-  matcher->omega = omega;
-  found[0]       = omega / SHB_TWO_PI;
-  found[1]       = amplitude(matcher);
+  size_t n          = (size_t)b->n;
+  matcher->omega    = omega;
+  matcher->has_last = true;
+  memcpy(matcher->last, matcher->x, n * sizeof *matcher->last);
+  matcher->last[n] = omega;
+  found[0]         = omega / SHB_TWO_PI;
+  found[1]         = amplitude(matcher);
   return 1;
+}
+
+int point_matcher_solve(point_matcher *matcher, const curve_place *place, bool same_frequency,
+                        double found[2]) {
+  double omega = set_start(matcher, place);
+  size_t n     = (size_t)matcher->balance->n;
+  set_normal(matcher, same_frequency ? NULL : place);
+  memcpy(matcher->start, matcher->x, n * sizeof *matcher->start);
+  matcher->start[n] = omega;
+  return solve_from(matcher, omega, mhb_norm(matcher->x, matcher->balance->n), found);
+}
+
+int point_matcher_follow(point_matcher *matcher, const curve_place *place, double found[2]) {
+  if (!matcher->has_last) return point_matcher_solve(matcher, place, false, found);
+  size_t n     = (size_t)matcher->balance->n;
+  double omega = set_start(matcher, place), moved = omega - matcher->start[n];
+  double scale      = mhb_norm(matcher->x, matcher->balance->n);
+  matcher->start[n] = omega;
+  for (size_t i = 0; i < n; i++) {
+    double here = matcher->x[i];
+    matcher->x[i] += matcher->last[i] - matcher->start[i];
+    matcher->start[i] = here;
+  }
+  matcher->has_last = false; /* unless one is found */
+  set_normal(matcher, place);
+  return solve_from(matcher, matcher->last[n] + moved, scale, found);
+}
+
+shb_status point_matcher_keep(const point_matcher *matcher, matched_solution *s) {
+  const mhb_balance *b    = matcher->balance;
+  size_t             size = (size_t)b->n * sizeof *s->x;
+  double            *x    = realloc(s->x, size);
+  SHB_CHECK(x, SHB_ERR_IO, "out of memory");
+  *s = (matched_solution){b->m, matcher->last[b->n], b->eval->at.n0, x};
+  memcpy(x, matcher->last, size);
+  return SHB_OK;
+}
+
+void matched_solution_free(matched_solution *s) {
+  free(s->x);
+  *s = (matched_solution){0};
+}
+
+/* Adds factor times a kept solution, truncated or padded, and its frequency; to[n+1]. */
+static void add_kept(const point_matcher *matcher, const matched_solution *s, double factor,
+                     double *to) {
+  const mhb_balance *b     = matcher->balance;
+  int                least = s->harmonics < b->m ? s->harmonics : b->m;
+  int                other = mhb_real_size(s->harmonics), own = mhb_real_size(least);
+  for (int row = 0; row < 3 * b->n_pairs; row++)
+    for (int i = 0; i < own; i++)
+      to[(size_t)row * (size_t)b->nb + (size_t)i] +=
+          factor * s->x[(size_t)row * (size_t)other + (size_t)i];
+  to[b->n] += factor * s->omega;
+}
+
+int point_matcher_between(point_matcher *matcher, const matched_solution *a,
+                          const matched_solution *b, double share,
+                          const matched_solution *const chord[2], double found[2]) {
+  size_t n = (size_t)matcher->balance->n;
+  memset(matcher->start, 0, (n + 1) * sizeof *matcher->start);
+  memset(matcher->normal, 0, (n + 1) * sizeof *matcher->normal);
+  add_kept(matcher, a, 1 - share, matcher->start);
+  add_kept(matcher, b, share, matcher->start);
+  add_kept(matcher, chord[0], -1, matcher->normal);
+  add_kept(matcher, chord[1], 1, matcher->normal);
+  memcpy(matcher->x, matcher->start, n * sizeof *matcher->x);
+  mhb_balance_set_preload(matcher->balance, a->n0);
+  return solve_from(matcher, matcher->start[n], mhb_norm(matcher->x, matcher->balance->n), found);
 }
 
 shb_status point_matcher_record(point_matcher *matcher, mhb_response *response, int branch) {
@@ -137,10 +241,19 @@ shb_status point_matcher_judge(point_matcher *matcher, int *stable) {
   return SHB_OK;
 }
 
-shb_status point_matcher_derivatives(point_matcher *matcher, mhb_peak_derivatives *derivatives) {
+shb_status point_matcher_peak(point_matcher *matcher, mhb_peak_near near,
+                              mhb_peak_derivatives *derivatives, double found[2]) {
   mhb_balance *b     = matcher->balance;
   bool         probe = matcher->output.place == POST_PLACE_PROBE;
   int          index = matcher->output.index + (probe ? 0 : b->receptance->model->n_probes);
-  return mhb_peak_derivatives_find(b, index, MHB_SIZE_HALF_AXIS, matcher->x, matcher->omega,
-                                   amplitude(matcher), derivatives);
+  found[1]           = amplitude(matcher);
+  SHB_TRY(mhb_peak_derivatives_find(b, index, MHB_SIZE_HALF_AXIS, near, matcher->x, matcher->omega,
+                                    found[1], derivatives));
+  found[0] = derivatives->omega / SHB_TWO_PI;
+  found[1] = derivatives->amplitude;
+  if (derivatives->kind != MHB_PEAK_SMOOTH) return SHB_OK;
+  set_normal(matcher, NULL);
+  if (!solve_from(matcher, derivatives->omega, mhb_norm(matcher->x, b->n), found))
+    derivatives->kind = MHB_PEAK_UNJUDGED;
+  return SHB_OK;
 }

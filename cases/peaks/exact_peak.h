@@ -1,8 +1,8 @@
-/* The highest peak of an output: found on a coarse curve, then solved with enough harmonics.
+/* The highest peak of an output: found beside a coarse curve, then solved with enough harmonics.
  *
- * A sweep with few harmonics shows where the peaks are. Beside each that may be the highest the
- * balance is solved with more harmonics in planes across the coarse curve. The maximum over these
- * planes is the peak of the fine curve. The error is the change by about twice the harmonics. */
+ * A sweep with few harmonics shows where the curve may be highest; fine_curve.h finds the maxima
+ * there with more. Each is solved by the equations of a peak, or by comparison where these fail.
+ * The highest are solved with about twice the harmonics again, and the change is the error. */
 #ifndef CASES_PEAKS_EXACT_PEAK_H
 #define CASES_PEAKS_EXACT_PEAK_H
 

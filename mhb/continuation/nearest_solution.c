@@ -3,7 +3,7 @@
 #include <math.h>
 #include <string.h>
 
-static const double TOLERANCE = 1e-10, ROUNDING = 1e-8, FARTHEST = 0.5;
+static const double ROUNDING = 1e-8, FARTHEST = 0.5;
 enum { MAX_ITERATIONS = 20, MAX_HALVINGS = 4 };
 
 typedef struct {
@@ -43,13 +43,13 @@ static void move(const plane *p, double fraction, double *x, double *omega) {
 }
 
 int mhb_nearest_solution(mhb_newton *newton, mhb_balance *balance, const double *normal,
-                         double scale, double span, double *x, double *omega) {
+                         double scale, double span, double tolerance, double *x, double *omega) {
   plane  p   = {newton, balance, scale, span};
   double way = 0;
   if (mhb_newton_bind(newton, balance) != SHB_OK) return 0;
   double now = measure(&p, x, *omega);
   for (int i = 0; i < MAX_ITERATIONS && isfinite(now); i++) {
-    if (now <= TOLERANCE) return 1;
+    if (now <= tolerance) return 1;
     if (!find_step(&p, normal)) return 0;
     double length = mhb_norm(newton->step, newton->n + 1), before = now;
     way += length;

@@ -10,9 +10,9 @@
  *                  the same frequency
  *   x       inout  [n] m
  *   omega   inout  rad/s
- * Returns 1 if |r| <= 1e-10 |x| within a distance of 0.5 in y; 1e-8 is enough where round-off
+ * Returns 1 if |r| <= tolerance |x| within a distance of 0.5 in y; 1e-8 is enough where round-off
  * prevents less. The balance is then evaluated there. 0 if not; x and omega are then of no use. */
 int mhb_nearest_solution(mhb_newton *newton, mhb_balance *balance, const double *normal,
-                         double scale, double span, double *x, double *omega);
+                         double scale, double span, double tolerance, double *x, double *omega);
 
 #endif

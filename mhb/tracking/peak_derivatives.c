@@ -2,6 +2,7 @@
 
 #include <math.h>
 #include <stdlib.h>
+#include <string.h>
 
 #include "mesh/base/constants.h"
 #include "mhb/numerics/vector.h"
@@ -23,9 +24,21 @@ typedef struct {
   mhb_balance  *balance;
   int           output;
   mhb_size      size;
-  const double *x;
+  mhb_peak_near near; /* of a smooth peak */
+  double       *x;
   double        omega, found;
 } search;
+
+mhb_peak_near mhb_peak_at(double omega) {
+  return (mhb_peak_near){{omega * (1 - SAME_FREQUENCY), omega * (1 + SAME_FREQUENCY)},
+                         {1 - SAME_AMPLITUDE, 1 + SAME_AMPLITUDE}};
+}
+
+static bool is_near(const search *s, double omega, double amplitude) {
+  const mhb_peak_near *n = &s->near;
+  return omega >= n->omega[0] && omega <= n->omega[1] && amplitude >= n->amplitude[0] * s->found &&
+         amplitude <= n->amplitude[1] * s->found;
+}
 
 static bool is_same(const search *s, double omega, double amplitude) {
   return fabs(amplitude - s->found) <= SAME_AMPLITUDE * s->found &&
@@ -41,12 +54,13 @@ static void solve_smooth(const search *s, mhb_curve_system *system, mhb_curve_po
   if (system->solve_at_value(system, SETTLED, point) != MHB_CONVERGED) return;
   mhb_peak_report report = mhb_peak_system_report(system, point);
   double          omega  = mhb_peak_system_omega(system, point->x);
-  if (!is_same(s, omega, report.amplitude) || !(report.curvature < 0)) return;
+  if (!is_near(s, omega, report.amplitude) || !(report.curvature < 0)) return;
   if (!(report.slip_share > 0)) return; /* at the corner, where no derivative by x is continuous */
   out->kind      = MHB_PEAK_SMOOTH;
   out->omega     = omega;
   out->amplitude = report.amplitude;
   mhb_peak_system_derivatives(system, point, out->by);
+  memcpy(s->x, point->x, (size_t)s->balance->n * sizeof *s->x);
 }
 
 static shb_status smooth(const search *s, mhb_peak_derivatives *out) {
@@ -146,9 +160,9 @@ static void without_slip(const search *s, double *x, mhb_peak_derivatives *out) 
 }
 
 shb_status mhb_peak_derivatives_find(mhb_balance *balance, int output, mhb_size size,
-                                     const double *x, double omega, double found,
+                                     mhb_peak_near near, double *x, double omega, double found,
                                      mhb_peak_derivatives *out) {
-  const search s = {balance, output, size, x, omega, found};
+  const search s = {balance, output, size, near, x, omega, found};
   *out           = (mhb_peak_derivatives){.kind = MHB_PEAK_UNJUDGED};
   for (int i = 0; i < MHB_PEAK_PARAMETERS; i++) out->by[i] = NAN;
   if (balance->n > MOST_UNKNOWNS) return SHB_OK;

@@ -17,13 +17,23 @@ typedef struct {
   double by[MHB_PEAK_PARAMETERS]; /* m a unit; NAN: not judged. n0 of the leading interface */
 } mhb_peak_derivatives;
 
+/* How far from the solution a smooth peak may be: its frequency, rad/s, and its amplitude over that
+ * of the solution. Other peaks are to be the solution itself. */
+typedef struct {
+  double omega[2], amplitude[2];
+} mhb_peak_near;
+
+/* The peak is the solution itself: 1e-4 in amplitude, 1e-3 in frequency. */
+mhb_peak_near mhb_peak_at(double omega);
+
 /* Derivatives of a peak near a solution.
  *   output    in  output_amplitude.h
- *   x, omega  in  [n], rad/s: the solution, which the balance is at; its amplitude in found
+ *   x, omega  inout, in  [n], rad/s: the solution, which the balance is at; its amplitude in found.
+ *                        x becomes that of a smooth peak
  * The operating point of the balance is that of the solution, before and after. SHB_ERR_IO: no
  * memory. */
 shb_status mhb_peak_derivatives_find(mhb_balance *balance, int output, mhb_size size,
-                                     const double *x, double omega, double found,
+                                     mhb_peak_near near, double *x, double omega, double found,
                                      mhb_peak_derivatives *derivatives);
 
 #endif

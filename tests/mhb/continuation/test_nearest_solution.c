@@ -84,7 +84,7 @@ static void at_the_same_frequency(void **state) {
   assert_true(residual_at(&f, x, omega) > 1e-4);
   normal[N] = 1;
   assert_int_equal(
-      mhb_nearest_solution(f.newton, f.residual, normal, mhb_norm(x, N), 0.8, x, &omega), 1);
+      mhb_nearest_solution(f.newton, f.residual, normal, mhb_norm(x, N), 0.8, 1e-10, x, &omega), 1);
   assert_true(fabs(omega - 1.37) < 1e-14);
   assert_true(residual_at(&f, x, omega) <= 1e-10);
   for (int i = 0; i < N; i++) assert_true(fabs(x[i] - wanted[i]) < 1e-8 * mhb_norm(wanted, N));
@@ -107,7 +107,8 @@ static void in_the_plane_across(void **state) {
     normal[N]    = 0.02;
     double scale = mhb_norm(x, N);
     memcpy(y, x, sizeof y);
-    assert_int_equal(mhb_nearest_solution(f.newton, f.residual, normal, scale, 0.8, y, &omega), 1);
+    assert_int_equal(
+        mhb_nearest_solution(f.newton, f.residual, normal, scale, 0.8, 1e-10, y, &omega), 1);
     assert_true(residual_at(&f, y, omega) <= 1e-10);
     for (int k = 0; k < N; k++) {
       sum += normal[k] / scale * (y[k] - x[k]) / scale;
@@ -129,7 +130,7 @@ static void nothing_near(void **state) {
   make(&f);
   x[1]      = 50; /* far beyond any solution */
   normal[N] = 1;
-  assert_int_equal(mhb_nearest_solution(f.newton, f.residual, normal, 1, 0.8, x, &omega), 0);
+  assert_int_equal(mhb_nearest_solution(f.newton, f.residual, normal, 1, 0.8, 1e-10, x, &omega), 0);
   end(&f);
 }
 

@@ -53,10 +53,11 @@ static double value_of(const fixture *f, int parameter) {
 
 /* Find the peak from a solution near it, from[N]; the balance is evaluated there. */
 static void find(fixture *f, const double *from, double omega, double amplitude) {
-  double r[N];
-  mhb_balance_linearise(f->balance, from, omega, r, NULL);
-  assert_ok(mhb_peak_derivatives_find(f->balance, 0, MHB_SIZE_HALF_AXIS, from, omega, amplitude,
-                                      &f->result));
+  double r[N], x[N];
+  memcpy(x, from, sizeof x);
+  mhb_balance_linearise(f->balance, x, omega, r, NULL);
+  assert_ok(mhb_peak_derivatives_find(f->balance, 0, MHB_SIZE_HALF_AXIS, mhb_peak_at(omega), x,
+                                      omega, amplitude, &f->result));
 }
 
 /* Largest difference of the derivatives, relative to peak/parameter, from solved peaks. */

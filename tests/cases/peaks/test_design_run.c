@@ -1,0 +1,80 @@
+/* Peaks of random designs against sweeps of the whole range with many harmonics. */
+#include "cases/peaks/design_run.h"
+
+#include <math.h>
+
+#include "mesh/base/constants.h"
+#include "mhb/branches/forced_response.h"
+#include "postproc/analysis/outputs.h"
+#include "tests/support/check.h"
+#include "tests/support/settings.h"
+#include "tests/support/three_degree.h"
+
+enum { DESIGNS = 6, OUTPUTS = 2 };
+
+/* Numbers between 0 and 1 (Lehmer, modulus 2^31 - 1). */
+static double next_random(unsigned long *state) {
+  *state = *state * 48271UL % 2147483647UL;
+  return (double)*state / 2147483647.;
+}
+
+static double highest(const mhb_response *r) {
+  post_output first = post_output_primary(r);
+  double      most  = 0;
+  for (int k = 0; k < r->n_branches; k++) {
+    const mhb_branch *b = &r->branch[k];
+    if (b->kind != MHB_BRANCH_NONLINEAR) continue;
+    for (int i = 0; i < b->n_points; i++)
+      most = fmax(most, post_amplitude(r, b, i, first, post_first_harmonic(b)));
+  }
+  return most;
+}
+
+static double swept(const case_model *model) {
+  mhb_settings  full    = model->settings;
+  mhb_response *r       = NULL;
+  full.motion_tolerance = 0;
+  full.harmonics        = 13;
+  shb_status status     = mhb_forced_response(&model->model, &full, NULL, NULL, NULL, &r);
+  assert_true(status == SHB_OK || status == SHB_NOT_CONVERGED);
+  double most = highest(r);
+  mhb_response_destroy(r);
+  return most;
+}
+
+/* The peak of a design is the highest of a sweep, and its error is no lower than told. */
+static void no_peak_of_random_designs_is_missed(void **state) {
+  static const study_output output[OUTPUTS] = {{.quantity = STUDY_PEAK},
+                                               {.quantity = STUDY_FREQUENCY}};
+  unsigned long             seed            = 20261;
+  case_model                model           = {.settings = ground_settings(0.4, 0.8, 0.5, 0.3, 31)};
+  three_degree_model(&model.model);
+  model.settings.motion_tolerance = 0.01;
+  model.settings.frequency[0]     = 0.6 / SHB_TWO_PI;
+  model.settings.frequency[1]     = 2 / SHB_TWO_PI;
+  model.settings.stability        = MHB_STABILITY_NEVER;
+  model.settings.tolerance        = 1e-6;
+  (void)state;
+  for (int i = 0; i < DESIGNS; i++) {
+    design_study one;
+    model.settings.n0[0] = 0.03 * pow(40, next_random(&seed));
+    model.settings.mu    = 0.1 + 0.5 * next_random(&seed);
+    double reference     = swept(&model);
+    assert_ok(design_study_create(0, OUTPUTS, study_derivatives(OUTPUTS, output), &one));
+    study_design *design = design_study_add(&one, NULL);
+    assert_ok(design_run(NULL, &model, NULL, OUTPUTS, output, design));
+    assert_int_equal(design->state, STUDY_DONE);
+    double error = design->value[0] / reference - 1, told = design->error[0] / design->value[0];
+    printf("n0 %.3f mu %.3f: peak %.6g, error %+.1e, told %.1e\n", model.settings.n0[0],
+           model.settings.mu, design->value[0], error, told);
+    assert_below(-error, told + 1e-4);
+    assert_below(error, told + 1e-3); /* the sweep's points lie beside its peak */
+    design_study_free(&one);
+  }
+  modal_model_free(&model.model);
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {cmocka_unit_test(no_peak_of_random_designs_is_missed)};
+  return cmocka_run_group_tests(tests, NULL, NULL);
+}
