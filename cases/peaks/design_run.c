@@ -181,6 +181,10 @@ static void judge(job *j, const exact_peak *peak) {
   if (!text[0] && peak->edge)
     snprintf(text, sizeof text,
              "the highest point is at an end of mhb.frequency; the peak may lie beyond");
+  if (!text[0] && !peak->edge && peak->exact && peak->doubt) {
+    snprintf(text, sizeof text, "a part of the curve that may be higher could not be solved again");
+    j->design->state = STUDY_NOT_CONVERGED;
+  }
   if (!text[0] && !peak->exact) {
     snprintf(text, sizeof text, "the peak could not be solved again with more harmonics");
     j->design->state = STUDY_NOT_CONVERGED;
@@ -203,6 +207,10 @@ static shb_status fill(job *j, post_output first, const exact_peak *peak) {
   return SHB_OK;
 }
 
+static bool is_settled(const exact_peak *peak) {
+  return peak->found && ((peak->exact && !peak->doubt) || peak->edge);
+}
+
 /* Sweep with more and more harmonics until the peak is exact. */
 static shb_status work(job *j) {
   const exact_peak_asked asked = {wants(j, STUDY_STABLE), study_derivatives(j->n, j->output) > 0,
@@ -210,13 +218,19 @@ static shb_status work(job *j) {
   exact_peak             peak  = {0};
   post_output            first = {0};
   shb_status             status;
-  for (int i = 0; i < N_SWEEPS && !(peak.found && (peak.exact || peak.edge)); i++) {
+  for (int i = 0; i < N_SWEEPS && !is_settled(&peak); i++) {
+    exact_peak before = peak;
     if (sweeps[i] > 0 && !is_coarse(j, sweeps[i])) continue;
     status = sweep(j, sweeps[i]);
     if (status == SHB_ERR_INPUT && sweeps[i] > 0) continue; /* the load has more harmonics */
     if (status != SHB_OK && status != SHB_NOT_CONVERGED) return status;
     first = post_output_primary(j->response);
     SHB_TRY(find_peak(j, first, asked, &peak));
+    /* A detached curve that this sweep has not found. */
+    if (before.exact && !(peak.amplitude > before.amplitude)) {
+      before.doubt = peak.doubt || !peak.exact;
+      peak         = before;
+    }
   }
   return fill(j, first, &peak);
 }

@@ -329,7 +329,7 @@ static shb_status choose(const work *w, const fine_maxima *maxima, candidate *c,
     if (c[i].peak.found && !(c[i].peak.amplitude <= peak->amplitude)) *peak = c[i].peak;
   }
   if (!peak->found) SHB_TRY(describe_coarse(w, peak));
-  if (maxima->missed > MISSED * peak->amplitude) peak->exact = false;
+  if (maxima->missed > MISSED * peak->amplitude) peak->doubt = true;
   return SHB_OK;
 }
 

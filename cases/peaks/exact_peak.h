@@ -18,6 +18,7 @@ typedef struct {
   bool   found;
   bool   edge;  /* the highest point is an end of a curve: the peak may lie outside the range */
   bool   exact; /* solved again; false: a point of the coarse curve */
+  bool   doubt; /* a place where the curve may be higher has no fine solution */
   double frequency, amplitude, peak_to_peak, dissipation; /* Hz, m, m, J */
   double frequency_error, amplitude_error, peak_to_peak_error, dissipation_error;
   int    stable;           /* 1, 0; -1: not judged or undecided */
