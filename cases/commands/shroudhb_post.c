@@ -135,13 +135,19 @@ static void stress_free(stress_work *s) {
   post_buffer_free(&s->section);
 }
 
+/* Stress of a large mesh costs time. More numbers of modal stress than this are read only for a
+ * report, a fatigue line or a gauge. */
+static const double SUMMARY_NUMBERS = 3e7;
+
 /* Both files must be of the present case.
  *   page  in  whether there is a report for the section */
 static shb_status stress_read(const case_file *file, const char *modal, const char *response,
                               bool page, stress_work *s) {
   if (!modal || !up_to_date_keys(file, CASE_MHB, response)) return SHB_OK;
-  if (!page && !case_has_fatigue(file) && file->n_gauges == 0) return SHB_OK;
   SHB_TRY(post_blade_field_read(modal, &s->field));
+  double numbers = (double)s->field.n_nodes * s->field.n_modes * POST_STRESSES;
+  bool   wanted  = page || case_has_fatigue(file) || file->n_gauges > 0;
+  if (numbers > SUMMARY_NUMBERS && !wanted) post_blade_field_free(&s->field);
   if (s->field.n_nodes == 0) return SHB_OK;
   SHB_TRY(mhb_response_read(response, &s->response));
   SHB_TRY(post_blade_field_match(&s->field, s->response, modal));
@@ -200,22 +206,22 @@ static shb_status gauge_publish(const case_file *file, const char *modal,
 
 /* The summary of the case: of its curves with a response, and of its modes if they are current. */
 static shb_status summarise(const case_file *file, const char *response, const char *modal,
-                            post_buffer *out) {
+                            const stress_work *stress, post_buffer *out) {
   const post_summary_job job = {.name      = file->name,
                                 .case_path = file->path,
                                 .response  = response,
                                 .modal     = modal,
-                                .endurance = file->endurance,
-                                .ultimate  = file->ultimate};
+                                .field     = &stress->field,
+                                .fatigue   = &stress->lines.fatigue};
   return post_summary_compose(&job, out);
 }
 
 /* Publish NAME.summary.json, and print it if that is wanted. */
 static shb_status publish_summary(const case_file *file, const char *response, const char *modal,
-                                  bool shown) {
+                                  const stress_work *stress, bool shown) {
   post_buffer text   = {0};
   char       *path   = case_output(file, ".summary.json");
-  shb_status  status = path ? summarise(file, response, modal, &text)
+  shb_status  status = path ? summarise(file, response, modal, stress, &text)
                             : shb_fail(SHB_ERR_IO, __FILE__, __LINE__, "out of memory");
   if (status == SHB_OK) status = post_buffer_publish(&text, path);
   if (status == SHB_OK && shown) status = print(&text);
@@ -229,8 +235,11 @@ static shb_status print_summary(const case_file *file, bool curves) {
   post_buffer text     = {0};
   char       *response = curves ? case_output(file, ".response.h5") : NULL;
   char       *modal    = current_modal(file);
-  shb_status  status   = summarise(file, response, modal, &text);
+  stress_work stress   = {0};
+  shb_status  status   = response ? stress_read(file, modal, response, false, &stress) : SHB_OK;
+  if (status == SHB_OK) status = summarise(file, response, modal, &stress, &text);
   if (status == SHB_OK) status = print(&text);
+  stress_free(&stress);
   post_buffer_free(&text);
   free(response);
   free(modal);
@@ -300,7 +309,7 @@ static shb_status publish(const case_file *file, const command_options *options)
       status = stress_publish(file, &stress, &progress);
     if (status == SHB_OK && stress.response && file->n_gauges > 0)
       status = gauge_publish(file, modal, stress.response);
-    if (status == SHB_OK) status = publish_summary(file, response, modal, options->json);
+    if (status == SHB_OK) status = publish_summary(file, response, modal, &stress, options->json);
   } else {
     status = shb_fail(SHB_ERR_IO, __FILE__, __LINE__, "out of memory");
   }

@@ -365,7 +365,7 @@ static const case_key table[] = {
     {"mhb.scale", CASE_NUMBER, "", 0, 1e12, .fallback = "1", AT(mhb.scale), .stages = CASE_MHB,
      .when = CASE_IF_NOT_SCALED,
      .help = "multiplies the excitation"},
-    {"mhb.max_points", CASE_INTEGER, "", 10, 1000000, .fallback = "2000", AT(mhb.max_points),
+    {"mhb.max_points", CASE_INTEGER, "", 10, 1000000, .fallback = "20000", AT(mhb.max_points),
      .stages = CASE_MHB,
      .help = "points after which a branch ends"},
     {"mhb.stability", CASE_CHOICE, "", .words = "auto always never", .fallback = "auto",

@@ -107,7 +107,7 @@ shb_status peak_field_use(peak_field *f, const case_file *file) {
 static shb_status put_worst(const peak_field *f, const mhb_branch *b, int kept,
                             study_quantity quantity, double *value) {
   const post_fatigue none = {0};
-  post_place         place[POST_PLACES];
+  post_worst_place   place[POST_PLACES];
   int                n      = 0;
   bool               safety = quantity == STUDY_SAFETY;
   if (!has(f->n, f->output, quantity)) return SHB_OK;

@@ -30,6 +30,9 @@ static shb_status set_reason(mhb_branch *branch, const mhb_completion *c) {
   bool        own    = c->other_reason && !c->interrupted;
   const char *reason = own ? c->other_reason : mhb_end_text(end);
   snprintf(text, sizeof text, "%s", reason);
+  if (!own && end == MHB_END_MAX_POINTS && branch->n_points > 0)
+    snprintf(text, sizeof text, "%s: %d points, the last at %.6g Hz; more points go on", reason,
+             branch->n_points, branch->frequency[branch->n_points - 1]);
   if (c->n_gaps > 0)
     snprintf(text, sizeof text, "%s, with %d gap%s: %s", reason, c->n_gaps,
              c->n_gaps > 1 ? "s" : "", c->first_gap);

@@ -88,7 +88,7 @@ typedef struct {
   double              motion_tolerance; /* > 0: harmonics are chosen for this relative error */
   double              scale;            /* multiplies the excitation */
   double              tolerance;        /* of the contact law, relative to its largest force */
-  int                 max_points; /* a branch ends (with a reason) beyond this, default 2000 */
+  int                 max_points; /* a branch ends (with a reason) beyond this, default 20000 */
   mhb_search_settings search;
   bool                flips;     /* branches of doubled period are followed from flips */
   mhb_stability_when  stability; /* points at which multipliers are computed */

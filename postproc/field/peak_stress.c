@@ -209,7 +209,7 @@ static double size_of(const double *re, size_t stride) {
   return most;
 }
 
-static post_place evaluate(const search *s, int node) {
+static post_worst_place evaluate(const search *s, int node) {
   const size_t stride = POST_STRESSES * (size_t)s->field->n_nodes;
   int          order[s->n_harmonics + 1];
   history      h = {s->stress + POST_STRESSES * (size_t)node, stride, 0, order, 1};
@@ -222,13 +222,13 @@ static post_place evaluate(const search *s, int node) {
     if (size > SMALL * most) h.top = k;
   }
   search_period(&h, found);
-  return (post_place){.node      = node,
-                      .amplitude = (found[GREATEST] + found[LEAST]) / 2,
-                      .principal = found[PRINCIPAL],
-                      .mean      = mean_of(s->field, s->stress, node)};
+  return (post_worst_place){.node      = node,
+                            .amplitude = (found[GREATEST] + found[LEAST]) / 2,
+                            .principal = found[PRINCIPAL],
+                            .mean      = mean_of(s->field, s->stress, node)};
 }
 
-static double load_of(const search *s, const post_place *place) {
+static double load_of(const search *s, const post_worst_place *place) {
   return load_from(s, place->node, place->amplitude, place->mean);
 }
 
@@ -237,7 +237,7 @@ static bool is_apart(const search *s, int a, int b) {
   return hypot(hypot(x[0] - y[0], x[1] - y[1]), x[2] - y[2]) >= s->apart;
 }
 
-static bool is_free(const search *s, int node, int n, const post_place *place) {
+static bool is_free(const search *s, int node, int n, const post_worst_place *place) {
   for (int i = 0; i < n; i++)
     if (!is_apart(s, node, place[i].node)) return false;
   return true;
@@ -246,7 +246,7 @@ static bool is_free(const search *s, int node, int n, const post_place *place) {
 /* Best first: the next bound and the nodes evaluated compete. A node that comes first with its load
  * is the worst of all that are left, so it is a place. Returns the number of places. */
 static int find(const search *s, const candidate *bound, candidate *pending,
-                post_place place[POST_PLACES]) {
+                post_worst_place place[POST_PLACES]) {
   int next = 0, waiting = 0, found = 0;
   while (found < POST_PLACES && (next < s->field->n_nodes || waiting > 0)) {
     int first = 0;
@@ -255,8 +255,8 @@ static int find(const search *s, const candidate *bound, candidate *pending,
     if (next < s->field->n_nodes && (waiting == 0 || bound[next].load > pending[first].load)) {
       const int node = bound[next++].node;
       if (!is_free(s, node, found, place)) continue;
-      post_place at      = evaluate(s, node);
-      pending[waiting++] = (candidate){node, load_of(s, &at)};
+      post_worst_place at = evaluate(s, node);
+      pending[waiting++]  = (candidate){node, load_of(s, &at)};
       continue;
     }
     const int node = pending[first].node;
@@ -280,7 +280,8 @@ static double greatest_dimension(const post_blade_field *f) {
 }
 
 shb_status post_peak_stress(const post_blade_field *field, int n_harmonics, const double *stress,
-                            const post_fatigue *fatigue, post_place place[POST_PLACES], int *n) {
+                            const post_fatigue *fatigue, post_worst_place place[POST_PLACES],
+                            int *n) {
   const search s       = {field,
                           stress,
                           n_harmonics,
@@ -308,7 +309,8 @@ shb_status post_peak_stress(const post_blade_field *field, int n_harmonics, cons
 }
 
 shb_status post_worst_places(const post_blade_field *field, const mhb_branch *branch, int kept,
-                             const post_fatigue *fatigue, post_place place[POST_PLACES], int *n) {
+                             const post_fatigue *fatigue, post_worst_place place[POST_PLACES],
+                             int *n) {
   const size_t rows   = 2 * ((size_t)branch->n_harmonics + 1);
   double      *stress = malloc(rows * POST_STRESSES * (size_t)field->n_nodes * sizeof *stress + 1);
   SHB_CHECK(stress, SHB_ERR_IO, "out of memory for the stress of %d nodes", field->n_nodes);

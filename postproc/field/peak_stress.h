@@ -30,7 +30,7 @@ typedef struct {
   double principal; /* Pa, greatest modulus of a principal stress in a period */
   double mean;      /* Pa, signed von Mises stress of static stress and harmonic 0 */
   double safety;    /* 1/(amplitude/endurance + max(mean, 0)/ultimate); NAN without a line there */
-} post_place;
+} post_worst_place;
 
 /* The worst places, by safety, or by amplitude where no material has a line. *n is at most
  * POST_PLACES. A place is no nearer to a worse one than 5 % of the greatest dimension of the blade.
@@ -42,11 +42,13 @@ typedef struct {
  *   stress  in  as of post_blade_stress
  * Errors: SHB_ERR_IO no memory. */
 shb_status post_peak_stress(const post_blade_field *field, int n_harmonics, const double *stress,
-                            const post_fatigue *fatigue, post_place place[POST_PLACES], int *n);
+                            const post_fatigue *fatigue, post_worst_place place[POST_PLACES],
+                            int *n);
 
 /* The same at a kept point, from its amplitudes. Errors: SHB_ERR_IO no memory. */
 shb_status post_worst_places(const post_blade_field *field, const mhb_branch *branch, int kept,
-                             const post_fatigue *fatigue, post_place place[POST_PLACES], int *n);
+                             const post_fatigue *fatigue, post_worst_place place[POST_PLACES],
+                             int *n);
 
 /* Signed von Mises stress; greatest modulus of its principal stresses. Pa. */
 double post_signed_mises(const double stress[POST_STRESSES]);

@@ -2,6 +2,7 @@
 
 #include <math.h>
 
+#include "postproc/analysis/stability_findings.h"
 #include "postproc/draw/number_format.h"
 #include "postproc/field/kept_point.h"
 
@@ -11,7 +12,7 @@ enum { DIGITS = 4, MOST_CURVES = 40 };
 typedef struct {
   const mhb_branch *branch;
   int               index, kept, n;
-  post_place        place[POST_PLACES];
+  post_worst_place  place[POST_PLACES];
 } worst;
 
 static void put_cell(post_buffer *out, double value) {
@@ -28,7 +29,7 @@ static void put_where(const post_blade_field *field, int node, post_buffer *out)
   }
 }
 
-static void put_place(const post_blade_field *field, const post_place *place, bool judged,
+static void put_place(const post_blade_field *field, const post_worst_place *place, bool judged,
                       post_buffer *out) {
   put_cell(out, place->amplitude / 1e6);
   put_cell(out, place->principal / 1e6);
@@ -61,14 +62,17 @@ static void put_columns(bool judged, post_buffer *out) {
 }
 
 static void put_row(const post_blade_field *field, const worst *w, bool judged, post_buffer *out) {
-  static const char *const verdict[] = {"not judged", "unstable", "stable"};
+  static const char *const verdict[] = {[POST_VERDICT_STABLE]     = "stable",
+                                        [POST_VERDICT_NOT_JUDGED] = "not judged",
+                                        [POST_VERDICT_MODULATED]  = "modulated",
+                                        [POST_VERDICT_NEVER_SEEN] = "never seen: beyond a fold"};
   const int                point     = w->branch->modal.point[w->kept];
   char                     frequency[POST_NUMBER];
   post_put(out, "<tr><td>");
   put_name(w, out);
   post_put(out, "</td><td class=\"num\">%s</td><td>%s</td>",
            post_number(frequency, w->branch->frequency[point], 5),
-           verdict[w->branch->stable[point] + 1]);
+           verdict[post_verdict_of(w->branch, point)]);
   put_place(field, &w->place[0], judged, out);
   post_put(out, "</tr>\n");
 }

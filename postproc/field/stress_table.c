@@ -3,7 +3,7 @@
 #include "postproc/field/kept_point.h"
 
 static void put_place(const mhb_branch *b, int branch, int point, const post_blade_field *field,
-                      int index, const post_place *place, post_buffer *out) {
+                      int index, const post_worst_place *place, post_buffer *out) {
   const double *x = field->nodes + 3 * (size_t)place->node;
   post_put_kept_point(b, branch, point, out);
   post_put(out, ",%d,%d", index + 1, place->node);
@@ -17,9 +17,9 @@ static void put_place(const mhb_branch *b, int branch, int point, const post_bla
 
 static shb_status put_point(const post_blade_field *field, const mhb_branch *b, int branch,
                             int kept, const post_fatigue *fatigue, post_buffer *out) {
-  const int  point = b->modal.point[kept];
-  post_place place[POST_PLACES];
-  int        n;
+  const int        point = b->modal.point[kept];
+  post_worst_place place[POST_PLACES];
+  int              n;
   SHB_TRY(post_worst_places(field, b, kept, fatigue, place, &n));
   for (int i = 0; i < n; i++) put_place(b, branch, point, field, i, &place[i], out);
   return SHB_OK;

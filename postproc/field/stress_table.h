@@ -9,7 +9,7 @@
  *
  *   branch, kind, n0_N, frequency_Hz, point, special, stable
  *   place, node, x_m, y_m, z_m        place from 1; node from 0
- *   amplitude_Pa, principal_Pa, mean_Pa, safety     as of post_place; empty if not given
+ *   amplitude_Pa, principal_Pa, mean_Pa, safety     as of post_worst_place; empty if not given
  *
  * Points are those kept in the response. If a whole branch is kept, only its peaks and its highest
  * point count.

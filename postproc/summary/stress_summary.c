@@ -2,8 +2,6 @@
 
 #include <stdlib.h>
 
-#include "postproc/field/peak_stress.h"
-
 /* Place of a kept point at a peak: the point itself, or the peak beside it. -1: none. */
 static int kept_at(const mhb_branch *b, int point) {
   int beside = -1;
@@ -15,7 +13,8 @@ static int kept_at(const mhb_branch *b, int point) {
   return beside;
 }
 
-static void put_place(const post_blade_field *field, const post_place *place, post_json *json) {
+static void put_place(const post_blade_field *field, const post_worst_place *place,
+                      post_json *json) {
   post_json_object(json, "stress");
   post_json_number(json, "amplitude", place->amplitude);
   post_json_number(json, "principal", place->principal);
@@ -28,16 +27,17 @@ static void put_place(const post_blade_field *field, const post_place *place, po
 
 shb_status post_stress_put(const post_stress_source *source, const mhb_branch *branch, int point,
                            post_json *json) {
-  const post_blade_field *field   = source->field;
-  const post_fatigue      fatigue = {.endurance = source->endurance, .ultimate = source->ultimate};
-  const int               kept    = field->n_nodes > 0 ? kept_at(branch, point) : -1;
-  post_place              place[POST_PLACES];
+  const post_blade_field *field = source->field;
+  const post_fatigue      none  = {0};
+  const int               kept  = field && field->n_nodes > 0 ? kept_at(branch, point) : -1;
+  post_worst_place        place[POST_PLACES];
   int                     n = 0;
   if (kept < 0) {
     post_json_null(json, "stress");
     return SHB_OK;
   }
-  SHB_TRY(post_worst_places(field, branch, kept, &fatigue, place, &n));
+  SHB_TRY(
+      post_worst_places(field, branch, kept, source->fatigue ? source->fatigue : &none, place, &n));
   if (n > 0)
     put_place(field, &place[0], json);
   else

@@ -3,11 +3,12 @@
 #define POSTPROC_SUMMARY_STRESS_SUMMARY_H
 
 #include "postproc/field/blade_field.h"
+#include "postproc/field/peak_stress.h"
 #include "postproc/summary/json.h"
 
 typedef struct {
-  const post_blade_field *field;               /* n_nodes = 0: no stress */
-  double                  endurance, ultimate; /* Pa; endurance 0: no safety */
+  const post_blade_field *field;   /* NULL or n_nodes = 0: no stress */
+  const post_fatigue     *fatigue; /* NULL: no safety */
 } post_stress_source;
 
 /* Put the key stress: an object, or null if the modal amplitudes at the point are not kept. Errors:

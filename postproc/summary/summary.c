@@ -20,31 +20,13 @@ static void begin(post_json *json, const char *format) {
 
 /* ---- a case ---- */
 
-/* Stresses of the modal file, if their computation is wanted and not too long. */
-static shb_status read_field(const post_summary_job *job, const mhb_response *response,
-                             const post_modes *modes, post_blade_field *field) {
-  *field = (post_blade_field){0};
-  if (!job->modal || modes->n == 0) return SHB_OK;
-  SHB_TRY(post_blade_field_read(job->modal, field));
-  bool large = (double)field->n_nodes * field->n_modes * POST_STRESSES > POST_STRESS_NUMBERS;
-  if (field->n_nodes > 0 && !(large && job->endurance == 0) &&
-      post_blade_field_match(field, response, job->modal) == SHB_OK)
-    return SHB_OK;
-  post_blade_field_free(field);
-  return SHB_OK;
-}
-
-static shb_status put_response(const post_summary_job *job, const post_modes *modes,
-                               post_json *json) {
+static shb_status put_response(const post_summary_job *job, post_json *json) {
   mhb_response            *response = NULL;
   post_analysis           *analysis = NULL;
-  post_blade_field         field    = {0};
-  const post_stress_source stress   = {&field, job->endurance, job->ultimate};
+  const post_stress_source stress   = {job->field, job->fatigue};
   shb_status               status   = mhb_response_read(job->response, &response);
   if (status == SHB_OK) status = post_analysis_create(response, &analysis);
-  if (status == SHB_OK) status = read_field(job, response, modes, &field);
   if (status == SHB_OK) status = post_response_put(analysis, &stress, json);
-  post_blade_field_free(&field);
   post_analysis_destroy(analysis);
   mhb_response_destroy(response);
   return status;
@@ -57,7 +39,7 @@ shb_status post_summary_compose(const post_summary_job *job, post_buffer *out) {
   begin(&json, "shroudhb summary");
   post_json_text(&json, "name", job->name);
   post_json_text(&json, "case", job->case_path);
-  if (status == SHB_OK && job->response) status = put_response(job, &modes, &json);
+  if (status == SHB_OK && job->response) status = put_response(job, &json);
   if (status == SHB_OK && job->modal) post_modes_put(&modes, &json);
   post_json_end(&json);
   post_modes_free(&modes);

@@ -330,11 +330,31 @@ def check_gauge():
           abs(float(row['static']) / ((1.3 * pull - 0.3 * (xx + yy + zz)) / 205e9) - 1), 0.1)
 
 
+def check_materials():
+    """The summary has the safety of the table, by the line of each material."""
+    begin, end = CASE.index('mesh:'), CASE.index('rotor:')
+    case = CASE[:begin] + 'mesh: {file: blade.msh}\n' + CASE[end:]
+    lines = ('materials:\n  - {group: body, E: 205 GPa, nu: 0.3, rho: 7850, endurance: 300 MPa, '
+             'ultimate: 900 MPa}')
+    write('list.yaml', case.replace('name: blade', 'name: list')
+          .replace('material: {E: 205 GPa, nu: 0.3, rho: 7850}', lines))
+    run('shroudhb', 'run', '--quiet', '--no-report', 'list.yaml')
+    with open('list.stress.csv', newline='') as table:
+        rows = {(int(r['branch']), int(r['point'])): r for r in csv.DictReader(table)
+                if r['place'] == '1'}
+    with open('list.summary.json') as file:
+        peaks = [curve['peak'] for curve in json.load(file)['curves']]
+    worst = max(abs(p['stress']['safety'] / float(rows[p['branch'], p['point']]['safety']) - 1)
+                for p in peaks)
+    check('safety', worst, 1e-11)
+
+
 def main():
     write('blade.yaml', CASE)
     write('own.yaml', OWN)
     run('shroudhb', 'run', '--quiet', 'blade.yaml')
     check_gauge()
+    check_materials()
     with h5py.File('blade.response.h5') as r:
         points = r['branch_2/modal/point'][:]
     point = int(points[-1])

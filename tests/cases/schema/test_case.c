@@ -174,7 +174,7 @@ static void a_modal_file_needs_little(void **state) {
   assert_true(f.mhb.n0[0] == -0.2 && f.mhb.n0[3] == 1);
   /* defaults */
   assert_true(f.mhb.harmonics == 3 && f.mhb.subharmonics == 1 && f.mhb.scale == 1);
-  assert_true(f.mhb.tolerance == 1e-8 && f.mhb.max_points == 2000 && f.points == 1);
+  assert_true(f.mhb.tolerance == 1e-8 && f.mhb.max_points == 20000 && f.points == 1);
   assert_int_equal(f.mhb.stability, MHB_STABILITY_AUTO);
   assert_true(f.mhb.flips && f.mhb.search.starts == MHB_SEARCH_PEAKS && f.mhb.search.n_at == 0);
   assert_true(f.mhb.search.n_orders == 3 && f.mhb.search.order[2] == 3);

@@ -81,9 +81,9 @@ static void worst_places_are_found(void **state) {
   const post_fatigue  none = {0}, goodman = {.endurance = 3e8, .ultimate = 9e8};
   const post_fatigue *fatigue[] = {&none, &goodman};
   for (int given = 0; given < 2; given++) {
-    post_place place[POST_PLACES];
-    int        n;
-    double     worst = 0, off = 0, off_principal = 0;
+    post_worst_place place[POST_PLACES];
+    int              n;
+    double           worst = 0, off = 0, off_principal = 0;
     assert_ok(post_peak_stress(&f, M, stress, fatigue[given], place, &n));
     assert_int_equal(n, POST_PLACES);
     for (int node = 0; node < NODES; node++) {
@@ -150,7 +150,7 @@ static void each_node_has_its_own_material(void **state) {
   post_blade_field   f      = make_field(stress);
   const post_goodman line[] = {{3e8, 9e8}, {1.2e8, 4e8}, {0, 0}};
   int                region[NODES], n;
-  post_place         place[POST_PLACES];
+  post_worst_place   place[POST_PLACES];
   double             least = INFINITY;
   for (int i = 0; i < NODES; i++) region[i] = i % 10 == 0 ? 2 : i % 2;
   const post_fatigue fatigue = {.region = region, .n_regions = 3, .of = line};
