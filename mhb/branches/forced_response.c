@@ -275,39 +275,91 @@ static shb_status search_peaks(sweep *s, const modal_model *model) {
   return mhb_publisher_status(&s->publisher);
 }
 
-/* Take over the branches that an interrupted run of the same settings finished. */
+/* Length of the settings from a line on, up to the line of the preloads or the end. */
+static size_t up_to_preloads(const char *settings) {
+  const char *key = "contact.n0 = ", *at = strstr(settings, key);
+  while (at && at > settings && at[-1] != '\n') at = strstr(at + 1, key);
+  return at ? (size_t)(at - settings) : strlen(settings);
+}
+
+/* Do two texts of settings differ in the line of the preloads alone? */
+static bool differ_in_preloads(const char *a, const char *b) {
+  size_t n = up_to_preloads(a);
+  if (n != up_to_preloads(b) || strncmp(a, b, n) != 0 || !a[n]) return false;
+  const char *rest_a = strchr(a + n, '\n'), *rest_b = strchr(b + n, '\n');
+  return rest_a && rest_b && strcmp(rest_a, rest_b) == 0;
+}
+
+/* What a run may take from an earlier file. */
+typedef enum { TAKE_NOTHING, TAKE_ALL, TAKE_EQUAL_PRELOADS } taken_part;
+
+static taken_part what_to_take(const sweep *s, hid_t file) {
+  const char *own  = s->publisher.provenance->settings;
+  char       *text = NULL;
+  taken_part  part = TAKE_NOTHING;
+  if (h5_read_attribute_text(file, "/", "settings", &text) == SHB_OK && text) {
+    if (strcmp(text, own) == 0) {
+      part = TAKE_ALL;
+    } else if (s->settings->parameter != MHB_IN_N0 && differ_in_preloads(text, own)) {
+      part = TAKE_EQUAL_PRELOADS;
+    }
+  }
+  free(text);
+  return part;
+}
+
+/* The preload of a main branch of an earlier file; NULL: it is not wanted. */
+static preload_curves *wanted_for(sweep *s, const mhb_response *old, int branch, taken_part part) {
+  const mhb_branch *b = &old->branch[branch];
+  int               n = s->settings->n_preloads;
+  if (b->main != branch || !b->complete) return NULL;
+  if (part == TAKE_ALL) return branch >= 2 && branch < 2 + n ? &s->preload[branch - 2] : NULL;
+  for (int i = 0; i < n && b->kind == MHB_BRANCH_NONLINEAR; i++)
+    if (s->settings->n0[i] == b->n0[0] && !s->preload[i].own->branch[0].complete)
+      return &s->preload[i];
+  return NULL;
+}
+
+/* Take the branches beside a main one. Those of the small search depend on all preloads: with
+ * other preloads the search is made anew. */
+static shb_status take_beside(preload_curves *p, mhb_response *old, int main, bool no_searches) {
+  mhb_branch *first = &p->own->branch[0];
+  if (no_searches) first->n_searches = 0;
+  for (int i = main + 1; i < old->n_branches; i++) {
+    mhb_branch *b = &old->branch[i];
+    int         index;
+    if (b->main != main) continue;
+    if (no_searches && b->origin == MHB_FROM_SEARCH) break;
+    if (!(first->searched || b->origin == MHB_FROM_DETACHED)) continue;
+    SHB_TRY(mhb_response_branch(p->own, MHB_BRANCH_NONLINEAR, &index));
+    first = &p->own->branch[0];
+    take(&p->own->branch[index], b);
+    p->own->branch[index].main = 0;
+  }
+  return SHB_OK;
+}
+
+/* Take over the curves that an earlier run finished: an interrupted one of the same settings, or
+ * one with other preloads. Each preload's curves depend on no other preload. */
 static shb_status resume(sweep *s) {
-  const char   *path = s->publisher.path;
+  const char   *path  = s->publisher.path;
+  bool          peaks = s->settings->search.starts == MHB_SEARCH_PEAKS;
   hid_t         file;
-  char         *settings = NULL;
-  mhb_response *old      = NULL;
-  shb_status    status   = SHB_OK;
+  mhb_response *old    = NULL;
+  shb_status    status = SHB_OK;
   if (!path || h5_check_earlier(path) != SHB_OK || h5_open(path, &file) != SHB_OK) return SHB_OK;
-  bool same = h5_read_attribute_text(file, "/", "settings", &settings) == SHB_OK && settings &&
-              strcmp(settings, s->publisher.provenance->settings) == 0;
+  taken_part part = what_to_take(s, file);
   h5_close(file);
-  free(settings);
-  if (!same || mhb_response_read(path, &old) != SHB_OK) return SHB_OK;
+  if (part == TAKE_NOTHING || mhb_response_read(path, &old) != SHB_OK) return SHB_OK;
   bool fits = old->n_multipliers == s->response->n_multipliers;
-  int  n = fits ? old->n_branches : 0, past = 2 + s->settings->n_preloads;
-  for (int i = 2; i < n && i < past; i++) {
-    preload_curves *p = &s->preload[i - 2];
-    if (old->branch[i].main != i || !old->branch[i].complete) continue;
+  for (int i = 2; fits && i < old->n_branches && status == SHB_OK; i++) {
+    preload_curves *p = wanted_for(s, old, i, part);
+    if (!p) continue;
     take(&p->own->branch[0], &old->branch[i]);
     p->own->branch[0].main = 0;
+    old->branch[i].main    = i; /* the empty branch is in its place */
     p->done                = p->own->branch[0].searched ? 1 : s->main_share;
-  }
-  for (int i = past; i < n && status == SHB_OK; i++) {
-    int main = old->branch[i].main, index;
-    if (main < 2 || main >= past) continue;
-    mhb_response     *own   = s->preload[main - 2].own;
-    const mhb_branch *first = &own->branch[0];
-    if (!first->complete || !(first->searched || old->branch[i].origin == MHB_FROM_DETACHED))
-      continue;
-    status = mhb_response_branch(own, MHB_BRANCH_NONLINEAR, &index);
-    if (status != SHB_OK) break;
-    take(&own->branch[index], &old->branch[i]);
-    own->branch[index].main = 0;
+    status                 = take_beside(p, old, i, peaks && part == TAKE_EQUAL_PRELOADS);
   }
   mhb_response_destroy(old);
   return status;

@@ -15,6 +15,7 @@
 #include "mhb/numerics/fourier.h"
 #include "mhb/structure/stiffness_check.h"
 #include "tests/support/check.h"
+#include "tests/support/files.h"
 #include "tests/support/settings.h"
 #include "tests/support/solution.h"
 #include "tests/support/three_degree.h"
@@ -372,6 +373,58 @@ static void more_harmonics_at_the_start(void **state) {
   modal_model_free(&model);
 }
 
+/* A run that adds preloads to a file, or a whole one without a file to take from. */
+static mhb_response *preloads(const modal_model *model, const char *path, bool resume, int n,
+                              const double *n0) {
+  char text[128] = "mu = 0.4\ncontact.n0 =";
+  for (int i = 0; i < n; i++)
+    snprintf(text + strlen(text), sizeof text - strlen(text), " %.17g", n0[i]);
+  strcat(text, "\ntolerance = 1e-8\n");
+  shb_provenance from = {"case.yaml", "name: x\n", text, "shroudhb-mhb"};
+  mhb_settings   s    = ground_settings(0.4, 0.8, 0.5, n0[0], 5);
+  mhb_response  *r;
+  s.frequency[0]  = 0.8 / SHB_TWO_PI;
+  s.frequency[1]  = 1.7 / SHB_TWO_PI;
+  s.n_preloads    = n;
+  s.resume        = resume;
+  s.search.starts = MHB_SEARCH_PEAKS;
+  memcpy(s.n0, n0, sizeof *n0 * (size_t)n);
+  assert_ok(mhb_forced_response(model, &s, path, &from, NULL, &r));
+  return r;
+}
+
+/* Curves of preloads that an earlier file has are taken from it; the result is that of a whole run.
+ * Their seconds tell that nothing was computed. */
+static void added_preloads_alone_are_computed(void **state) {
+  (void)state;
+  static const double first[] = {0.1, 0.3}, then[] = {0.3, 0.05, 0.6};
+  modal_model         model;
+  three_degree_model(&model);
+  mhb_response *before = preloads(&model, scratch("added.h5"), true, 2, first);
+  mhb_response *added  = preloads(&model, scratch("added.h5"), true, 3, then);
+  mhb_response *whole  = preloads(&model, scratch("whole.h5"), false, 3, then);
+  assert_int_equal(added->n_branches, whole->n_branches);
+  for (int i = 0; i < whole->n_branches; i++) {
+    const mhb_branch *a = &added->branch[i], *b = &whole->branch[i];
+    size_t            n = (size_t)b->n_points, K = (size_t)b->n_harmonics + 1;
+    assert_int_equal(a->n_points, b->n_points);
+    assert_int_equal(a->main, b->main);
+    assert_int_equal(a->n_searches, b->n_searches);
+    assert_memory_equal(a->frequency, b->frequency, sizeof(double) * n);
+    assert_memory_equal(a->n0, b->n0, sizeof(double) * n);
+    assert_memory_equal(a->stable, b->stable, sizeof(int) * n);
+    assert_memory_equal(a->motion, b->motion, sizeof(double complex) * 3 * K * n);
+  }
+  size_t n = (size_t)added->branch[2].n_points;
+  assert_memory_equal(added->branch[2].seconds, before->branch[3].seconds, sizeof(double) * n);
+  print_message("%d branches, %zu points taken over\n", whole->n_branches, n);
+  assert_true(n > 20);
+  mhb_response_destroy(before);
+  mhb_response_destroy(added);
+  mhb_response_destroy(whole);
+  modal_model_free(&model);
+}
+
 static void nothing_happens_without_excitation(void **state) {
   (void)state;
   modal_model model;
@@ -428,7 +481,8 @@ int main(void) {
       cmocka_unit_test(the_probe_moves_like_the_contact),
       cmocka_unit_test(more_periods_than_the_motion_has),
       cmocka_unit_test(more_harmonics_at_the_start),
+      cmocka_unit_test(added_preloads_alone_are_computed),
       cmocka_unit_test(nothing_happens_without_excitation),
   };
-  return cmocka_run_group_tests(tests, NULL, NULL);
+  return cmocka_run_group_tests(tests, scratch_make, scratch_remove);
 }
