@@ -1,5 +1,6 @@
 #!/bin/sh
 # Installs what is missing (root or sudo), builds in build/release, runs every test.
+# As many tests run side by side as there are cores.
 # Arguments go to ctest: -L unit (about 20 s), -LE slow, -R '^cases'.
 set -eu
 root=$(CDPATH='' cd -- "$(dirname -- "$0")/.." && pwd)
@@ -11,7 +12,7 @@ packages_install $packages_build $packages_test
 packages_build_release
 log=$root/build/release/ctest.log
 code=0
-ctest --preset release -O "$log" "$@" </dev/null || code=$?
+ctest --preset release -j "$(nproc)" -O "$log" "$@" </dev/null || code=$?
 
 # "98% tests passed, 1 tests failed out of 57"; failed includes what timed out or could not run
 sed -n 's/.*tests passed, \([0-9]*\) tests* failed out of \([0-9]*\).*/\1 \2/p' "$log" | {
