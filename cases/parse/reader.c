@@ -83,6 +83,11 @@ static void walk(case_reader *r, const case_node *map, const char *path);
 
 static void refuse_key(case_reader *r, const char *block, const char *path, const case_node *node) {
   char hint[512] = "";
+  if (node->kind == CASE_NULL && node->key[0] >= '0' && node->key[0] <= '9') { /* {E: 2,1 GPa} */
+    case_issue_add(r->issues, node->key_line, node->key_column, path,
+                   "a number where a key belongs; write decimals with a point, such as 2.1");
+    return;
+  }
   if (r->issues->n < 2 * CASE_ISSUES_SHOWN) /* a search for each of thousands would take seconds */
     case_key_suggest(r->keys, block, node->key, hint, sizeof hint);
   case_issue_add(r->issues, node->key_line, node->key_column, path, "unknown key%s", hint);

@@ -63,6 +63,35 @@ static char byte_at(const case_issues *issues, const yaml_mark_t *mark) {
   return i < issues->length ? issues->text[i] : '\0';
 }
 
+/* A fault of the text in plain words, by what libyaml says of it; NULL: its own words are as good. */
+static const char *in_plain_words(const yaml_parser_t *p) {
+  static const struct {
+    const char *context, *problem, *words;
+  } rows[] = {
+      {"flow sequence", "did not find expected ','", "the list has no ']', or an entry no ','"},
+      {"flow mapping", "did not find expected ','", "the mapping has no '}', or an entry no ','"},
+      {"quoted scalar", "unexpected end", "the quotation mark is not closed"},
+      {"quoted scalar", "unknown escape",
+       "unknown sign after \\ in \"...\"; in '...' a \\ stands for itself"},
+      {"", "mapping values are not allowed",
+       "no ':' can stand here; a text with ': ' needs quotation marks, and the keys of a block "
+       "begin in one column"},
+      {"block mapping", "did not find expected key",
+       "expected a key here; the keys of a block begin in one column"},
+      {"block collection", "did not find expected '-'",
+       "expected '-' here; the entries of a list begin in one column"},
+      {"next token", "cannot start", "no value begins with this sign; put it in quotation marks"},
+      {"simple key", "could not find expected ':'", "expected 'key: value'"},
+      {"node", "did not find expected node content", "a value is missing before this sign"},
+      {"block scalar", "expected comment or line break",
+       "nothing can follow '|' or '>' on its line"}};
+  for (size_t i = 0; p->problem && i < sizeof rows / sizeof *rows; i++)
+    if (strstr(p->problem, rows[i].problem) &&
+        strstr(p->context ? p->context : "", rows[i].context))
+      return rows[i].words;
+  return NULL;
+}
+
 static void syntax_issue(builder *b) {
   const yaml_parser_t *p = &b->parser;
   int                  line, column;
@@ -75,13 +104,13 @@ static void syntax_issue(builder *b) {
     case_issue_add(b->issues, (int)p->problem_mark.line + 1, (int)p->problem_mark.column + 1, NULL,
                    "a tab; YAML indents with spaces");
   } else {
-    bool begun = p->context && p->context_mark.line != p->problem_mark.line;
-    char where[96];
-    snprintf(where, sizeof where, ", begun on line %d", (int)p->context_mark.line + 1);
+    bool        begun = p->context && p->context_mark.line != p->problem_mark.line;
+    const char *words = in_plain_words(p);
+    char        where[96];
+    snprintf(where, sizeof where, " (begun on line %d)", (int)p->context_mark.line + 1);
+    if (!words) words = p->problem ? p->problem : "syntax error";
     case_issue_add(b->issues, (int)p->problem_mark.line + 1, (int)p->problem_mark.column + 1, NULL,
-                   "not valid YAML: %s%s%s%s%s", p->problem ? p->problem : "syntax error",
-                   p->context ? " (" : "", p->context ? p->context : "", begun ? where : "",
-                   p->context ? ")" : "");
+                   "not valid YAML: %s%s", words, begun ? where : "");
   }
 }
 

@@ -26,7 +26,7 @@ shb_status shb_fail(shb_status code, const char *file, int line, const char *for
 const char *shb_message(void);
 const char *shb_message_origin(void);
 
-/* Version and git revision of the build, e.g. "0.1.0-3f2a91c"; "+" appended if the tree was
+/* Version and git revision of the build, e.g. "0.2.0-3f2a91c"; "+" appended if the tree was
  * dirty. */
 const char *shb_revision(void);
 

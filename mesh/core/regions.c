@@ -31,6 +31,16 @@ void mesh_regions_assign(mesh_regions *r, int element, int volume) {
   if (*region < 0) *region = volume;
 }
 
+/* Mean of the corners and middles of an element, m. */
+static void centre_of(const mesh_fe *mesh, int element, double centre[3]) {
+  const int n = mesh_topology_of(mesh->kind)->nodes;
+  for (int d = 0; d < 3; d++) {
+    centre[d] = 0;
+    for (int i = 0; i < n; i++)
+      centre[d] += mesh->coordinates[3 * mesh->connectivity[element * n + i] + d] / n;
+  }
+}
+
 shb_status mesh_regions_end(const mesh_regions *r) {
   const mesh_fe *mesh = r->mesh;
   int            none = 0, first = 0;
@@ -44,10 +54,12 @@ shb_status mesh_regions_end(const mesh_regions *r) {
             "element needs one material",
             r->path, r->twice, r->twice == 1 ? " is" : "s are", mesh->element_tag[r->element],
             mesh->region_name[mesh->region[r->element]], mesh->region_name[r->other]);
-  SHB_CHECK(
-      none == 0, SHB_ERR_INPUT,
-      "%s: %d of %d elements %s in no volume of materials, such as element %ld; every element "
-      "needs one material",
-      r->path, none, mesh->n_elements, none == 1 ? "is" : "are", mesh->element_tag[first]);
+  double at[3];
+  centre_of(mesh, first, at);
+  SHB_CHECK(none == 0, SHB_ERR_INPUT,
+            "%s: %d of %d elements %s in no volume of materials, such as element %ld at [%.4g, "
+            "%.4g, %.4g] m; every element needs one material",
+            r->path, none, mesh->n_elements, none == 1 ? "is" : "are", mesh->element_tag[first],
+            at[0], at[1], at[2]);
   return SHB_OK;
 }

@@ -30,7 +30,7 @@ for target in units case override motion study inp stamp; do
     cp "$file" "$build/cases/$(echo "${file#"$source"/cases/}" | tr / _)"
   done
   # shellcheck disable=SC2086
-  if ! "$build/bin/fuzz_$target" -max_total_time="$seconds" -timeout=10 -rss_limit_mb=1024 \
+  if ! "$build/tests/bin/fuzz_$target" -max_total_time="$seconds" -timeout=10 -rss_limit_mb=1024 \
     -max_len=8192 -dict="$source/tests/fuzz/yaml.dict" -artifact_prefix="$build/found/$target/" \
     "$build/corpus/$target" $seeds >"$build/$target.log" 2>&1; then
     echo "FAILED: fuzz_$target"

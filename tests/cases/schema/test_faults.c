@@ -154,6 +154,10 @@ static void keys_and_kinds(void **state) {
 static void numbers_and_ranges(void **state) {
   (void)state;
   static const fault rows[] = {
+      {"nu: 0.29", "nu: 0,3",
+       "c.yaml:11:29: error: material.3: a number where a key belongs; write decimals with a "
+       "point, such as 2.1",
+       1},
       {"0.31\n", "0,3\n",
        "c.yaml:24:7: error: contact.mu: '0,3' is not a number; write 0.3 with a decimal "
        "point",
@@ -528,8 +532,19 @@ static void not_yaml(void **state) {
   static const fault rows[] = {
       {"  mu: 0.31", "\tmu: 0.31", "c.yaml:24:1: error: a tab; YAML indents with spaces", 1},
       {"[90 Hz, 0.12 kHz]", "[90 Hz, 0.12 kHz",
-       "c.yaml:32:12: error: not valid YAML: did not find expected ',' "
-       "or ']' (while parsing a flow sequence, begun on line 31)",
+       "c.yaml:32:12: error: not valid YAML: the list has no ']', or an entry no ',' (begun on "
+       "line 31)",
+       1},
+      {"mu: 0.31", "mu: @2",
+       "c.yaml:24:7: error: not valid YAML: no value begins with this sign; put it "
+       "in quotation marks",
+       1},
+      {"mu: 0.31", "mu: 0.31: 2",
+       "c.yaml:24:11: error: not valid YAML: no ':' can stand here; a text with ': ' "
+       "needs quotation marks, and the keys of a block begin in one column",
+       1},
+      {"mu: 0.31", "mu: '0.31",
+       "c.yaml:37:1: error: not valid YAML: the quotation mark is not closed (begun on line 24)",
        1},
       {"mu: 0.31", "mu: \x01",
        "c.yaml:24:7: error: not UTF-8 text: control characters are not allowed", 1},

@@ -2,7 +2,7 @@
  * negative dissipation.
  *
  *   SHROUDHB_RANDOM_CASES   number of cases (default 30000, some seconds); a long run by hand:
- *                           SHROUDHB_RANDOM_CASES=1000000 bin/test_mhb_contact_random
+ *                           SHROUDHB_RANDOM_CASES=1000000 tests/bin/test_mhb_contact_random
  *   SHROUDHB_RANDOM_SEED    another sequence
  *   SHROUDHB_RANDOM_FROM    index to begin at; with CASES=1, one case again
  *
