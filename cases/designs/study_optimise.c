@@ -6,6 +6,7 @@
 #include "cases/parse/keys.h"
 #include "cases/parse/units.h"
 #include "cases/plan/sampling.h"
+#include "mhb/tracking/peak_system.h"
 
 enum { MOST_EVALUATIONS = 100000, LEAST_A_START = 5, MOST_OUTPUTS = 64 };
 
@@ -14,7 +15,8 @@ static const case_key members[] = {
     {.path = "starts"},   {.path = "seed"},    {.path = "algorithm"}};
 static const case_keys all = {sizeof members / sizeof *members, members};
 
-static const char *const algorithms[STUDY_N_ALGORITHMS] = {"sbplx", "crs", "isres", "direct"};
+static const char *const algorithms[STUDY_N_ALGORITHMS] = {"sbplx", "crs", "isres", "direct",
+                                                           "slope"};
 
 typedef struct {
   case_issues         *issues;
@@ -85,7 +87,7 @@ static void read_algorithm(reading *r, const case_node *node) {
          (node->kind != CASE_SCALAR || strcmp(node->text, algorithms[i]) != 0))
     i++;
   if (i == STUDY_N_ALGORITHMS)
-    fault(r, node, "algorithm: expected sbplx, crs, isres or direct");
+    fault(r, node, "algorithm: expected sbplx, crs, isres, direct or slope");
   else
     r->o->algorithm = (study_algorithm)i;
 }
@@ -117,6 +119,7 @@ void study_optimise_read(case_issues *issues, const case_node *node, const study
   reading r = {issues, outputs, o};
   *o =
       (study_optimise){.wanted = true, .objective = -1, .evaluations = 200, .starts = 4, .seed = 1};
+  o->free_algorithm = node->kind == CASE_MAPPING && !case_node_find(node, "algorithm");
   if (node->kind != CASE_MAPPING) {
     fault(&r, node, "expected a mapping such as {minimise: peak, evaluations: 200}");
     return;
@@ -147,12 +150,44 @@ static bool check_keys(case_issues *issues, const case_node *at, const study_key
   return issues->n == before;
 }
 
-void study_optimise_starts(case_issues *issues, const case_node *at, const study_optimise *o,
-                           const study_keys *keys, int *n, double **design) {
+int study_key_derivative(const case_file *base, const study_key *key) {
+  static const char *const paths[] = {"contact.n0", "contact.mu", "contact.ku",
+                                      "contact.kv", "mhb.scale",  "modal.damping"};
+  for (size_t p = 0; p < sizeof paths / sizeof *paths; p++) {
+    if (strcmp(key->path, paths[p]) != 0) continue;
+    for (int i = 0; i < MHB_PEAK_PARAMETERS; i++) {
+      char   name[STUDY_UNIT_TEXT], unit[STUDY_UNIT_TEXT];
+      double value;
+      study_derivative(base, i, name, unit, &value);
+      if (strcmp(name, strchr(paths[p], '.') + 1) == 0) return i;
+    }
+  }
+  return -1;
+}
+
+/* Why the slope of the objective is not known; NULL: it is. */
+static const char *why_no_slope(const study_outputs *outputs, const study_keys *keys,
+                                const study_optimise *o) {
+  if (keys->n != 1) return "slope varies one key";
+  if (outputs->output[o->objective].quantity != STUDY_PEAK) return "slope minimises peak";
+  if (o->n_limits > 0) return "slope has no limits; sbplx has";
+  if (study_key_derivative(outputs->base, &keys->key[0]) < 0)
+    return "slope varies contact.n0, mu, ku, kv, mhb.scale or a damping that is one number";
+  return NULL;
+}
+
+void study_optimise_starts(case_issues *issues, const case_node *at, const study_outputs *outputs,
+                           const study_keys *keys, study_optimise *o, int *n, double **design) {
   int d = keys->n, rows = o->starts + 2;
   *design = NULL;
   *n      = 0;
   if (!check_keys(issues, at, keys)) return;
+  const char *none = why_no_slope(outputs, keys, o);
+  if (!none && o->free_algorithm) o->algorithm = STUDY_SLOPE;
+  if (none && o->algorithm == STUDY_SLOPE) {
+    case_issue_add(issues, at->line, at->column, "optimise", "algorithm: %s", none);
+    return;
+  }
   double *u = calloc((size_t)rows * (size_t)d + 1, sizeof *u);
   if (!u || plan_latin_hypercube(o->starts, d, o->seed, u + 2 * d) != SHB_OK) {
     case_issue_add(issues, at->line, at->column, "optimise", "out of memory");

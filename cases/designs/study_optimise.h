@@ -11,6 +11,7 @@ typedef enum {
   STUDY_CRS,    /* controlled random search, global */
   STUDY_ISRES,  /* evolution, global */
   STUDY_DIRECT, /* division of rectangles, global */
+  STUDY_SLOPE, /* root of the slope of the peak along one key; each start has a part of the range */
   STUDY_N_ALGORITHMS
 } study_algorithm;
 
@@ -28,6 +29,7 @@ typedef struct {
   study_limit     limit[STUDY_MAX_LIMITS];
   int             evaluations, starts; /* of all starts together; these share them equally */
   unsigned long   seed;
+  bool            free_algorithm; /* none was asked for */
   study_algorithm algorithm;
 } study_optimise;
 
@@ -43,11 +45,16 @@ typedef struct {
 void study_optimise_read(case_issues *issues, const case_node *node, const study_outputs *outputs,
                          study_optimise *optimise);
 
-/* Check the keys, and make the first designs of all starts: the middle of the ranges, then a Latin
- * hypercube. The two corners of the ranges stand before them, to be checked.
+/* Check the keys, choose an algorithm if none was asked for, and make the first designs of all
+ * starts: the middle of the ranges, then a Latin hypercube. The two corners of the ranges stand
+ * before them, to be checked.
  *   design  out  [n][keys->n] malloc'ed, NULL after a fault */
-void study_optimise_starts(case_issues *issues, const case_node *at, const study_optimise *optimise,
-                           const study_keys *keys, int *n, double **design);
+void study_optimise_starts(case_issues *issues, const case_node *at, const study_outputs *outputs,
+                           const study_keys *keys, study_optimise *optimise, int *n,
+                           double **design);
+
+/* Index of the derivative of the peak by a key (peak_derivatives.h); -1: there is none. */
+int study_key_derivative(const case_file *base, const study_key *key);
 
 /* "sbplx", ... */
 const char *study_algorithm_name(study_algorithm algorithm);

@@ -112,7 +112,8 @@ static const case_node *make_designs(reading *r, const case_node *root) {
   if (vary) study_keys_read(&r->issues, vary, &s->keys);
   if (optimise) study_optimise_read(&r->issues, optimise, &outputs, &s->optimise);
   if (r->issues.n == 0 && optimise)
-    study_optimise_starts(&r->issues, at, &s->optimise, &s->keys, &s->n_designs, &s->design);
+    study_optimise_starts(&r->issues, at, &outputs, &s->keys, &s->optimise, &s->n_designs,
+                          &s->design);
   if (r->issues.n == 0 && !optimise)
     study_plan_make(&r->issues, plan && !vary ? plan : at, &s->plan, &s->keys, &s->n_designs,
                     &s->design);

@@ -14,6 +14,9 @@ static const double PENALTY = 100;
 static const double FAILED = 1e30;
 /* A key lies on a bound within this share of its range. */
 static const double ON_BOUND = 1e-4;
+/* Designs whose values differ by less than their error are told where they reach over this share of
+ * a range. */
+static const double INDISTINCT = 0.005;
 
 typedef struct {
   int round, start, design;
@@ -53,9 +56,17 @@ static bool has_result(const optimisation *o, const study_design *d) {
 
 /* What the search minimises. */
 static double worth(const optimisation *o, const study_design *d) {
-  if (!has_result(o, d)) return FAILED;
+  if (!has_result(o, d)) return o->spec->optimise.algorithm == STUDY_SLOPE ? INFINITY : FAILED;
   double value = d->value[o->spec->optimise.objective];
   return value + PENALTY * violation(o, d) * fabs(value);
+}
+
+/* Slope of the peak along the only key, over its range; NAN: not known. */
+static double slope(const optimisation *o, const study_design *d) {
+  const study_key *key = &o->spec->keys.key[0];
+  if (o->spec->optimise.algorithm != STUDY_SLOPE || !has_result(o, d)) return NAN;
+  const double by = d->derivative[study_key_derivative(&o->spec->base, key)];
+  return by * (key->log ? d->key[0] * log(key->to / key->from) : key->to - key->from);
 }
 
 /* ---------------------------------------------------------------- designs */
@@ -146,10 +157,11 @@ int optimisation_next(optimisation *o, const double **value) {
 }
 
 void optimisation_done(optimisation *o, int design) {
+  const study_design *d = &o->study->design[design];
   for (int i = 0; i < o->spec->optimise.starts; i++) {
     if (o->waits[i] != design) continue;
     o->waits[i] = -1;
-    optimiser_tell(o->search, i, worth(o, &o->study->design[design]));
+    optimiser_tell(o->search, i, worth(o, d), slope(o, d));
   }
 }
 
@@ -208,6 +220,26 @@ static void note_limits(const optimisation *o, const study_design *best, FILE *o
   }
 }
 
+/* How far the keys reach over the designs that the errors do not tell from the optimum. */
+static void note_indistinct(const optimisation *o, const study_design *best, double error,
+                            FILE *out) {
+  for (int k = 0; k < o->spec->keys.n; k++) {
+    const study_key *key = &o->spec->keys.key[k];
+    double           low = best->key[k], high = low;
+    for (int i = 0; i < o->study->n; i++) {
+      const study_design *d = &o->study->design[i];
+      if (!has_result(o, d) || violation(o, d) > 0) continue;
+      if (d->value[o->spec->optimise.objective] > best->value[o->spec->optimise.objective] + error)
+        continue;
+      low  = fmin(low, d->key[k]);
+      high = fmax(high, d->key[k]);
+    }
+    if (unit_of(key, high) - unit_of(key, low) > INDISTINCT)
+      fprintf(out, "%s: designs from %.4g to %.4g %s are within the error of the optimum\n",
+              key->path, low, high, strcmp(key->unit, "-") == 0 ? "" : key->unit);
+  }
+}
+
 /* Warnings, one a line. */
 static char *make_note(const optimisation *o, int best) {
   const study_optimise *s    = &o->spec->optimise;
@@ -229,13 +261,14 @@ static char *make_note(const optimisation *o, int best) {
   if (used > 0)
     fprintf(out, "%d of %d starts used up their %d evaluations\n", used, s->starts,
             s->evaluations / s->starts);
-  if (b && s->starts > 1)
+  if (b && s->starts > 1 && s->algorithm != STUDY_SLOPE)
     fprintf(out, "%d of %d starts came to the same value within 1e-4\n", agree, s->starts);
   for (int k = 0; b && k < o->spec->keys.n; k++)
     if (o->study->optimum.on_bound[k])
       fprintf(out, "%s lies on the %s bound of its range\n", o->spec->keys.key[k].path,
               o->study->optimum.on_bound[k] < 0 ? "lower" : "upper");
   if (b) note_limits(o, b, out);
+  if (b) note_indistinct(o, b, error, out);
   fclose(out);
   if (text && size > 0 && text[size - 1] == '\n') text[size - 1] = '\0';
   return text;

@@ -6,6 +6,8 @@
 #include <stdio.h>
 #include <stdlib.h>
 
+#include "cases/study/line_minimum.h"
+
 /* A start ends where the simplex is this small in the unit cube, or values differ by less. */
 static const double SETTLED = 1e-6, EQUAL = 1e-8;
 /* Size of the first step in the unit cube. */
@@ -22,10 +24,10 @@ typedef struct {
   start_state state;
   int         index;
   double     *point; /* [n] */
-  double      answer;
+  double      answer, slope;
   int         count; /* evaluations */
   bool        used_up;
-  nlopt_opt   opt;
+  nlopt_opt   opt; /* NULL for STUDY_SLOPE */
 } one_start;
 
 struct optimiser {
@@ -38,36 +40,48 @@ struct optimiser {
   pthread_cond_t  changed;
 };
 
-/* Called by NLopt in the thread of a start. */
-static double value_at(unsigned n, const double *x, double *gradient, void *context) {
-  one_start *s = context;
+/* Ask for the value at x [n] and sleep until it is told. False: the search is to end. */
+static bool ask(one_start *s, const double *x) {
   optimiser *o = s->owner;
-  (void)gradient;
   if (s->count++ >= o->settings.evaluations / o->n_starts) { /* DIRECT heeds no limit of its own */
     s->used_up = true;
-    nlopt_force_stop(s->opt);
-    return HUGE_VAL;
+    return false;
   }
   pthread_mutex_lock(&o->lock);
-  for (unsigned i = 0; i < n; i++) s->point[i] = fmin(1, fmax(0, x[i]));
+  for (int i = 0; i < o->n; i++) s->point[i] = fmin(1, fmax(0, x[i]));
   s->state = ASKING;
   pthread_cond_broadcast(&o->changed);
   while (s->state != THINKING && !o->stopped) pthread_cond_wait(&o->changed, &o->lock);
-  double value = s->answer;
-  if (o->stopped) {
-    nlopt_force_stop(s->opt);
-    value = HUGE_VAL;
-  }
+  bool goes_on = !o->stopped;
   pthread_mutex_unlock(&o->lock);
-  return value;
+  return goes_on;
 }
 
-static const nlopt_algorithm algorithm_of[STUDY_N_ALGORITHMS] = {NLOPT_LN_SBPLX, NLOPT_GN_CRS2_LM,
-                                                                 NLOPT_GN_ISRES, NLOPT_GN_DIRECT_L};
+/* Called by NLopt in the thread of a start. */
+static double value_at(unsigned n, const double *x, double *gradient, void *context) {
+  one_start *s = context;
+  (void)n;
+  (void)gradient;
+  if (ask(s, x)) return s->answer;
+  nlopt_force_stop(s->opt);
+  return HUGE_VAL;
+}
+
+/* Called by line_minimum in the thread of a start. */
+static bool value_and_slope_at(void *context, double u, double *value, double *slope) {
+  one_start *s = context;
+  if (!ask(s, &u)) return false;
+  *value = s->answer;
+  *slope = s->slope;
+  return true;
+}
+
+static const nlopt_algorithm algorithm_of[STUDY_SLOPE] = {NLOPT_LN_SBPLX, NLOPT_GN_CRS2_LM,
+                                                          NLOPT_GN_ISRES, NLOPT_GN_DIRECT_L};
 
 /* Simplices settle on a kink beside the optimum, so SBPLX begins again where it ended, until that
  * brings no more than GAIN. */
-static void search(one_start *s, double *x) {
+static void search_by_values(one_start *s, double *x) {
   double least = HUGE_VAL, step = FIRST_STEP;
   bool   again = true;
   nlopt_optimize(s->opt, x, &least);
@@ -84,9 +98,14 @@ static void *run(void *context) {
   one_start *s = context;
   optimiser *o = s->owner;
   double     x[o->n];
-  for (int i = 0; i < o->n; i++) x[i] = s->point[i];
-  nlopt_srand(o->settings.seed * 1000 + (unsigned long)s->index); /* a generator a thread */
-  search(s, x);
+  if (o->settings.algorithm == STUDY_SLOPE) {
+    double low = s->index / (double)o->n_starts, high = (s->index + 1) / (double)o->n_starts;
+    line_minimum(low, high, SETTLED, value_and_slope_at, s);
+  } else {
+    for (int i = 0; i < o->n; i++) x[i] = s->point[i];
+    nlopt_srand(o->settings.seed * 1000 + (unsigned long)s->index); /* a generator a thread */
+    search_by_values(s, x);
+  }
   pthread_mutex_lock(&o->lock);
   s->state = DONE;
   pthread_cond_broadcast(&o->changed);
@@ -96,7 +115,8 @@ static void *run(void *context) {
 
 static bool set_up(one_start *s) {
   optimiser *o = s->owner;
-  s->opt       = nlopt_create(algorithm_of[o->settings.algorithm], (unsigned)o->n);
+  if (o->settings.algorithm == STUDY_SLOPE) return true;
+  s->opt = nlopt_create(algorithm_of[o->settings.algorithm], (unsigned)o->n);
   if (!s->opt) return false;
   nlopt_set_lower_bounds1(s->opt, 0);
   nlopt_set_upper_bounds1(s->opt, 1);
@@ -151,9 +171,10 @@ int optimiser_ask(optimiser *o, const double **point) {
   return found;
 }
 
-void optimiser_tell(optimiser *o, int start, double value) {
+void optimiser_tell(optimiser *o, int start, double value, double slope) {
   pthread_mutex_lock(&o->lock);
   o->start[start].answer = value;
+  o->start[start].slope  = slope;
   o->start[start].state  = THINKING;
   pthread_cond_broadcast(&o->changed);
   pthread_mutex_unlock(&o->lock);
@@ -181,8 +202,12 @@ void optimiser_destroy(optimiser *o) {
 }
 
 void optimiser_name(study_algorithm algorithm, char *out, size_t size) {
-  static const char *const names[STUDY_N_ALGORITHMS] = {"SBPLX", "CRS2", "ISRES", "DIRECT-L"};
+  static const char *const names[STUDY_SLOPE] = {"SBPLX", "CRS2", "ISRES", "DIRECT-L"};
   int                      major, minor, bugfix;
+  if (algorithm == STUDY_SLOPE) {
+    snprintf(out, size, "root of the slope");
+    return;
+  }
   nlopt_version(&major, &minor, &bugfix);
   snprintf(out, size, "%s of NLopt %d.%d.%d", names[algorithm], major, minor, bugfix);
 }

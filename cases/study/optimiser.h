@@ -1,4 +1,4 @@
-/* Minimisation by NLopt as questions and answers. Each start runs in a thread of its own, asks for
+/* Minimisation as questions and answers, by NLopt or by line_minimum.h. Each start runs in a thread of its own, asks for
  * the value at a point, and sleeps until it is told. Its points depend on its own answers only, so
  * that the order in which answers come does not change the result. */
 #ifndef CASES_STUDY_OPTIMISER_H
@@ -22,8 +22,9 @@ shb_status optimiser_create(const study_optimise *settings, int n, const double 
  * done. */
 int optimiser_ask(optimiser *o, const double **point);
 
-/* The value at the point that a start asked for. */
-void optimiser_tell(optimiser *o, int start, double value);
+/* The value at the point that a start asked for; for STUDY_SLOPE also the slope along the one key of
+ * the unit cube, NAN if it is not known. */
+void optimiser_tell(optimiser *o, int start, double value, double slope);
 
 /* Whether a start ended because its evaluations were used up. */
 bool optimiser_used_up(const optimiser *o, int start);
@@ -31,7 +32,7 @@ bool optimiser_used_up(const optimiser *o, int start);
 /* End all threads, also those that wait. */
 void optimiser_destroy(optimiser *o);
 
-/* "SBPLX of NLopt 2.7.1" */
+/* "SBPLX of NLopt 2.7.1", "root of the slope" */
 void optimiser_name(study_algorithm algorithm, char *out, size_t size);
 
 #endif

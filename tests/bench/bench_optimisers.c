@@ -49,7 +49,7 @@ static double run(const kinked *f, study_algorithm algorithm, int starts, int ev
     best = fmin(best, value);
     for (int l = 0; l < N_LEVELS; l++)
       if (!reached[l] && best < 1 + levels[l]) reached[l] = count;
-    optimiser_tell(o, start, value);
+    optimiser_tell(o, start, value, NAN);
   }
   optimiser_destroy(o);
   return best - 1;

@@ -49,6 +49,7 @@ shb_test(cases/plan statistics shb_cases_plan PkgConfig::GSL m)
 shb_test(cases/plan sobol_indices shb_cases_plan m)
 shb_test(cases/plan design_statistics shb_cases_plan m)
 shb_test(cases/peaks design_run shb_cases_peaks tests_models)
+shb_test(cases/study line_minimum shb_cases_study)
 shb_test(cases/study optimiser shb_cases_study)
 
 # What is installed, by `cmake --install` and as a Debian package, works on its own.

@@ -149,6 +149,41 @@ def check_optimise():
         assert fault in said, said
 
 
+ONE_KEY = """case: case.yaml
+vary:
+  contact.n0: {from: 0.1 N, to: 1 N, scale: log}
+optimise: {minimise: peak, starts: 2, evaluations: 80}
+outputs: [peak]
+"""
+
+
+def check_one_key():
+    """Along one key the root of the slope: no design beside the optimum is lower."""
+    write('line.yaml', ONE_KEY)
+    run(program('shroudhb-study'), '--quiet', 'line.yaml')
+    table = rows('line.study.csv')
+    with h5py.File('line.study.h5') as source:
+        best = table[int(source['optimum'].attrs['best'])]
+        assert 'root of the slope' in str(source['optimum'].attrs['method'])
+    print(len(table), 'designs, optimum', best['contact.n0'], 'N')
+    assert len(table) <= 40, len(table)
+    n0, peak = float(best['contact.n0']), float(best['peak'])
+    points = [0.1 * 10 ** (i / 40) for i in range(41)] + [n0 * (1 + d) for d in (-1e-3, 1e-3)]
+    write('scan.csv', 'contact.n0\n' + ''.join(f'{n} N\n' for n in points))
+    write('scan.yaml', 'case: case.yaml\nplan: {table: scan.csv}\noutputs: [peak]\n')
+    run(program('shroudhb-study'), '--quiet', 'scan.yaml')
+    assert min(float(row['peak']) for row in rows('scan.study.csv')) > peak * (1 - 1e-7)
+    for text, fault in (((': peak, ', ': frequency, algorithm: slope, '), 'slope minimises peak'),
+                        ((': peak, ', ': peak, algorithm: slope, at_most: {peak: 1 m}, '),
+                         'slope has no limits'),
+                        ((': peak, ', ': peak, algorithm: steep, '), 'direct or slope'),
+                        (('scale: log}', 'scale: log}\n  contact.mu: {from: 0.1, to: 0.2}'),
+                         None)):
+        write('bad.yaml', ONE_KEY.replace(*text))
+        said = run(program('shroudhb-study'), '--check', 'bad.yaml', code=2 if fault else 0)
+        assert (fault or 'peak by sbplx') in said, said
+
+
 def check_ranks():
     """Three ranks give the bytes of one."""
     alone = read('grid.study.csv')
@@ -435,9 +470,9 @@ def main():
         run(sys.executable, 'write_modal.py')
         write('grid.yaml', GRID)
         run(program('shroudhb-study'), '--quiet', 'grid.yaml')
-        for check in (check_values, check_derivatives, check_optimise, check_ranks, check_reuse,
-                      check_sampled_plans, check_uncertain, check_robust,
-                      check_crash, check_kill, check_faults,
+        for check in (check_values, check_derivatives, check_optimise, check_one_key,
+                      check_ranks, check_reuse, check_sampled_plans, check_uncertain,
+                      check_robust, check_crash, check_kill, check_faults,
                       check_overrides, check_one_design):
             check()
             print(check.__name__, 'passed')
