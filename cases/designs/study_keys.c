@@ -32,7 +32,7 @@ static const case_key *row_of(const char *path) {
   return key;
 }
 
-static bool is_number(const case_key *key) {
+bool study_key_is_number(const case_key *key) {
   switch (key->type) {
     case CASE_NUMBER:
     case CASE_INTEGER:
@@ -176,7 +176,7 @@ bool study_key_start(case_issues *issues, const case_node *node, const char *pat
     refuse_path(issues, node, path);
     return false;
   }
-  if (!is_number(row)) {
+  if (!study_key_is_number(row)) {
     case_issue_add(issues, node->key_line, node->key_column, path,
                    "is not a number; a study varies numbers");
     return false;

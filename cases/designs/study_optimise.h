@@ -45,7 +45,7 @@ typedef struct {
 void study_optimise_read(case_issues *issues, const case_node *node, const study_outputs *outputs,
                          study_optimise *optimise);
 
-/* Check the keys, choose an algorithm if none was asked for, and make the first designs of all
+/* Check the keys, and choose an algorithm if none was asked for. Make the first designs of all
  * starts: the middle of the ranges, then a Latin hypercube. The two corners of the ranges stand
  * before them, to be checked.
  *   design  out  [n][keys->n] malloc'ed, NULL after a fault */

@@ -10,6 +10,7 @@
 
 #include "cases/commands/command.h"
 #include "cases/commands/subprocess.h"
+#include "cases/designs/study_schema.h"
 #include "cases/front/json_command.h"
 #include "cases/front/run.h"
 #include "cases/parse/key_listing.h"
@@ -36,7 +37,7 @@ static const char usage[] =
     "  check FILE.yaml    check a case file or a study file, run nothing\n"
     "  keys               every key of a case file: unit, range, default, meaning; --markdown\n"
     "                     prints the page docs/user/case_reference.md, --schema a JSON Schema,\n"
-    "                     --schema=motion that of a file for contact\n"
+    "                     --schema=motion that of a file for contact, --schema=study of a study\n"
     "  inspect FILE.h5    what a modal or response file holds; of two modal files: A.h5 B.h5;\n"
     "                     FILE.h5 PATH prints values, 'branch_2/motion[peak,0,:,1]'; --csv\n"
     "  field NAME.response.h5  the moving blade: motion and stress everywhere over a period, for\n"
@@ -129,6 +130,7 @@ static int keys_main(const char *name, int argc, char **argv, run_words end) {
   if (argc > 1 && (strcmp(argv[1], "--schema") == 0 || strcmp(argv[1], "--schema=case") == 0))
     print = case_print_schema;
   if (argc > 1 && strcmp(argv[1], "--schema=motion") == 0) print = case_print_motion_schema;
+  if (argc > 1 && strcmp(argv[1], "--schema=study") == 0) print = study_print_schema;
   int taken = print == case_print_keys ? 1 : 2;
   if (argc > taken) {
     fprintf(stderr, "shroudhb: error: keys takes --markdown or --schema; unexpected '%s'\n",

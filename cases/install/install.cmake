@@ -31,12 +31,15 @@ foreach(program ${PROGRAMS})
 endforeach()
 manual_page(shroudhb-case.5 shroudhb keys "the keys of a case file")
 
-set(SCHEMA ${PROJECT_BINARY_DIR}/manual/case.schema.json)
-add_custom_command(OUTPUT ${SCHEMA} COMMAND shroudhb keys --schema > ${SCHEMA}
-  DEPENDS shroudhb VERBATIM)
-install(FILES ${SCHEMA} DESTINATION ${SHARED})
+foreach(file case study)
+  set(schema ${PROJECT_BINARY_DIR}/manual/${file}.schema.json)
+  add_custom_command(OUTPUT ${schema} COMMAND shroudhb keys --schema=${file} > ${schema}
+    DEPENDS shroudhb VERBATIM)
+  install(FILES ${schema} DESTINATION ${SHARED})
+  list(APPEND SCHEMAS ${schema})
+endforeach()
 
-add_custom_target(manual DEPENDS ${PAGES} ${SCHEMA})
+add_custom_target(manual DEPENDS ${PAGES} ${SCHEMAS})
 add_dependencies(programs manual)
 
 # ---------------------------------------------------------------- examples, pages, completion

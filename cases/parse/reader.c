@@ -84,7 +84,7 @@ static void walk(case_reader *r, const case_node *map, const char *path);
 static void refuse_key(case_reader *r, const char *block, const char *path, const case_node *node) {
   char hint[512] = "";
   if (node->kind == CASE_NULL && node->key[0] >= '0' && node->key[0] <= '9') { /* {E: 2,1 GPa} */
-    case_issue_add(r->issues, node->key_line, node->key_column, path,
+    case_issue_add(r->issues, node->key_line, node->key_column, block,
                    "a number where a key belongs; write decimals with a point, such as 2.1");
     return;
   }

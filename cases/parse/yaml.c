@@ -63,7 +63,7 @@ static char byte_at(const case_issues *issues, const yaml_mark_t *mark) {
   return i < issues->length ? issues->text[i] : '\0';
 }
 
-/* A fault of the text in plain words, by what libyaml says of it; NULL: its own words are as good. */
+/* A fault of the text in plain words, by what libyaml says of it; NULL: its own are as good. */
 static const char *in_plain_words(const yaml_parser_t *p) {
   static const struct {
     const char *context, *problem, *words;

@@ -8,7 +8,7 @@
 
 /* ---------------------------------------------------------------- JSON */
 
-static void print_string(const char *text, FILE *out) {
+void case_print_json_string(const char *text, FILE *out) {
   fputc('"', out);
   for (; *text; text++) {
     if (*text == '"' || *text == '\\') fputc('\\', out);
@@ -189,7 +189,7 @@ static void print_block(case_keys keys, const char *block, int depth, FILE *out)
 
 static void print_key(const case_key *key, case_keys keys, int depth, FILE *out) {
   fputs("{\"description\": ", out);
-  print_string(key->help, out);
+  case_print_json_string(key->help, out);
   if (key->type == CASE_LIST) {
     char items[2 * CASE_LONGEST_WORD];
     snprintf(items, sizeof items, "%s[]", key->path);
@@ -235,17 +235,20 @@ static void print_block(case_keys keys, const char *block, int depth, FILE *out)
   fputs("}}", out);
 }
 
+void case_print_quantity_definition(FILE *out) {
+  fputs(
+      "\"quantity\": {\"type\": \"string\", \"description\": \"a number with its unit\",\n"
+      "  \"pattern\": \"^[-+]?([0-9]+[.]?[0-9]*|[.][0-9]+)([eE][-+]?[0-9]+)? *[^ 0-9].*$\"}",
+      out);
+}
+
 static void print_schema(const char *title, case_keys keys, FILE *out) {
   fprintf(out,
           "{\"$schema\": \"http://json-schema.org/draft-07/schema#\",\n"
-          "\"title\": \"shroudhb %s file\",\n",
+          "\"title\": \"shroudhb %s file\",\n\"definitions\": {",
           title);
-  fputs(
-      "\"definitions\": {\"quantity\": {\"type\": \"string\", \"description\": \"a number with its "
-      "unit\",\n"
-      "  \"pattern\": \"^[-+]?([0-9]+[.]?[0-9]*|[.][0-9]+)([eE][-+]?[0-9]+)? *[^ 0-9].*$\"}},\n"
-      "\"allOf\": [",
-      out);
+  case_print_quantity_definition(out);
+  fputs("},\n\"allOf\": [", out);
   print_block(keys, "", 1, out);
   fputs("]}\n", out);
 }

@@ -96,9 +96,9 @@ static double promise(const line_point *l, const line_point *r) {
 
 /* ---------------------------------------------------------------- one bracket */
 
-/* The next point of a bracket. Of a kink the parabola of the far end keeps its error, so that points
- * may come from one side only: the third and fourth go further, and so does one beside an end.
- * Half-way after more, and where the model has no place between the ends.
+/* The next point of a bracket. Of a kink the parabola of the far end keeps its error. Points may
+ * then come from one side only. So the third and fourth go further, and one beside an end too.
+ * After more, and where the model has no place between the ends, the bracket is halved.
  *   side  in  -n, n: the last n points became the left, the right end */
 static double next_place(const line_search *s, const line_point *l, const line_point *r,
                          line_model model, int side) {
@@ -160,7 +160,7 @@ static bool hides_minimum(const line_point *l, const line_point *r) {
   return (r->value - l->value) * (l->slope + r->slope) < 0;
 }
 
-/* Points at even distances, and half-way between those that hide a minimum; returns their number. */
+/* Points at even distances, and half-way between those that hide a minimum. Returns how many. */
 static int first_points(line_search *s, line_point *point) {
   int n = 0;
   for (int i = 0; i < FIRST_POINTS && !s->ended; i++) {

@@ -14,8 +14,8 @@
  * Returns false to end the search. */
 typedef bool line_function(void *context, double u, double *value, double *slope);
 
-/* Search [low, high]: first at even distances, both ends among them, then in the bracket that
- * promises the least value, and in others while they promise less than was found.
+/* Search [low, high]: first at even distances, both ends among them. Then the bracket that promises
+ * the least value is closed, and others while they promise less than was found.
  *   width  in  a bracket as narrow as this is closed
  * The caller keeps the least value of those that it gave. */
 void line_minimum(double low, double high, double width, line_function *function, void *context);

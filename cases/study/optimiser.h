@@ -1,6 +1,8 @@
-/* Minimisation as questions and answers, by NLopt or by line_minimum.h. Each start runs in a thread of its own, asks for
- * the value at a point, and sleeps until it is told. Its points depend on its own answers only, so
- * that the order in which answers come does not change the result. */
+/* Minimisation as questions and answers, by NLopt or by line_minimum.h.
+ *
+ * Each start runs in a thread of its own, asks for the value at a point, and sleeps until it is
+ * told. Its points depend on its own answers only, so that the order of answers does not change the
+ * result. */
 #ifndef CASES_STUDY_OPTIMISER_H
 #define CASES_STUDY_OPTIMISER_H
 
@@ -22,8 +24,8 @@ shb_status optimiser_create(const study_optimise *settings, int n, const double 
  * done. */
 int optimiser_ask(optimiser *o, const double **point);
 
-/* The value at the point that a start asked for; for STUDY_SLOPE also the slope along the one key of
- * the unit cube, NAN if it is not known. */
+/* The value at the point that a start asked for. For STUDY_SLOPE also the slope along the one key
+ * of the unit cube; NAN: not known. */
 void optimiser_tell(optimiser *o, int start, double value, double slope);
 
 /* Whether a start ended because its evaluations were used up. */

@@ -155,7 +155,7 @@ static void numbers_and_ranges(void **state) {
   (void)state;
   static const fault rows[] = {
       {"nu: 0.29", "nu: 0,3",
-       "c.yaml:11:29: error: material.3: a number where a key belongs; write decimals with a "
+       "c.yaml:11:30: error: material: a number where a key belongs; write decimals with a "
        "point, such as 2.1",
        1},
       {"0.31\n", "0,3\n",

@@ -55,4 +55,39 @@ for file in sorted((cases / "prescribed_motion").glob("*.yaml")):
     assert list(validator.iter_errors(good)), "unknown signal"
     good["motion"] = {"v": 3}
     assert list(validator.iter_errors(good)), "no list"
-print(f"{len(files)} case files, 8 faults; motion files")
+study = json.loads(subprocess.run([program, "keys", "--schema=study"], check=True,
+                                  capture_output=True).stdout)
+jsonschema.Draft7Validator.check_schema(study)
+validator = jsonschema.Draft7Validator(study)
+files = sorted(cases.glob("*/study.yaml"))
+assert len(files) > 1, files
+for file in files:
+    for error in validator.iter_errors(yaml.safe_load(file.read_text())):
+        sys.exit(f"{file}: {error.json_path}: {error.message}")
+good = yaml.safe_load("""
+case: case.yaml
+vary: {contact.n0: {from: 5 N, to: 9 N, scale: log}, "mesh.blade.sections[4].thickness": [4 mm, 5],
+       "excitation.traction[0]": [1 Pa, 2 Pa]}
+uncertain: {contact.mu: {normal: [0.3, 0.05]}}
+samples: 72
+plan: {sobol: 256, seed: 2}
+outputs: [peak, "modes[1].frequency"]
+""")
+search = {"case": "case.yaml", "vary": good["vary"],
+          "optimise": {"minimise": "peak", "at_most": {"stress": "80 MPa"}, "algorithm": "slope"}}
+assert not list(validator.iter_errors(good)) and not list(validator.iter_errors(search))
+for name, change in {
+    "misspelt key": lambda c: c.update(varie={}),
+    "path that is no key": lambda c: c["vary"].update({"contact.muu": [0.3]}),
+    "key that is no number": lambda c: c["vary"].update({"contact.to": ["ground"]}),
+    "range without its end": lambda c: c["vary"].update({"contact.n0": {"from": 5}}),
+    "unknown distribution": lambda c: c["uncertain"].update({"contact.mu": {"norm": [1, 2]}}),
+    "one number for two": lambda c: c["uncertain"].update({"contact.mu": {"normal": [1]}}),
+    "no count": lambda c: c.update(plan={"sobol": "many"}),
+    "unknown method": lambda c: c.update(optimise={"minimise": "peak", "algorithm": "best"}),
+    "no case": lambda c: c.pop("case"),
+}.items():
+    bad = copy.deepcopy(good)
+    change(bad)
+    assert list(validator.iter_errors(bad)), name
+print("case, motion and study files")
