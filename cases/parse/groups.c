@@ -5,7 +5,7 @@
 #include "cases/parse/units.h"
 
 static const char *const group_name[MESH_N_SETS] = {"root", "contact_right", "contact_left",
-                                                    "load"};
+                                                    "load", "cyclic_right",  "cyclic_left"};
 static const char        expected[] =
     "{plane: [x, y, z], normal: [x, y, z]}, {radius: r}, {nearest: [x, y, z]} or {name: WORD}";
 static const double usual_tolerance = 1e-6; /* m */
@@ -154,7 +154,7 @@ bool case_groups_read(case_issues *issues, const char *path, const case_node *no
     case_path(full, "%s.%s", path, child->key);
     if (!slot)
       case_issue_add(issues, child->key_line, child->key_column, full,
-                     "one group too many (%d besides the usual four), or a name of more than %d "
+                     "one group too many (%d besides the usual six), or a name of more than %d "
                      "letters",
                      MESH_MAX_MORE, MESH_WORD - 1);
     good = slot && read_rule(issues, full, child, slot) && good;

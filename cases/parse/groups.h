@@ -12,12 +12,13 @@
  *   {radius: r}
  *   {nearest: [x, y, z]}
  *   {name: WORD}
- * A plane and a radius may have a tolerance. Groups besides the usual four go to rules->more, in
+ * A plane and a radius may have a tolerance. Groups besides the usual six go to rules->more, in
  * the order of the file; schema/named_groups.h sorts them. Every fault is recorded under path. */
 bool case_groups_read(case_issues *issues, const char *path, const case_node *node,
                       mesh_rules *rules);
 
-/* Is it one of the usual groups root, contact_right, contact_left and load? */
+/* Is it one of the usual groups root, contact_right, contact_left, load, cyclic_right and
+ * cyclic_left? */
 bool case_group_is_usual(const char *name);
 
 /* Print the rules in SI units, one line each. */

@@ -1,4 +1,4 @@
-/* Groups of the mesh besides the usual four. A key names them; the mesh or a rule defines them. */
+/* Groups of the mesh besides the usual six. A key names them; the mesh or a rule defines them. */
 #ifndef CASES_SCHEMA_NAMED_GROUPS_H
 #define CASES_SCHEMA_NAMED_GROUPS_H
 

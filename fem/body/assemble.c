@@ -12,9 +12,23 @@ typedef struct {
 
 static void find_free(const mesh_fe *mesh, bool *is_free) {
   const mesh_face_set *root = &mesh->set[MESH_ROOT];
-  for (int i = 0; i < mesh->n_nodes; i++) is_free[i] = true;
+  for (int i = 0; i < mesh->n_nodes; i++) is_free[i] = !mesh->image || mesh->image[i] < 0;
   for (int i = 0; i < mesh_topology_of(mesh->kind)->face_nodes * root->n; i++)
     is_free[root->nodes[i]] = false;
+}
+
+/* Give the nodes of cyclic_right the rows of their partners. */
+static PetscErrorCode tie_sides(const mesh_fe *mesh, fem_system *system) {
+  PetscFunctionBeginUser;
+  if (!mesh->image) PetscFunctionReturn(0);
+  PetscCall(PetscCalloc1(mesh->n_nodes, &system->turned));
+  memcpy(system->turn, mesh->turn, sizeof system->turn);
+  for (int i = 0; i < mesh->n_nodes; i++) {
+    if (mesh->image[i] < 0) continue;
+    system->turned[i] = true;
+    system->row[i]    = system->row[mesh->image[i]];
+  }
+  PetscFunctionReturn(0);
 }
 
 /* Number the free nodes rank by rank, in mesh order inside a rank. */
@@ -39,7 +53,41 @@ static PetscErrorCode number_nodes(const mesh_fe *mesh, fem_system *system) {
   PetscCall(PetscMalloc1(mesh->n_nodes, &system->row));
   for (int i = 0; i < mesh->n_nodes; i++) system->row[i] = is_free[i] ? next[rank_of[i]]++ : -1;
   PetscCall(PetscFree3(is_free, rank_of, next));
+  PetscCall(tie_sides(mesh, system));
   PetscFunctionReturn(0);
+}
+
+void fem_system_to_row(const fem_system *system, int node, const double v[3], double out[3]) {
+  const double in[3] = {v[0], v[1], v[2]};
+  const bool   turns = system->turned && system->turned[node];
+  for (int d = 0; d < 3; d++)
+    out[d] = !turns ? in[d]
+                    : system->turn[0][d] * in[0] + system->turn[1][d] * in[1] +
+                          system->turn[2][d] * in[2];
+}
+
+void fem_system_from_row(const fem_system *system, int node, const double v[3], double out[3]) {
+  const double in[3] = {v[0], v[1], v[2]};
+  const bool   turns = system->turned && system->turned[node];
+  for (int d = 0; d < 3; d++)
+    out[d] = !turns ? in[d]
+                    : system->turn[d][0] * in[0] + system->turn[d][1] * in[1] +
+                          system->turn[d][2] * in[2];
+}
+
+/* The rows, then the columns, of each turned node: Q_a^T K_ab Q_b. */
+void fem_system_turn(const fem_system *system, int n, const int *node, double *K) {
+  const int order = 3 * n;
+  for (int a = 0; system->turned && a < n; a++) {
+    if (!system->turned[node[a]]) continue;
+    for (int j = 0; j < order; j++) {
+      double *at = K + 3 * a * order + j, v[3] = {at[0], at[order], at[2 * order]};
+      fem_system_to_row(system, node[a], v, v);
+      for (int d = 0; d < 3; d++) at[d * order] = v[d];
+    }
+    for (int i = 0; i < order; i++)
+      fem_system_to_row(system, node[a], K + i * order + 3 * a, K + i * order + 3 * a);
+  }
 }
 
 static bool is_own(const fem_system *system, PetscInt row) {
@@ -135,8 +183,12 @@ static PetscErrorCode create_matrices(const mesh_fe *mesh, fem_system *system, M
   PetscCall(PetscMalloc2(n_own, &diagonal, n_own, &off_diagonal));
   PetscCall(count_blocks(mesh, system, &around, false, diagonal, off_diagonal));
   PetscCall(create_matrix(system, diagonal, off_diagonal, &system->K));
-  PetscCall(count_blocks(mesh, system, &around, true, diagonal, off_diagonal));
-  PetscCall(create_mass(system, diagonal, off_diagonal, mass));
+  if (system->turned)
+    PetscCall(create_matrix(system, diagonal, off_diagonal, mass));
+  else {
+    PetscCall(count_blocks(mesh, system, &around, true, diagonal, off_diagonal));
+    PetscCall(create_mass(system, diagonal, off_diagonal, mass));
+  }
   PetscCall(PetscFree2(diagonal, off_diagonal));
   PetscCall(PetscFree(around.start));
   PetscCall(PetscFree(around.element));
@@ -155,6 +207,17 @@ bool fem_system_rows(const mesh_fe *mesh, const fem_system *system, int element,
   return touches;
 }
 
+/* The mass of a sector is no multiple of the identity between a turned node and another.
+ *   M  out  [3n][3n] */
+static void spread_mass(const fem_system *system, int n, const int *node, const double *m,
+                        double *M) {
+  memset(M, 0, 9 * (size_t)n * (size_t)n * sizeof *M);
+  for (int i = 0; i < n; i++)
+    for (int j = 0; j < n; j++)
+      for (int d = 0; d < 3; d++) M[(3 * i + d) * 3 * n + 3 * j + d] = m[n * i + j];
+  fem_system_turn(system, n, node, M);
+}
+
 static PetscErrorCode add_elements(const mesh_fe *mesh, const fem_material *material,
                                    const fem_element *element, const fem_system *system, Mat mass) {
   const int n = element->n;
@@ -170,8 +233,13 @@ static PetscErrorCode add_elements(const mesh_fe *mesh, const fem_material *mate
     for (int i = 0; i < n; i++) memcpy(x[i], mesh->coordinates + 3 * (size_t)node[i], sizeof x[i]);
     fem_element_stiffness(element, own, (const double(*)[3])x, K);
     fem_element_mass(element, own->rho, (const double(*)[3])x, m);
+    fem_system_turn(system, n, node, K);
     PetscCall(MatSetValuesBlocked(system->K, n, rows, n, columns, K, ADD_VALUES));
-    PetscCall(MatSetValues(mass, n, rows, n, columns, m, ADD_VALUES));
+    if (system->turned) {
+      spread_mass(system, n, node, m, K);
+      PetscCall(MatSetValuesBlocked(mass, n, rows, n, columns, K, ADD_VALUES));
+    } else
+      PetscCall(MatSetValues(mass, n, rows, n, columns, m, ADD_VALUES));
   }
   PetscFunctionReturn(0);
 }
@@ -200,6 +268,10 @@ PetscErrorCode fem_system_create(MPI_Comm comm, const mesh_fe *mesh, const fem_m
   PetscCall(PetscFree(element));
   PetscCall(finish(system->K));
   PetscCall(finish(mass));
+  if (system->turned) {
+    system->M = mass;
+    PetscFunctionReturn(0);
+  }
   PetscCall(MatCreateMAIJ(mass, 3, &system->M));
   PetscCall(MatDestroy(&mass));
   PetscFunctionReturn(0);
@@ -209,6 +281,11 @@ PetscErrorCode fem_system_shifted(const fem_system *system, double shift, Mat *A
   Mat mass;
   PetscFunctionBeginUser;
   PetscCall(MatDuplicate(system->K, MAT_COPY_VALUES, A));
+  if (system->turned) {
+    PetscCall(MatAXPY(*A, -shift, system->M, SAME_NONZERO_PATTERN));
+    PetscCall(MatSetOption(*A, MAT_SPD, PETSC_TRUE));
+    PetscFunctionReturn(0);
+  }
   PetscCall(MatSetOption(*A, MAT_IGNORE_LOWER_TRIANGULAR, PETSC_TRUE));
   PetscCall(MatMAIJGetAIJ(system->M, &mass));
   for (PetscInt row = system->first; row < system->last; row++) {
@@ -234,9 +311,11 @@ static PetscErrorCode to_nodes(const fem_system *system, Vec all, double *nodal)
   const PetscScalar *value;
   PetscFunctionBeginUser;
   PetscCall(VecGetArrayRead(all, &value));
-  for (int i = 0; i < system->n_nodes; i++)
+  for (int i = 0; i < system->n_nodes; i++) {
     for (int d = 0; d < 3; d++)
       nodal[3 * (size_t)i + d] = system->row[i] < 0 ? 0 : value[3 * system->row[i] + d];
+    fem_system_from_row(system, i, nodal + 3 * (size_t)i, nodal + 3 * (size_t)i);
+  }
   PetscCall(VecRestoreArrayRead(all, &value));
   PetscFunctionReturn(0);
 }
@@ -281,5 +360,6 @@ PetscErrorCode fem_system_destroy(fem_system *system) {
   PetscCall(MatDestroy(&system->K));
   PetscCall(MatDestroy(&system->M));
   PetscCall(PetscFree(system->row));
+  PetscCall(PetscFree(system->turned));
   PetscFunctionReturn(0);
 }

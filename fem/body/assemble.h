@@ -3,7 +3,10 @@
  * The dofs of the nodes of group root are left out, so K is positive definite. Block row r of K and
  * M belongs to a free node; its three rows are the mesh axes: dof = 3 row[node] + axis. Each rank
  * owns the block rows first .. last - 1. It computes every element that touches them, so assembly
- * needs no communication. */
+ * needs no communication.
+ *
+ * Of a sector (mesh->image) the nodes of cyclic_right have the block rows of their partners: u_right
+ * = turn u_left. This is nodal diameter 0, or N/2 on the mesh of mesh_cyclic_alternating. */
 #ifndef FEM_BODY_ASSEMBLE_H
 #define FEM_BODY_ASSEMBLE_H
 
@@ -19,7 +22,9 @@ typedef struct {
   PetscInt  first, last; /* block rows of this rank */
   PetscInt *row;         /* [n_nodes] block row, -1 for a clamped node; the same on every rank */
   Mat       K;           /* SBAIJ, block size 3, order 3 n_free; N/m */
-  Mat       M;           /* MAIJ: one number a pair of nodes, times the 3x3 identity; kg */
+  Mat       M; /* MAIJ: one number a pair of nodes, times the 3x3 identity; of a sector SBAIJ; kg */
+  bool     *turned;     /* [n_nodes] node that moves as turn times its partner; NULL: no sector */
+  double    turn[3][3]; /* of a sector */
 } fem_system;
 
 /* Number the dofs and assemble K and M.
@@ -43,6 +48,16 @@ PetscErrorCode fem_system_share(const fem_system *system, Vec x, double *nodal);
  *   rows, columns  out  [nodes of an element] */
 bool fem_system_rows(const mesh_fe *mesh, const fem_system *system, int element, PetscInt *rows,
                      PetscInt *columns);
+
+/* Vector of a node in the frame of its block row: turn^T v at a turned node, else v itself. */
+void fem_system_to_row(const fem_system *system, int node, const double v[3], double out[3]);
+
+/* The inverse: motion of a node from that of its block row; out may be v. */
+void fem_system_from_row(const fem_system *system, int node, const double v[3], double out[3]);
+
+/* Bring the 3x3 blocks of n nodes to the frames of their block rows; nothing without turned nodes.
+ *   K  in/out  [3n][3n] */
+void fem_system_turn(const fem_system *system, int n, const int *node, double *K);
 
 PetscErrorCode fem_system_destroy(fem_system *system); /* also on a zeroed struct */
 

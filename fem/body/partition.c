@@ -17,7 +17,8 @@ static PetscErrorCode share(MPI_Comm comm, int rank, void **data, size_t count, 
 }
 
 PetscErrorCode fem_mesh_broadcast(MPI_Comm comm, mesh_fe *mesh) {
-  int rank, n[5 + MESH_MAX_SETS];
+  enum { HEAD = 6 };
+  int rank, n[HEAD + MESH_MAX_SETS];
 
   PetscFunctionBeginUser;
   PetscCallMPI(MPI_Comm_rank(comm, &rank));
@@ -27,11 +28,12 @@ PetscErrorCode fem_mesh_broadcast(MPI_Comm comm, mesh_fe *mesh) {
     n[2] = (int)mesh->kind;
     n[3] = mesh->n_more;
     n[4] = mesh->n_regions;
-    for (int s = 0; s < MESH_MAX_SETS; s++) n[5 + s] = mesh->set[s].n;
+    n[5] = mesh->image != NULL;
+    for (int s = 0; s < MESH_MAX_SETS; s++) n[HEAD + s] = mesh->set[s].n;
   } else {
     memset(mesh, 0, sizeof *mesh);
   }
-  PetscCallMPI(MPI_Bcast(n, 5 + MESH_MAX_SETS, MPI_INT, 0, comm));
+  PetscCallMPI(MPI_Bcast(n, HEAD + MESH_MAX_SETS, MPI_INT, 0, comm));
   mesh->n_nodes    = n[0];
   mesh->n_elements = n[1];
   mesh->kind       = (mesh_kind)n[2];
@@ -46,9 +48,13 @@ PetscErrorCode fem_mesh_broadcast(MPI_Comm comm, mesh_fe *mesh) {
   PetscCall(share(comm, rank, (void **)&mesh->node_tag, nodes, MPI_LONG));
   PetscCall(share(comm, rank, (void **)&mesh->element_tag, elements, MPI_LONG));
   for (int s = 0; s < MESH_MAX_SETS; s++) {
-    mesh->set[s].n = n[5 + s];
-    if (n[5 + s] == 0) continue;
-    PetscCall(share(comm, rank, (void **)&mesh->set[s].nodes, face * (size_t)n[5 + s], MPI_INT));
+    mesh->set[s].n = n[HEAD + s];
+    if (n[HEAD + s] == 0) continue;
+    PetscCall(share(comm, rank, (void **)&mesh->set[s].nodes, face * (size_t)n[HEAD + s], MPI_INT));
+  }
+  if (n[5]) {
+    PetscCall(share(comm, rank, (void **)&mesh->image, nodes, MPI_INT));
+    PetscCallMPI(MPI_Bcast(mesh->turn, 9, MPI_DOUBLE, 0, comm));
   }
   if (n[4] == 0) PetscFunctionReturn(0);
   PetscCall(share(comm, rank, (void **)&mesh->region_name, MESH_WORD * (size_t)n[4], MPI_CHAR));

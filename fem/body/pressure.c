@@ -86,11 +86,26 @@ PetscErrorCode fem_pressure_residual(const fem_body *body, const fem_system *sys
     face_at(body, face, u, x);
     fem_face_pressure(&rule, body->pressure, (const double(*)[3])x, f);
     for (int i = 0; i < rule.nodes; i++) {
-      PetscInt row = system->row[set->nodes[rule.nodes * face + i]];
+      const int node = set->nodes[rule.nodes * face + i];
+      PetscInt  row  = system->row[node];
+      fem_system_to_row(system, node, f[i], f[i]);
       for (int d = 0; d < 3 && row >= system->first && row < system->last; d++)
         out[3 * (row - system->first) + d] -= f[i][d];
     }
   }
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode fem_pressure_face_tangent(const fem_body *body, const double *u,
+                                         const fem_system *system, int face, double *K) {
+  fem_face_rule rule;
+  double        x[MESH_FACE_NODES][3];
+  PetscFunctionBeginUser;
+  PetscCall(fem_face_rule_create(body->mesh->kind, &rule));
+  face_at(body, face, u, x);
+  fem_face_pressure_stiffness(&rule, body->pressure, (const double(*)[3])x, K);
+  fem_system_turn(system, rule.nodes, body->mesh->set[MESH_LOAD].nodes + rule.nodes * (size_t)face,
+                  K);
   PetscFunctionReturn(0);
 }
 
@@ -108,6 +123,7 @@ PetscErrorCode fem_pressure_tangent(const fem_body *body, const double *u, fem_s
     }
     face_at(body, face, u, x);
     fem_face_pressure_stiffness(&rule, body->pressure, (const double(*)[3])x, K);
+    fem_system_turn(system, rule.nodes, set->nodes + rule.nodes * (size_t)face, K);
     PetscCall(MatSetValuesBlocked(system->K, rule.nodes, rows, rule.nodes, columns, K, ADD_VALUES));
   }
   PetscFunctionReturn(0);

@@ -31,6 +31,10 @@ PetscErrorCode fem_pressure_residual(const fem_body *body, const fem_system *sys
 /* Add the symmetric load stiffness to system->K; the caller assembles. */
 PetscErrorCode fem_pressure_tangent(const fem_body *body, const double *u, fem_system *system);
 
+/* Symmetric load stiffness of one face, in the frames of its block rows: [3 nodes][3 nodes]. */
+PetscErrorCode fem_pressure_face_tangent(const fem_body *body, const double *u,
+                                         const fem_system *system, int face, double *K);
+
 /* u^T K u, K the load stiffness at the displacements state, J. */
 double fem_pressure_energy(const fem_body *body, const double *state, const double *u);
 

@@ -57,6 +57,8 @@ PetscErrorCode fem_rigid_load(const fem_body *body, const double *u, const fem_s
     for (int r = 0; r < FEM_RIGID; r++) {
       double whole = element_load(n, r, m, axis, (const double(*)[3])x, f);
       if (counted) sum[r] += whole;
+      for (int i = 0; i < n; i++)
+        fem_system_to_row(system, body->mesh->connectivity[n * (size_t)e + (size_t)i], f[i], f[i]);
       for (int i = 0; i < 3 * n; i++)
         if (rows[i / 3] >= 0) out[r][3 * (rows[i / 3] - system->first) + i % 3] += f[i / 3][i % 3];
     }

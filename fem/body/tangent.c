@@ -23,9 +23,14 @@ PetscErrorCode fem_residual_assemble(const fem_body *body, const fem_system *sys
     fem_element_force(body->element, own, at, by, internal);
     fem_element_mass(body->element, own->rho, at, m);
     fem_rotation_load(&body->rotation, n, m, at, by, load);
-    for (int i = 0; i < n; i++)
+    const int *node = body->mesh->connectivity + n * (size_t)e;
+    for (int i = 0; i < n; i++) {
+      double unbalanced[3];
+      for (int d = 0; d < 3; d++) unbalanced[d] = internal[i][d] - load[i][d];
+      fem_system_to_row(system, node[i], unbalanced, unbalanced);
       for (int d = 0; d < 3 && rows[i] >= 0; d++)
-        out[3 * (rows[i] - system->first) + d] += internal[i][d] - load[i][d];
+        out[3 * (rows[i] - system->first) + d] += unbalanced[d];
+    }
   }
   PetscCall(fem_pressure_residual(body, system, u, out));
   PetscCall(VecRestoreArray(R, &out));
@@ -47,6 +52,7 @@ PetscErrorCode fem_tangent_assemble(const fem_body *body, const double *u, fem_s
     fem_element_tangent(body->element, own, (const double(*)[3])x, (const double(*)[3])v, K);
     fem_element_mass(body->element, own->rho, (const double(*)[3])x, m);
     fem_rotation_soften(&body->rotation, n, m, K);
+    fem_system_turn(system, n, body->mesh->connectivity + n * (size_t)e, K);
     PetscCall(MatSetValuesBlocked(system->K, n, rows, n, columns, K, ADD_VALUES));
   }
   PetscCall(fem_pressure_tangent(body, u, system));

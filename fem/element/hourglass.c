@@ -31,15 +31,20 @@ static face_key make_key(const int *nodes, const int *local, int face) {
   return s;
 }
 
-/* supported[FACES * element + face] = 1 where another face, or the clamp, has the same corners. */
+/* Faces that are held by the clamp or by the next sector. */
+static const mesh_set_id held[3] = {MESH_ROOT, MESH_CYCLIC_RIGHT, MESH_CYCLIC_LEFT};
+
+/* supported[FACES * element + face] = 1 where another face, or what holds it, has the same
+ * corners. */
 static void find_supported(const mesh_fe *mesh, face_key *keys, char *supported) {
-  const mesh_face_set *root = &mesh->set[MESH_ROOT];
-  size_t               n    = 0;
+  size_t n = 0;
   for (int e = 0; e < mesh->n_elements; e++)
     for (int f = 0; f < FACES; f++)
       keys[n++] = make_key(mesh->connectivity + 20 * (size_t)e,
                            mesh_topology_of(MESH_HEX20)->face[f], FACES * e + f);
-  for (int f = 0; f < root->n; f++) keys[n++] = make_key(root->nodes + 8 * (size_t)f, NULL, -1);
+  for (int s = 0; s < 3; s++)
+    for (int f = 0; f < mesh->set[held[s]].n; f++)
+      keys[n++] = make_key(mesh->set[held[s]].nodes + 8 * (size_t)f, NULL, -1);
   qsort(keys, n, sizeof *keys, by_corner);
   for (size_t i = 0; i + 1 < n; i++) {
     if (by_corner(&keys[i], &keys[i + 1]) != 0) continue;
@@ -50,10 +55,12 @@ static void find_supported(const mesh_fe *mesh, face_key *keys, char *supported)
 
 shb_status fem_hourglass_check(const mesh_fe *mesh) {
   if (mesh->kind != MESH_HEX20) return SHB_OK;
-  const size_t n         = FACES * (size_t)mesh->n_elements;
-  face_key    *keys      = malloc((n + (size_t)mesh->set[MESH_ROOT].n + 1) * sizeof *keys);
-  char        *supported = calloc(n + 1, 1);
-  int          bad = 0, first = -1;
+  const size_t n    = FACES * (size_t)mesh->n_elements;
+  size_t       more = 1;
+  for (int s = 0; s < 3; s++) more += (size_t)mesh->set[held[s]].n;
+  face_key *keys      = malloc((n + more) * sizeof *keys);
+  char     *supported = calloc(n + 1, 1);
+  int       bad = 0, first = -1;
   if (keys && supported) find_supported(mesh, keys, supported);
   for (int e = 0; keys && supported && e < mesh->n_elements; e++) {
     int free_pairs = 0;

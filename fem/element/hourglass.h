@@ -8,7 +8,7 @@
  * single elements keeps one zero-energy mode an element, clamped or not. Two elements side by side
  * across the column keep none (counted for boxes of up to 3x3x2). Tetrahedra always pass.
  * Errors: SHB_ERR_INPUT if an element has two pairs of opposite faces that are free: neither shared
- * with another element nor clamped. The message gives the number of such elements and one tag. */
+ * with another element or sector nor clamped. The message gives the number of such elements and one tag. */
 shb_status fem_hourglass_check(const mesh_fe *mesh);
 
 #endif

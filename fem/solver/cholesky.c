@@ -1,9 +1,9 @@
 #include "fem/solver/cholesky.h"
 
-#include <omp.h>
 #include <stdlib.h>
 #include <string.h>
 
+#include "fem/solver/block_order.h"
 #include "fem/solver/supernodal_solve.h"
 
 enum { MANY = 12 }; /* number of right-hand sides from which calls to BLAS are faster */
@@ -14,6 +14,10 @@ typedef struct {
   const PetscInt *start, *column;
   const double   *value; /* [block][9], each by columns */
 } block_rows;
+
+static fem_blocks pattern_of(const block_rows *b) {
+  return (fem_blocks){(int)b->n, b->start, b->column};
+}
 
 struct fem_cholesky {
   int             n;     /* block rows */
@@ -47,54 +51,6 @@ static PetscErrorCode give_back_blocks(Mat A, block_rows *b) {
   PetscFunctionReturn(0);
 }
 
-static void start_common(cholmod_common *common) {
-  cholmod_start(common);
-  common->print                      = 0;
-  common->quick_return_if_not_posdef = 1;
-  common->nmethods                   = 1;
-  common->zrelax[0] = .3, common->zrelax[1] = .05, common->zrelax[2] = .02;
-}
-
-/* Nested dissection of the graph of the nodes. It is three times smaller than that of the dofs and
- * as good. */
-static bool order_nodes(const block_rows *b, cholmod_common *common, int *place) {
-  const size_t    n = (size_t)b->n, count = (size_t)b->start[n];
-  cholmod_sparse *graph = cholmod_allocate_sparse(n, n, count, 1, 1, -1, CHOLMOD_PATTERN, common);
-  if (!graph) return false;
-  memcpy(graph->p, b->start, (n + 1) * sizeof(int));
-  memcpy(graph->i, b->column, count * sizeof(int));
-  common->method[0].ordering = CHOLMOD_NESDIS;
-  common->supernodal         = CHOLMOD_SIMPLICIAL;
-  common->postorder          = 1;
-  cholmod_factor *order      = cholmod_analyze(graph, common);
-  if (order)
-    for (size_t i = 0; i < n; i++) place[((const int *)order->Perm)[i]] = (int)i;
-  bool good = order != NULL;
-  cholmod_free_factor(&order, common);
-  cholmod_free_sparse(&graph, common);
-  return good;
-}
-
-/* Column starts of the permuted lower triangle. In block column b the blocks below the diagonal
- * follow the diagonal block.
- *   next  scratch  [n], zero on entry and exit */
-static void count_columns(const block_rows *b, const int *place, int *next, int *start) {
-  int total = 0;
-  for (PetscInt r = 0; r < b->n; r++)
-    for (PetscInt q = b->start[r]; q < b->start[r + 1]; q++) {
-      int here = place[r], there = place[b->column[q]];
-      if (here != there) next[here < there ? here : there]++;
-    }
-  for (int c = 0; c < b->n; c++) {
-    for (int d = 0; d < 3; d++) {
-      start[3 * c + d] = total;
-      total += 3 - d + 3 * next[c];
-    }
-    next[c] = 0;
-  }
-  start[3 * (size_t)b->n] = total;
-}
-
 static void put_diagonal(const double *B, int c, const int *start, int *row, double *value) {
   for (int d = 0; d < 3; d++)
     for (int e = d; e < 3; e++) {
@@ -123,8 +79,9 @@ static cholmod_sparse *permute(const block_rows *b, const int *place, cholmod_co
       cholmod_allocate_sparse(3 * n, 3 * n, entries, 0, 1, -1, CHOLMOD_REAL, common);
   int *next = calloc(n + 1, sizeof *next);
   if (A && next) {
-    int *start = A->p;
-    count_columns(b, place, next, start);
+    const fem_blocks pattern = pattern_of(b);
+    int             *start   = A->p;
+    fem_block_starts(&pattern, place, next, start);
     for (PetscInt r = 0; r < b->n; r++)
       for (PetscInt q = b->start[r]; q < b->start[r + 1]; q++) {
         int           here = place[r], there = place[b->column[q]];
@@ -144,15 +101,13 @@ static cholmod_sparse *permute(const block_rows *b, const int *place, cholmod_co
 
 /* Symbolic factorisation of the permuted matrix. */
 static void analyse(const block_rows *b, fem_cholesky *factor) {
-  cholmod_common *common = &factor->common;
-  cholmod_sparse *A;
-  if (!order_nodes(b, common, factor->place)) return;
+  cholmod_common  *common = &factor->common;
+  cholmod_sparse  *A;
+  const fem_blocks pattern = pattern_of(b);
+  if (!fem_block_order(&pattern, common, factor->place)) return;
   A = permute(b, factor->place, common);
   if (!A) return;
-  common->method[0].ordering = CHOLMOD_NATURAL;
-  common->supernodal         = CHOLMOD_SUPERNODAL;
-  common->postorder          = 0;
-  factor->L                  = cholmod_analyze(A, common);
+  factor->L = fem_cholmod_analyse(A, common);
   cholmod_free_sparse(&A, common);
 }
 
@@ -163,7 +118,7 @@ PetscErrorCode fem_cholesky_create(Mat A, bool *fits, fem_cholesky **out) {
   PetscFunctionBeginUser;
   *out = NULL;
   PetscCheck(factor, PETSC_COMM_SELF, PETSC_ERR_MEM, "CHOLMOD");
-  start_common(&factor->common);
+  fem_cholmod_start(&factor->common);
   PetscCall(borrow_blocks(A, &b));
   factor->n     = (int)b.n;
   factor->place = malloc((size_t)b.n * sizeof *factor->place);
@@ -185,16 +140,6 @@ void fem_cholesky_bytes(const fem_cholesky *factor, double *factor_bytes, double
   *workspace              = 8. * (double)L->maxcsize + 12. * factor->common.anz;
 }
 
-/* Factorise on one thread. CHOLMOD copies panels with four OpenMP threads that wait for each other.
- * On a busy machine this takes more processor time than the arithmetic. With no active levels its
- * parallel regions have one thread. */
-static void factorise(cholmod_sparse *A, cholmod_factor *L, cholmod_common *common) {
-  const int levels = omp_get_max_active_levels();
-  omp_set_max_active_levels(0);
-  cholmod_factorize(A, L, common);
-  omp_set_max_active_levels(levels);
-}
-
 PetscErrorCode fem_cholesky_update(fem_cholesky *factor, Mat A, bool *definite) {
   cholmod_common *common = &factor->common;
   block_rows      b;
@@ -204,7 +149,7 @@ PetscErrorCode fem_cholesky_update(fem_cholesky *factor, Mat A, bool *definite) 
   cholmod_sparse *permuted = permute(&b, factor->place, common);
   PetscCall(give_back_blocks(A, &b));
   PetscCheck(permuted, PETSC_COMM_SELF, PETSC_ERR_MEM, "CHOLMOD");
-  factorise(permuted, factor->L, common);
+  fem_cholmod_factorise(permuted, factor->L, common);
   cholmod_free_sparse(&permuted, common);
   PetscCheck(common->status >= CHOLMOD_OK, PETSC_COMM_SELF, PETSC_ERR_MEM, "CHOLMOD");
   *definite = common->status != CHOLMOD_NOT_POSDEF;

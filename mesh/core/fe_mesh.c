@@ -8,7 +8,8 @@
 #include "mesh/base/vec3.h"
 
 const char *mesh_set_name(mesh_set_id id) {
-  static const char *const name[MESH_N_SETS] = {"root", "contact_right", "contact_left", "load"};
+  static const char *const name[MESH_N_SETS] = {"root", "contact_right", "contact_left",
+                                                "load", "cyclic_right",  "cyclic_left"};
   return name[id];
 }
 
@@ -148,6 +149,7 @@ void mesh_fe_free(mesh_fe *mesh) {
   free(mesh->element_tag);
   free(mesh->region);
   free(mesh->region_name);
+  free(mesh->image);
   for (int s = 0; s < MESH_MAX_SETS; s++) free(mesh->set[s].nodes);
   memset(mesh, 0, sizeof *mesh);
 }

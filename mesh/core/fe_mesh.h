@@ -14,6 +14,8 @@ typedef enum {
   MESH_CONTACT_RIGHT,
   MESH_CONTACT_LEFT,
   MESH_LOAD,
+  MESH_CYCLIC_RIGHT, /* sides of a sector with a disc */
+  MESH_CYCLIC_LEFT,
   MESH_N_SETS
 } mesh_set_id;
 
@@ -39,13 +41,16 @@ typedef struct {
   int      *connectivity;                   /* [n_elements][nodes] node indices, gmsh order */
   long     *node_tag;                       /* [n_nodes] tag in the mesh file */
   long     *element_tag;                    /* [n_elements] tag in the mesh file */
-  int       n_more;                         /* number of groups besides the usual four */
+  int       n_more;                         /* number of groups besides the usual six */
   char      more[MESH_MAX_MORE][MESH_WORD]; /* their names */
-  mesh_face_set set[MESH_MAX_SETS];         /* the usual four, then the others */
+  mesh_face_set set[MESH_MAX_SETS];         /* the usual six, then the others */
   char          found[MESH_FOUND];          /* "a, b": all groups of the file, for messages */
   int           n_regions;                  /* number of volumes with a material; 0: one material */
   char (*region_name)[MESH_WORD];           /* [n_regions] */
-  int *region; /* [n_elements] volume of each element; NULL: one material */
+  int   *region; /* [n_elements] volume of each element; NULL: one material */
+  int   *image; /* [n_nodes] of a node of cyclic_right its partner on cyclic_left, else -1; NULL: no
+                  sector (mesh/core/cyclic_sides.h) */
+  double turn[3][3]; /* of a sector: motion of such a node = turn times that of its partner */
 } mesh_fe;
 
 /* Groups and volumes to read from a mesh file. A label is the name in the case, a name that in the
@@ -64,7 +69,7 @@ typedef struct {
   } volume[MESH_MAX_VOLUMES];
 } mesh_names;
 
-/* "root", "contact_right", "contact_left", "load" */
+/* "root", "contact_right", "contact_left", "load", "cyclic_right", "cyclic_left" */
 const char *mesh_set_name(mesh_set_id id);
 
 /* Number of groups, and the name of each. */

@@ -40,11 +40,13 @@ static shb_status refuse(const mesh_fe *mesh, const char *name, int a, int b, in
            "out of one of the two",
            name, mesh_fe_set_name(mesh, a), mesh_fe_set_name(mesh, b), n, mesh->set[a].n, at[0],
            at[1], at[2],
-           b == MESH_ROOT ? "what is clamped does not move" : "a face meets one neighbour");
+           b == MESH_ROOT           ? "what is clamped does not move"
+           : b >= MESH_CYCLIC_RIGHT ? "a cyclic side lies inside the disc"
+                                    : "a face meets one neighbour");
 }
 
 static shb_status check_pair(const mesh_fe *mesh, const char *name, int a, int b, char *marked) {
-  const bool contact = a == MESH_CONTACT_RIGHT || a == MESH_CONTACT_LEFT;
+  const bool contact = a == MESH_CONTACT_RIGHT || a == MESH_CONTACT_LEFT || b >= MESH_CYCLIC_RIGHT;
   int        first = 0, n = count(mesh, a, b, marked, &first);
   if (n > 0 && (contact || n == mesh->set[a].n)) return refuse(mesh, name, a, b, n, first);
   return SHB_OK;
@@ -58,6 +60,9 @@ static shb_status check_overlap(const mesh_fe *mesh, const char *name) {
     status = check_pair(mesh, name, s, MESH_ROOT, marked);
   if (status == SHB_OK)
     status = check_pair(mesh, name, MESH_CONTACT_RIGHT, MESH_CONTACT_LEFT, marked);
+  for (int a = MESH_CONTACT_RIGHT; a <= MESH_LOAD && status == SHB_OK; a++)
+    for (int b = MESH_CYCLIC_RIGHT; b <= MESH_CYCLIC_LEFT && status == SHB_OK; b++)
+      if (mesh->set[b].n > 0) status = check_pair(mesh, name, a, b, marked);
   free(marked);
   return status;
 }

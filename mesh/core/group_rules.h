@@ -21,7 +21,7 @@ typedef struct {
   double         tolerance; /* m: largest distance of a node from the plane or radius */
 } mesh_rule;
 
-/* Rule of a group besides the usual four, or of a volume (NONE, NAME and NEAREST only). */
+/* Rule of a group besides the usual six, or of a volume (NONE, NAME and NEAREST only). */
 typedef struct {
   char      name[MESH_WORD];
   mesh_rule rule;

@@ -12,7 +12,7 @@ typedef struct {
       other; /* number of elements in two volumes; the first of them, its other volume */
 } mesh_regions;
 
-/* Names of the groups besides the usual four, put into an empty mesh; names may be NULL. */
+/* Names of the groups besides the usual six, put into an empty mesh; names may be NULL. */
 void mesh_regions_name(const mesh_names *names, mesh_fe *mesh);
 
 /* Make mesh->region for the volumes of names, with no element in any.

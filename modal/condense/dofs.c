@@ -78,8 +78,10 @@ PetscErrorCode modal_dofs_spread(const modal_dofs *dofs, const fem_system *syste
   for (int c = 0; c < count; c++)
     for (int e = dofs->start[first + c]; e < dofs->start[first + c + 1]; e++) {
       PetscInt offset = offset_of(system, dofs->node[e]);
+      double   weight[3];
       if (offset < 0) continue;
-      for (int d = 0; d < 3; d++) b[c * lda + offset + d] += dofs->weight[3 * (size_t)e + d];
+      fem_system_to_row(system, dofs->node[e], dofs->weight + 3 * (size_t)e, weight);
+      for (int d = 0; d < 3; d++) b[c * lda + offset + d] += weight[d];
     }
   PetscCall(MatDenseRestoreArray(B, &b));
   PetscFunctionReturn(0);
@@ -89,8 +91,10 @@ static double inner(const modal_dofs *dofs, const fem_system *system, int c, con
   double sum = 0;
   for (int e = dofs->start[c]; e < dofs->start[c + 1]; e++) {
     PetscInt offset = offset_of(system, dofs->node[e]);
+    double   weight[3];
     if (offset < 0) continue;
-    for (int d = 0; d < 3; d++) sum += dofs->weight[3 * (size_t)e + d] * x[offset + d];
+    fem_system_to_row(system, dofs->node[e], dofs->weight + 3 * (size_t)e, weight);
+    for (int d = 0; d < 3; d++) sum += weight[d] * x[offset + d];
   }
   return sum;
 }

@@ -1,0 +1,64 @@
+/* Matrices of a sector at any nodal diameter.
+ *
+ * With theta = 2 pi n/N the nodes of cyclic_right move as e^(-j theta) T times their partners. The
+ * motion of all nodes of the sector is C x, x that of the block rows, C = C_i + e^(-j theta) C_r.
+ * Of the matrices K and M of the sector with free sides
+ *
+ *   K(theta) = C^H K C = K(0) + (cos theta - 1) (B + B^T) + j sin theta (B^T - B),
+ *   B = C_i^T K C_r, which only elements at cyclic_right have; M(theta) = C^H M C.
+ *
+ * On one rank. Plain arrays: any number of threads may use one sector at a time. Derivation:
+ * docs/theory/cyclic_sector.md. */
+#ifndef FEM_BODY_SECTOR_H
+#define FEM_BODY_SECTOR_H
+
+#include <complex.h>
+
+#include "fem/body/assemble.h"
+#include "fem/body/rotating_body.h"
+#include "fem/solver/block_order.h"
+
+typedef struct {
+  int        n_nodes, n_rows;      /* of the mesh; block rows */
+  int       *row;                  /* [n_nodes] block row, -1 where clamped */
+  bool      *turned;               /* [n_nodes] */
+  double     turn[3][3];           /* T */
+  fem_blocks blocks;               /* upper triangle of K, owned */
+  double    *stiffness;            /* [block][9] K(0), each block by columns */
+  int        n_coupled;            /* blocks that depend on theta */
+  int       *coupled;              /* [n_coupled] */
+  double (*cosine)[9], (*sine)[9]; /* [n_coupled] of B + B^T and of B^T - B */
+  int    *mass_start, *mass_node;  /* [n_nodes + 1]; nodes that share an element with each node */
+  double *mass;                    /* kg, one number a pair of nodes */
+} fem_sector;
+
+/* Create it from the system at nodal diameter 0.
+ *   body    in  whose mesh has cyclic sides
+ *   state   in  [n_nodes][3] m, displacements at which system->K is the tangent; NULL: at rest
+ *   system  in  fem_system_create of the mesh on one rank, K at that state
+ * Errors: PETSC_ERR_MEM. */
+PetscErrorCode fem_sector_create(const fem_body *body, const double *state,
+                                 const fem_system *system, fem_sector *sector);
+
+/* K(theta), [block][9]. */
+void fem_sector_stiffness(const fem_sector *sector, double theta, double complex *value);
+
+/* C x: motion of all nodes, [n_nodes][3], zero where clamped. */
+void fem_sector_expand(const fem_sector *sector, double theta, const double complex *x,
+                       double complex *nodal);
+
+/* Numbers in the scratch of a product with that many columns. */
+size_t fem_sector_scratch(const fem_sector *sector, int columns);
+
+/* Y = M(theta) X.
+ *   X, Y     in/out   [columns][3 n_rows], different
+ *   scratch  scratch  [fem_sector_scratch] */
+void fem_sector_mass(const fem_sector *sector, double theta, int columns, const double complex *X,
+                     double complex *Y, double *scratch);
+
+/* Diagonal of M(theta) without the coupling of the sides, [n_rows] kg. */
+void fem_sector_mass_diagonal(const fem_sector *sector, double *diagonal);
+
+void fem_sector_free(fem_sector *sector); /* also on a zeroed struct */
+
+#endif
