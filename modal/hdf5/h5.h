@@ -97,6 +97,11 @@ shb_status h5_read_attribute_double(hid_t at, const char *path, const char *name
                                     double *value);
 shb_status h5_read_attribute_int(hid_t at, const char *path, const char *name, int fallback,
                                  int *value);
+/* A list of whole numbers, malloc'ed also after an error; *n = 0 and NULL if it is absent. */
+shb_status h5_write_attribute_ints(hid_t at, const char *path, const char *name, int n,
+                                   const int *value);
+shb_status h5_read_attribute_ints(hid_t at, const char *path, const char *name, int *n,
+                                  int **value);
 /* SHB_ERR_INPUT unless the attribute format is as wanted and format_version is at most version. */
 shb_status h5_check_format(hid_t file, const char *format, int version);
 

@@ -156,6 +156,40 @@ shb_status h5_read_attribute_int(hid_t at, const char *path, const char *name, i
   return SHB_OK;
 }
 
+shb_status h5_write_attribute_ints(hid_t at, const char *path, const char *name, int n,
+                                   const int *value) {
+  const hsize_t count = (hsize_t)n;
+  if (H5Aexists_by_name(at, path, name, H5P_DEFAULT) > 0)
+    H5Adelete_by_name(at, path, name, H5P_DEFAULT);
+  hid_t space     = H5Screate_simple(1, &count, NULL);
+  hid_t attribute = H5Acreate_by_name(at, path, name, H5T_NATIVE_INT, space, H5P_DEFAULT,
+                                      H5P_DEFAULT, H5P_DEFAULT);
+  bool  good      = attribute >= 0 && H5Awrite(attribute, H5T_NATIVE_INT, value) >= 0;
+  if (attribute >= 0) H5Aclose(attribute);
+  if (space >= 0) H5Sclose(space);
+  return good ? SHB_OK : h5_failed(SHB_ERR_IO, at, path, "cannot be given an attribute");
+}
+
+shb_status h5_read_attribute_ints(hid_t at, const char *path, const char *name, int *n,
+                                  int **value) {
+  *n     = 0;
+  *value = NULL;
+  if (H5Aexists_by_name(at, path, name, H5P_DEFAULT) <= 0) return SHB_OK;
+  hid_t attribute = H5Aopen_by_name(at, path, name, H5P_DEFAULT, H5P_DEFAULT);
+  if (attribute < 0) return h5_failed(SHB_ERR_IO, at, path, "has an unreadable attribute");
+  hid_t    space = H5Aget_space(attribute), stored = H5Aget_type(attribute);
+  hssize_t count = space >= 0 ? H5Sget_simple_extent_npoints(space) : -1;
+  bool     good  = stored >= 0 && H5Tget_class(stored) == H5T_INTEGER && count >= 1;
+  *value         = good && count < 1000000 ? malloc((size_t)count * sizeof **value) : NULL;
+  good           = *value && H5Aread(attribute, H5T_NATIVE_INT, *value) >= 0;
+  if (stored >= 0) H5Tclose(stored);
+  if (space >= 0) H5Sclose(space);
+  H5Aclose(attribute);
+  if (!good) return wrong_kind(at, path, name, "a list of whole numbers");
+  *n = (int)count;
+  return SHB_OK;
+}
+
 shb_status h5_check_format(hid_t file, const char *format, int version) {
   char  label[H5_LABEL];
   char *found = NULL;

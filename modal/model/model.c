@@ -1,20 +1,16 @@
 #include "modal/model/model.h"
 
 #include <math.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "mesh/base/constants.h"
 
 static const char model_format[] = "shroudhb modal model";
-/* Version 2 adds several speeds (modal/model/speeds.h); the model itself is as in version 1. */
-enum {
-  MODEL_VERSION = 1,
-  MODEL_NEWEST  = 2,
-  MAX_MODES     = 100000,
-  MAX_PAIRS     = 100000,
-  MAX_HARMONICS = 10000
-};
+/* Version 2 adds several speeds (modal/model/speeds.h), version 3 nodal diameters
+ * (modal/model/nodal_diameters.h). The model itself is as in version 1. */
+enum { MODEL_VERSION = 1, MAX_MODES = 100000, MAX_PAIRS = 100000, MAX_HARMONICS = 10000 };
 
 int modal_model_contact_dofs(const modal_model *model) {
   return 3 * model->n_pairs * (model->has_left ? 2 : 1);
@@ -104,11 +100,46 @@ static shb_status write_scales(hid_t at, const modal_model *model) {
                           "probe degree of freedom: probe * 3 + axis");
 }
 
-static shb_status write_entry(hid_t at, const modal_model *model, const entry *e) {
+static shb_status write_split(hid_t at, const entry *e, h5_shape shape, const double *im) {
+  const double   *re = e->data;
+  const size_t    n  = h5_count(shape);
+  double complex *z  = malloc(n * sizeof *z);
+  SHB_CHECK(z, SHB_ERR_IO, "out of memory");
+  for (size_t i = 0; i < n; i++) z[i] = CMPLX(re[i], im[i]);
+  shb_status status = h5_write_complex(at, e->path, shape, z, e->units, e->long_name);
+  free(z);
+  return status;
+}
+
+/* The imaginary part that belongs to an array of the model; NULL: it is real. */
+static const double *imaginary_of(const void *data, const modal_model *m, const modal_model *im) {
+  const struct {
+    const double *re, *im;
+  } both[] = {{m->right, im->right},
+              {m->left, im->left},
+              {m->residual_flexibility, im->residual_flexibility},
+              {m->residual_inertia, im->residual_inertia},
+              {m->residual_fourth, im->residual_fourth},
+              {m->residual_shape, im->residual_shape},
+              {m->residual_probe, im->residual_probe},
+              {m->probe, im->probe},
+              {m->probe_contact_residual, im->probe_contact_residual},
+              {m->probe_contact_inertia, im->probe_contact_inertia},
+              {m->probe_contact_fourth, im->probe_contact_fourth}};
+  for (size_t i = 0; i < sizeof both / sizeof *both; i++)
+    if (both[i].re == data) return both[i].im;
+  return NULL;
+}
+
+static shb_status write_entry(hid_t at, const modal_model *model, const modal_model *imaginary,
+                              const entry *e) {
   if (!e->data) return SHB_OK;
   h5_shape shape = shape_from(model, e->dims);
   if (h5_count(shape) == 0) return SHB_OK; /* nothing at the contact where there is none */
-  if (e->is_complex) {
+  const double *im = imaginary ? imaginary_of(e->data, model, imaginary) : NULL;
+  if (im) {
+    SHB_TRY(write_split(at, e, shape, im));
+  } else if (e->is_complex) {
     SHB_TRY(h5_write_complex(at, e->path, shape, e->data, e->units, e->long_name));
   } else {
     SHB_TRY(h5_write_double(at, e->path, shape, e->data, e->units, e->long_name));
@@ -129,7 +160,8 @@ static shb_status write_interfaces(hid_t at, const modal_model *model) {
   return h5_attach_scale(at, "contact/interface", 0, "contact/pair");
 }
 
-shb_status modal_model_write_at(hid_t at, const modal_model *model) {
+shb_status modal_model_write_complex_at(hid_t at, const modal_model *model,
+                                        const modal_model *imaginary) {
   const bool  probes = model->n_probes > 0, residual = model->n_residual > 0;
   const entry table[] = {
       {"modes/frequency", "m", "Hz", "undamped natural frequency of the free blade", false,
@@ -196,10 +228,38 @@ shb_status modal_model_write_at(hid_t at, const modal_model *model) {
   };
   SHB_TRY(write_scales(at, model));
   for (size_t i = 0; i < sizeof table / sizeof *table; i++)
-    SHB_TRY(write_entry(at, model, &table[i]));
+    SHB_TRY(write_entry(at, model, imaginary, &table[i]));
   if (model->contact_tail && model->n_pairs > 0)
     SHB_TRY(h5_write_attribute_int(at, "contact/residual_tail", "order", model->tail_order));
   return write_interfaces(at, model);
+}
+
+shb_status modal_model_write_backward_at(hid_t at, const modal_model *model, const modal_model *l) {
+  const entry table[] = {
+      {"backward/load/modal_force", "km", "N kg^-1/2", "modal force on the conjugate shapes", true,
+       l->modal_force},
+      {"backward/load/residual_response", "kc", "m", "as load/residual_response", true,
+       l->load_residual},
+      {"backward/load/residual_inertia", "kc", "m s^2", "as load/residual_inertia", true,
+       l->load_inertia},
+      {"backward/load/residual_fourth", "kc", "m s^4", "as load/residual_fourth", true,
+       l->load_fourth},
+      {"backward/residual_modes/load", "kr", "N kg^-1/2", "as residual_modes/load", true,
+       model->n_residual > 0 ? l->residual_force : NULL},
+      {"backward/probe/load_residual", "kQ", "m", "as probe/load_residual", true,
+       l->probe_load_residual},
+      {"backward/probe/load_inertia", "kQ", "m s^2", "as probe/load_inertia", true,
+       l->probe_load_inertia},
+      {"backward/probe/load_fourth", "kQ", "m s^4", "as probe/load_fourth", true,
+       l->probe_load_fourth},
+  };
+  for (size_t i = 0; i < sizeof table / sizeof *table; i++)
+    SHB_TRY(write_entry(at, model, NULL, &table[i]));
+  return SHB_OK;
+}
+
+shb_status modal_model_write_at(hid_t at, const modal_model *model) {
+  return modal_model_write_complex_at(at, model, NULL);
 }
 
 shb_status modal_model_write(hid_t file, const modal_model *model,
@@ -229,9 +289,28 @@ static shb_status check_modes(const char *path, const modal_model *model) {
   return SHB_OK;
 }
 
+/* Real data; with im, that of complex data in two parts. */
+static shb_status read_split(hid_t at, const char *dataset, h5_shape *shape, double **re,
+                             double **im) {
+  if (!im) return h5_read_double(at, dataset, shape, re);
+  double complex *z = NULL;
+  SHB_TRY(h5_read_complex(at, dataset, shape, &z));
+  const size_t n = h5_count(*shape);
+  *re            = malloc((n + 1) * sizeof **re);
+  *im            = malloc((n + 1) * sizeof **im);
+  for (size_t i = 0; *re && *im && i < n; i++) {
+    (*re)[i] = creal(z[i]);
+    (*im)[i] = cimag(z[i]);
+  }
+  free(z);
+  SHB_CHECK(*re && *im, SHB_ERR_IO, "out of memory");
+  return SHB_OK;
+}
+
 /* Read a dataset if the file holds it. */
-static shb_status read_optional(hid_t at, const char *dataset, h5_shape shape, double **data) {
-  return h5_exists(at, dataset) ? h5_read_double(at, dataset, &shape, data) : SHB_OK;
+static shb_status read_optional(hid_t at, const char *dataset, h5_shape shape, double **data,
+                                double **im) {
+  return h5_exists(at, dataset) ? read_split(at, dataset, &shape, data, im) : SHB_OK;
 }
 
 static shb_status read_optional_complex(hid_t at, const char *dataset, h5_shape shape,
@@ -247,39 +326,40 @@ static shb_status read_modes(hid_t at, const char *path, modal_model *model) {
             (unsigned long long)shape.dim[0], MAX_MODES);
   model->n_modes = (int)shape.dim[0];
   SHB_TRY(h5_read_double(at, "modes/damping_ratio", &shape, &model->damping_ratio));
-  SHB_TRY(read_optional(at, "modes/residual", shape, &model->eigen_residual));
+  SHB_TRY(read_optional(at, "modes/residual", shape, &model->eigen_residual, NULL));
   return check_modes(path, model);
 }
 
-/* Reciprocity: the matrix must be symmetric to 1e-6 of its largest value. */
+/* Reciprocity: the matrix must be symmetric to 1e-6 of its largest value, or Hermitian. */
 static shb_status check_symmetric(const char *path, const char *dataset, const double *matrix,
-                                  int n) {
+                                  const double *im, int n) {
   double largest = 0, worst = 0;
   int    row = 0, column = 0;
   for (int i = 0; i < n; i++)
     for (int j = 0; j < n; j++) {
-      double a = matrix[(size_t)i * (size_t)n + (size_t)j];
-      double d = fabs(a - matrix[(size_t)j * (size_t)n + (size_t)i]);
-      largest  = fmax(largest, fabs(a));
+      size_t here = (size_t)i * (size_t)n + (size_t)j, there = (size_t)j * (size_t)n + (size_t)i;
+      double a = matrix[here], d = fabs(a - matrix[there]);
+      if (im) d = hypot(d, im[here] + im[there]);
+      largest = fmax(largest, im ? hypot(a, im[here]) : fabs(a));
       if (d <= worst) continue;
       worst  = d;
       row    = i;
       column = j;
     }
-  SHB_CHECK(
-      worst <= 1e-6 * largest, SHB_ERR_INPUT,
-      "%s: /%s is not symmetric: [%d, %d] and [%d, %d] differ by %.2g of the largest value; a "
-      "receptance must be symmetric to 1e-6",
-      path, dataset, row, column, column, row, worst / largest);
+  SHB_CHECK(worst <= 1e-6 * largest, SHB_ERR_INPUT,
+            "%s: /%s is not %s: [%d, %d] and [%d, %d] differ by %.2g of the largest value; a "
+            "receptance must be %s to 1e-6",
+            path, dataset, im ? "Hermitian" : "symmetric", row, column, column, row,
+            worst / largest, im ? "Hermitian" : "symmetric");
   return SHB_OK;
 }
 
 static shb_status read_symmetric(hid_t at, const char *path, const char *dataset, int n,
-                                 double **matrix) {
+                                 double **matrix, double **im) {
   if (!h5_exists(at, dataset)) return SHB_OK;
   h5_shape shape = H5_SHAPE((hsize_t)n, (hsize_t)n);
-  SHB_TRY(h5_read_double(at, dataset, &shape, matrix));
-  return check_symmetric(path, dataset, *matrix, n);
+  SHB_TRY(read_split(at, dataset, &shape, matrix, im));
+  return check_symmetric(path, dataset, *matrix, im ? *im : NULL, n);
 }
 
 static shb_status read_tail(hid_t at, const char *path, const char *dataset, int n, double **tail) {
@@ -296,14 +376,22 @@ static shb_status read_tail(hid_t at, const char *path, const char *dataset, int
 /* The residual flexibility is a sum of phi^2/omega^2: its diagonal is not negative, but for
  * rounding and other programs' integration rules. The margin is relative to the flexibility of the
  * modes. */
-static shb_status check_flexibility(const char *path, const modal_model *model) {
+static shb_status check_flexibility(const char *path, const modal_model *model,
+                                    const modal_model *im) {
   static const double allowed = 1e-3;
   const int m = model->n_modes, n = modal_model_contact_dofs(model), right = 3 * model->n_pairs;
   for (int i = 0; model->residual_flexibility && i < n; i++) {
     const double *shape = i < right ? model->right + (size_t)i * (size_t)m
                                     : model->left + (size_t)(i - right) * (size_t)m;
     double        R = model->residual_flexibility[(size_t)i * (size_t)(n + 1)], modes = 0;
-    for (int k = 0; k < m; k++) modes += pow(shape[k] / (SHB_TWO_PI * model->frequency[k]), 2);
+    const double *other = NULL;
+    if (im)
+      other = i < right ? im->right + (size_t)i * (size_t)m
+                        : im->left + (size_t)(i - right) * (size_t)m;
+    for (int k = 0; k < m; k++) {
+      modes += pow(shape[k] / (SHB_TWO_PI * model->frequency[k]), 2);
+      if (other) modes += pow(other[k] / (SHB_TWO_PI * model->frequency[k]), 2);
+    }
     SHB_CHECK(!(R < -allowed * modes), SHB_ERR_INPUT,
               "%s: /contact/residual_flexibility: value [%d, %d] is %.3g m/N; what modes leave out "
               "cannot be negative: static flexibility less that of the modes, %.3g m/N here, is "
@@ -328,26 +416,29 @@ static shb_status check_patches(const char *path, const modal_model *model) {
   return SHB_OK;
 }
 
-static shb_status read_contact(hid_t at, const char *path, modal_model *model) {
+static shb_status read_contact(hid_t at, const char *path, modal_model *model, modal_model *im) {
   h5_shape shape = H5_SHAPE(0, 3, (hsize_t)model->n_modes);
   if (!h5_exists(at, "contact")) return SHB_OK; /* a body that touches nothing */
-  SHB_TRY(h5_read_double(at, "contact/right/shape", &shape, &model->right));
+  SHB_TRY(read_split(at, "contact/right/shape", &shape, &model->right, im ? &im->right : NULL));
   SHB_CHECK(shape.dim[0] > 0 && shape.dim[0] <= MAX_PAIRS, SHB_ERR_INPUT,
             "%s: /contact/right/shape holds %llu contact pairs; 1 to %d are wanted", path,
             (unsigned long long)shape.dim[0], MAX_PAIRS);
   model->n_pairs  = (int)shape.dim[0];
   model->has_left = h5_exists(at, "contact/left");
-  if (model->has_left) SHB_TRY(h5_read_double(at, "contact/left/shape", &shape, &model->left));
+  if (model->has_left)
+    SHB_TRY(read_split(at, "contact/left/shape", &shape, &model->left, im ? &im->left : NULL));
   const int n = modal_model_contact_dofs(model);
-  SHB_TRY(
-      read_symmetric(at, path, "contact/residual_flexibility", n, &model->residual_flexibility));
-  SHB_TRY(read_symmetric(at, path, "contact/residual_inertia", n, &model->residual_inertia));
-  SHB_TRY(read_symmetric(at, path, "contact/residual_fourth", n, &model->residual_fourth));
+  SHB_TRY(read_symmetric(at, path, "contact/residual_flexibility", n, &model->residual_flexibility,
+                         im ? &im->residual_flexibility : NULL));
+  SHB_TRY(read_symmetric(at, path, "contact/residual_inertia", n, &model->residual_inertia,
+                         im ? &im->residual_inertia : NULL));
+  SHB_TRY(read_symmetric(at, path, "contact/residual_fourth", n, &model->residual_fourth,
+                         im ? &im->residual_fourth : NULL));
   SHB_TRY(read_tail(at, path, "contact/residual_tail", n, &model->contact_tail));
   h5_shape normals = H5_SHAPE(shape.dim[0], 3), areas = H5_SHAPE(shape.dim[0]);
-  SHB_TRY(read_optional(at, "contact/normal", normals, &model->normal));
-  SHB_TRY(read_optional(at, "contact/area", areas, &model->area));
-  SHB_TRY(check_flexibility(path, model));
+  SHB_TRY(read_optional(at, "contact/normal", normals, &model->normal, NULL));
+  SHB_TRY(read_optional(at, "contact/area", areas, &model->area, NULL));
+  SHB_TRY(check_flexibility(path, model, im));
   return check_patches(path, model);
 }
 
@@ -382,19 +473,22 @@ static shb_status read_load(hid_t at, const char *path, modal_model *model) {
   return read_tail(at, path, "load/residual_tail", model->n_load + 1, &model->load_tail);
 }
 
-static shb_status read_probes(hid_t at, modal_model *model) {
+static shb_status read_probes(hid_t at, modal_model *model, modal_model *im) {
   if (!h5_exists(at, "probe")) return SHB_OK;
   SHB_TRY(h5_read_strings(at, "probe/name", &model->n_probes, &model->probe_name));
   const hsize_t q = (hsize_t)model->n_probes, c = (hsize_t)modal_model_contact_dofs(model);
   if (q == 0) return SHB_OK;
   h5_shape shape = H5_SHAPE(q, 3, (hsize_t)model->n_modes);
-  SHB_TRY(h5_read_double(at, "probe/shape", &shape, &model->probe));
+  SHB_TRY(read_split(at, "probe/shape", &shape, &model->probe, im ? &im->probe : NULL));
   h5_shape contact = H5_SHAPE(3 * q, c), load = H5_SHAPE((hsize_t)model->n_load + 1, 3 * q);
-  SHB_TRY(read_optional(at, "probe/contact_residual", contact, &model->probe_contact_residual));
+  SHB_TRY(read_optional(at, "probe/contact_residual", contact, &model->probe_contact_residual,
+                        im ? &im->probe_contact_residual : NULL));
   SHB_TRY(read_optional_complex(at, "probe/load_residual", load, &model->probe_load_residual));
-  SHB_TRY(read_optional(at, "probe/contact_inertia", contact, &model->probe_contact_inertia));
+  SHB_TRY(read_optional(at, "probe/contact_inertia", contact, &model->probe_contact_inertia,
+                        im ? &im->probe_contact_inertia : NULL));
   SHB_TRY(read_optional_complex(at, "probe/load_inertia", load, &model->probe_load_inertia));
-  SHB_TRY(read_optional(at, "probe/contact_fourth", contact, &model->probe_contact_fourth));
+  SHB_TRY(read_optional(at, "probe/contact_fourth", contact, &model->probe_contact_fourth,
+                        im ? &im->probe_contact_fourth : NULL));
   SHB_TRY(read_optional_complex(at, "probe/load_fourth", load, &model->probe_load_fourth));
   return SHB_OK;
 }
@@ -429,7 +523,8 @@ static shb_status check_residual_modes(const char *path, const modal_model *mode
 }
 
 /* Read the residual modes. Load and probe parts are zero where the file has none. */
-static shb_status read_residual_modes(hid_t at, const char *path, modal_model *model) {
+static shb_status read_residual_modes(hid_t at, const char *path, modal_model *model,
+                                      modal_model *im) {
   static const char *const load = "residual_modes/load", *const probe = "residual_modes/probe";
   const size_t K = (size_t)model->n_load + 1, q = 3 * (size_t)model->n_probes;
   h5_shape     shape = H5_SHAPE(0);
@@ -441,30 +536,130 @@ static shb_status read_residual_modes(hid_t at, const char *path, modal_model *m
   model->n_residual   = (int)shape.dim[0];
   h5_shape by_contact = H5_SHAPE((hsize_t)modal_model_contact_dofs(model), shape.dim[0]),
            by_load = H5_SHAPE(K, shape.dim[0]), by_probe = H5_SHAPE(q, shape.dim[0]);
-  SHB_TRY(h5_read_double(at, "residual_modes/contact", &by_contact, &model->residual_shape));
+  SHB_TRY(read_split(at, "residual_modes/contact", &by_contact, &model->residual_shape,
+                     im ? &im->residual_shape : NULL));
   SHB_TRY(read_optional_complex(at, load, by_load, &model->residual_force));
   if (q && h5_exists(at, probe))
-    SHB_TRY(h5_read_double(at, probe, &by_probe, &model->residual_probe));
+    SHB_TRY(
+        read_split(at, probe, &by_probe, &model->residual_probe, im ? &im->residual_probe : NULL));
   if (!model->residual_force)
     model->residual_force = calloc(K * shape.dim[0] + 1, sizeof(double complex));
   if (!model->residual_probe) model->residual_probe = calloc(q * shape.dim[0] + 1, sizeof(double));
-  SHB_CHECK(model->residual_force && model->residual_probe, SHB_ERR_IO, "out of memory");
+  if (im && !im->residual_probe) im->residual_probe = calloc(q * shape.dim[0] + 1, sizeof(double));
+  SHB_CHECK(model->residual_force && model->residual_probe && (!im || im->residual_probe),
+            SHB_ERR_IO, "out of memory");
   return check_residual_modes(path, model);
 }
 
-shb_status modal_model_read_at(hid_t at, const char *path, modal_model *model) {
+shb_status modal_model_read_complex_at(hid_t at, const char *path, modal_model *model,
+                                       modal_model *imaginary) {
   SHB_TRY(read_modes(at, path, model));
-  SHB_TRY(read_contact(at, path, model));
+  SHB_TRY(read_contact(at, path, model, imaginary));
   SHB_TRY(read_interfaces(at, path, model));
   SHB_TRY(read_load(at, path, model));
-  SHB_TRY(read_probes(at, model));
+  SHB_TRY(read_probes(at, model, imaginary));
   if (model->contact_tail) SHB_TRY(read_order(at, path, &model->tail_order));
-  return read_residual_modes(at, path, model);
+  return read_residual_modes(at, path, model, imaginary);
 }
 
+shb_status modal_model_read_at(hid_t at, const char *path, modal_model *model) {
+  return modal_model_read_complex_at(at, path, model, NULL);
+}
+
+/* One response to the load: from the group backward, else the conjugate of the forward one. */
+static shb_status read_backward(hid_t at, const char *dataset, h5_shape shape,
+                                const double complex *forward, double complex **backward) {
+  char path[64];
+  if (!forward) return SHB_OK;
+  snprintf(path, sizeof path, "backward/%s", dataset);
+  if (h5_exists(at, "backward")) return h5_read_complex(at, path, &shape, backward);
+  const size_t n = h5_count(shape);
+  *backward      = malloc((n + 1) * sizeof **backward);
+  SHB_CHECK(*backward, SHB_ERR_IO, "out of memory");
+  for (size_t i = 0; i < n; i++) (*backward)[i] = conj(forward[i]);
+  return SHB_OK;
+}
+
+shb_status modal_model_read_backward_at(hid_t at, const modal_model *m, modal_model *l) {
+  const hsize_t K = (hsize_t)m->n_load + 1, q = 3 * (hsize_t)m->n_probes;
+  h5_shape      mode = H5_SHAPE(K, (hsize_t)m->n_modes), rest = H5_SHAPE(K, (hsize_t)m->n_residual);
+  h5_shape      contact = H5_SHAPE(K, (hsize_t)modal_model_contact_dofs(m)), probe = H5_SHAPE(K, q);
+  SHB_TRY(read_backward(at, "load/modal_force", mode, m->modal_force, &l->modal_force));
+  SHB_TRY(
+      read_backward(at, "load/residual_response", contact, m->load_residual, &l->load_residual));
+  SHB_TRY(read_backward(at, "load/residual_inertia", contact, m->load_inertia, &l->load_inertia));
+  SHB_TRY(read_backward(at, "load/residual_fourth", contact, m->load_fourth, &l->load_fourth));
+  if (m->n_residual > 0)
+    SHB_TRY(read_backward(at, "residual_modes/load", rest, m->residual_force, &l->residual_force));
+  SHB_TRY(read_backward(at, "probe/load_residual", probe, m->probe_load_residual,
+                        &l->probe_load_residual));
+  SHB_TRY(read_backward(at, "probe/load_inertia", probe, m->probe_load_inertia,
+                        &l->probe_load_inertia));
+  return read_backward(at, "probe/load_fourth", probe, m->probe_load_fourth, &l->probe_load_fourth);
+}
+
+/* An array of the imaginary part beside its real part. */
+typedef struct {
+  const double *re, *im;
+  size_t        n;
+  const char   *dataset;
+} split_array;
+
+static shb_status check_real(const char *path, const split_array *a) {
+  double largest = 0, worst = 0;
+  for (size_t i = 0; a->re && a->im && i < a->n; i++) {
+    largest = fmax(largest, fabs(a->re[i]));
+    worst   = fmax(worst, fabs(a->im[i]));
+  }
+  SHB_CHECK(worst <= 1e-9 * largest, SHB_ERR_INPUT,
+            "%s: /%s has an imaginary part, %.2g of the largest value; at nodal diameter 0 and N/2 "
+            "it must be real: turn the phase of each mode",
+            path, a->dataset, worst / largest);
+  return SHB_OK;
+}
+
+static shb_status check_all_real(const char *path, const modal_model *m, const modal_model *im) {
+  const size_t c = (size_t)modal_model_contact_dofs(m), q = 3 * (size_t)m->n_probes;
+  const size_t modes = (size_t)m->n_modes, r = (size_t)m->n_residual, pairs = (size_t)m->n_pairs;
+  const split_array all[] = {
+      {m->right, im->right, 3 * pairs * modes, "contact/right/shape"},
+      {m->left, im->left, 3 * pairs * modes, "contact/left/shape"},
+      {m->residual_flexibility, im->residual_flexibility, c * c, "contact/residual_flexibility"},
+      {m->residual_inertia, im->residual_inertia, c * c, "contact/residual_inertia"},
+      {m->residual_fourth, im->residual_fourth, c * c, "contact/residual_fourth"},
+      {m->residual_shape, im->residual_shape, c * r, "residual_modes/contact"},
+      {m->residual_probe, im->residual_probe, q * r, "residual_modes/probe"},
+      {m->probe, im->probe, q * modes, "probe/shape"},
+      {m->probe_contact_residual, im->probe_contact_residual, q * c, "probe/contact_residual"},
+      {m->probe_contact_inertia, im->probe_contact_inertia, q * c, "probe/contact_inertia"},
+      {m->probe_contact_fourth, im->probe_contact_fourth, q * c, "probe/contact_fourth"}};
+  for (size_t i = 0; i < sizeof all / sizeof *all; i++) SHB_TRY(check_real(path, &all[i]));
+  return SHB_OK;
+}
+
+shb_status modal_model_read_real_at(hid_t at, const char *path, modal_model *model) {
+  modal_model imaginary = {0};
+  shb_status  status    = modal_model_read_complex_at(at, path, model, &imaginary);
+  if (status == SHB_OK) status = check_all_real(path, model, &imaginary);
+  modal_model_free(&imaginary);
+  return status;
+}
+
+/* Version 3 has no model of its own: that of nodal diameter 0 is taken. */
 static shb_status read_parts(hid_t file, const char *path, modal_model *model) {
-  SHB_TRY(h5_check_format(file, model_format, MODEL_NEWEST));
-  return modal_model_read_at(file, path, model);
+  int version;
+  SHB_TRY(h5_check_format(file, model_format, MODAL_NEWEST));
+  SHB_TRY(h5_read_attribute_int(file, "/", "format_version", MODEL_VERSION, &version));
+  if (version < MODAL_DIAMETERS_VERSION) return modal_model_read_at(file, path, model);
+  char label[1024];
+  snprintf(label, sizeof label, "%s: /nodal_diameter_0", path);
+  SHB_CHECK(h5_exists(file, "/nodal_diameter_0"), SHB_ERR_INPUT,
+            "%s is missing; the static part of every motion stands at nodal diameter 0", label);
+  hid_t group = H5Gopen2(file, "/nodal_diameter_0", H5P_DEFAULT);
+  SHB_CHECK(group >= 0, SHB_ERR_INPUT, "%s is not a group", label);
+  shb_status status = modal_model_read_real_at(group, label, model);
+  H5Gclose(group);
+  return status;
 }
 
 shb_status modal_model_read(const char *path, modal_model *model) {

@@ -16,6 +16,10 @@
 
 #include "modal/hdf5/h5.h"
 
+/* Version of the file format with nodal diameters (nodal_diameters.h), and the newest that is
+ * read. */
+enum { MODAL_DIAMETERS_VERSION = 3, MODAL_NEWEST = MODAL_DIAMETERS_VERSION };
+
 typedef struct {
   int     n_modes, n_pairs, n_probes, n_load; /* n_load = K: load harmonics 0..K */
   int     n_interfaces;                       /* 0: one, without a name */
@@ -69,7 +73,26 @@ shb_status modal_model_write_at(hid_t at, const modal_model *model);
  * freed by the caller in any case. */
 shb_status modal_model_read_at(hid_t at, const char *path, modal_model *model);
 
-/* Read and check a modal file, whatever program wrote it. Errors: SHB_ERR_IO missing, not HDF5, or
+/* Both for a travelling wave, whose shapes and residual terms are complex. imaginary holds the
+ * imaginary parts of right, left, probe, residual_flexibility, residual_inertia, residual_fourth,
+ * residual_shape, residual_probe and probe_contact_...; the rest of it is NULL, its sizes are 0.
+ * NULL: real. */
+shb_status modal_model_write_complex_at(hid_t at, const modal_model *model,
+                                        const modal_model *imaginary);
+shb_status modal_model_read_complex_at(hid_t at, const char *path, modal_model *model,
+                                       modal_model *imaginary);
+
+/* Read complex data whose imaginary parts must vanish. SHB_ERR_INPUT: one does not. */
+shb_status modal_model_read_real_at(hid_t at, const char *path, modal_model *model);
+
+/* The response to the load, of the model's sizes: its datasets below the group backward. */
+shb_status modal_model_write_backward_at(hid_t at, const modal_model *model,
+                                         const modal_model *loads);
+/* loads <- from there; without the group the conjugate of the model's own load. loads is zeroed
+ * before the call and freed by the caller in any case. */
+shb_status modal_model_read_backward_at(hid_t at, const modal_model *model, modal_model *loads);
+
+/* Read and check a modal file, whatever program wrote it. Of nodal diameters, that of 0. Errors: SHB_ERR_IO missing, not HDF5, or
  * truncated; SHB_ERR_INPUT foreign format, missing dataset, wrong shape, value not finite,
  * frequency not positive or descending, damping outside [0, 1). */
 shb_status modal_model_read(const char *path, modal_model *model);

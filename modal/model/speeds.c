@@ -184,7 +184,7 @@ shb_status modal_speeds_read(const char *path, modal_speeds *s) {
   hid_t file;
   *s = (modal_speeds){0};
   SHB_TRY(h5_open(path, &file));
-  shb_status status = h5_check_format(file, "shroudhb modal model", MODAL_SPEEDS_VERSION);
+  shb_status status = h5_check_format(file, "shroudhb modal model", MODAL_NEWEST);
   if (status == SHB_OK && h5_exists(file, "/speeds/mode")) status = read_all(file, path, s);
   h5_close(file);
   if (status != SHB_OK) modal_speeds_free(s);

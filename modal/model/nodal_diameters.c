@@ -1,0 +1,206 @@
+#include "modal/model/nodal_diameters.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum { MOST_BLADES = 10000, NAME = 32, LABEL = 1024 };
+
+shb_status modal_nodal_diameters_create(int blades, int n, modal_nodal_diameters *d) {
+  const size_t count = (size_t)n;
+  *d                 = (modal_nodal_diameters){.blades    = blades,
+                                               .n         = n,
+                                               .diameter  = calloc(count, sizeof *d->diameter),
+                                               .model     = calloc(count, sizeof *d->model),
+                                               .imaginary = calloc(count, sizeof *d->imaginary),
+                                               .backward  = calloc(count, sizeof *d->backward)};
+  if (d->diameter && d->model && d->imaginary && d->backward) return SHB_OK;
+  modal_nodal_diameters_free(d);
+  SHB_FAIL(SHB_ERR_IO, "out of memory for %d nodal diameters", n);
+}
+
+void modal_nodal_diameters_free(modal_nodal_diameters *d) {
+  for (int i = 0; d->model && i < d->n; i++) modal_model_free(&d->model[i]);
+  for (int i = 0; d->imaginary && i < d->n; i++) modal_model_free(&d->imaginary[i]);
+  for (int i = 0; d->backward && i < d->n; i++) modal_model_free(&d->backward[i]);
+  free(d->diameter);
+  free(d->model);
+  free(d->imaginary);
+  free(d->backward);
+  *d = (modal_nodal_diameters){0};
+}
+
+/* Shapes at nodal diameter 0 and N/2 are real. */
+static bool is_real(int blades, int n) {
+  return n == 0 || 2 * n == blades;
+}
+
+static bool has_imaginary(const modal_model *imaginary) {
+  return imaginary->right || imaginary->probe;
+}
+
+/* ---------------------------------------------------------------- waves */
+
+int modal_nodal_diameters_find(const modal_nodal_diameters *d, int n) {
+  for (int i = 0; i < d->n; i++)
+    if (d->diameter[i] == n) return i;
+  return -1;
+}
+
+modal_wave modal_wave_real(const modal_model *model) {
+  return (modal_wave){model, NULL, model, 1};
+}
+
+bool modal_nodal_diameters_wave(const modal_nodal_diameters *d, long wave, modal_wave *found,
+                                int *missing) {
+  const int  n        = (int)((wave % d->blades + d->blades) % d->blades);
+  const bool backward = 2 * n > d->blades;
+  const int  i        = modal_nodal_diameters_find(d, backward ? d->blades - n : n);
+  *missing            = backward ? d->blades - n : n;
+  if (i < 0) return false;
+  *found = modal_wave_real(&d->model[i]);
+  if (has_imaginary(&d->imaginary[i])) found->imaginary = &d->imaginary[i];
+  if (backward) {
+    found->sign = -1;
+    if (d->backward[i].modal_force) found->loads = &d->backward[i];
+  }
+  return true;
+}
+
+/* ---------------------------------------------------------------- file */
+
+static shb_status write_one(hid_t file, const modal_nodal_diameters *d, int i) {
+  char name[NAME];
+  snprintf(name, sizeof name, "/nodal_diameter_%d", d->diameter[i]);
+  hid_t group = H5Gcreate2(file, name, H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT);
+  SHB_CHECK(group >= 0, SHB_ERR_IO, "%s cannot be created", name);
+  const bool complex_too = has_imaginary(&d->imaginary[i]);
+  shb_status status =
+      modal_model_write_complex_at(group, &d->model[i], complex_too ? &d->imaginary[i] : NULL);
+  if (status == SHB_OK && d->backward[i].modal_force)
+    status = modal_model_write_backward_at(group, &d->model[i], &d->backward[i]);
+  H5Gclose(group);
+  return status;
+}
+
+shb_status modal_nodal_diameters_write(hid_t file, const modal_nodal_diameters *d) {
+  SHB_TRY(h5_write_attribute_int(file, "/", "format_version", MODAL_DIAMETERS_VERSION));
+  SHB_TRY(h5_write_attribute_int(file, "/", "blades", d->blades));
+  SHB_TRY(h5_write_attribute_ints(file, "/", "nodal_diameters", d->n, d->diameter));
+  for (int i = 0; i < d->n; i++) SHB_TRY(write_one(file, d, i));
+  return SHB_OK;
+}
+
+/* The sizes that all models share, with their noun; the first difference is told. */
+static shb_status check_sizes(const char *label, const modal_model *a, const modal_model *b) {
+  const struct {
+    const char *noun;
+    int         first, here;
+  } size[] = {{"modes", a->n_modes, b->n_modes},
+              {"contact pairs", a->n_pairs, b->n_pairs},
+              {"sides of the contact", a->has_left + 1, b->has_left + 1},
+              {"probes", a->n_probes, b->n_probes},
+              {"load harmonics", a->n_load + 1, b->n_load + 1},
+              {"contact interfaces", a->n_interfaces, b->n_interfaces}};
+  for (size_t i = 0; i < sizeof size / sizeof *size; i++)
+    SHB_CHECK(size[i].first == size[i].here, SHB_ERR_INPUT,
+              "%s holds %d %s, /nodal_diameter_0 %d; write as many at every nodal diameter", label,
+              size[i].here, size[i].noun, size[i].first);
+  return SHB_OK;
+}
+
+/* Optional parts that one model has and another lacks would be an error of the wave. */
+static shb_status check_parts(const char *label, const modal_model *a, const modal_model *b) {
+  const struct {
+    const char *dataset;
+    const void *first, *here;
+  } part[] = {{"contact/residual_flexibility", a->residual_flexibility, b->residual_flexibility},
+              {"contact/residual_inertia", a->residual_inertia, b->residual_inertia},
+              {"contact/residual_fourth", a->residual_fourth, b->residual_fourth},
+              {"contact/residual_tail", a->contact_tail, b->contact_tail},
+              {"load/residual_response", a->load_residual, b->load_residual},
+              {"load/residual_inertia", a->load_inertia, b->load_inertia},
+              {"load/residual_fourth", a->load_fourth, b->load_fourth},
+              {"probe/contact_residual", a->probe_contact_residual, b->probe_contact_residual},
+              {"probe/contact_inertia", a->probe_contact_inertia, b->probe_contact_inertia},
+              {"probe/contact_fourth", a->probe_contact_fourth, b->probe_contact_fourth},
+              {"probe/load_residual", a->probe_load_residual, b->probe_load_residual},
+              {"probe/load_inertia", a->probe_load_inertia, b->probe_load_inertia},
+              {"probe/load_fourth", a->probe_load_fourth, b->probe_load_fourth}};
+  for (size_t i = 0; i < sizeof part / sizeof *part; i++)
+    SHB_CHECK(!part[i].first == !part[i].here, SHB_ERR_INPUT,
+              "%s %s /%s, /nodal_diameter_0 %s; write it at every nodal diameter or at none", label,
+              part[i].here ? "has" : "lacks", part[i].dataset,
+              part[i].here ? "lacks it" : "has it");
+  return SHB_OK;
+}
+
+static shb_status read_group(hid_t file, const char *path, modal_nodal_diameters *d, int i) {
+  const int n = d->diameter[i];
+  char      name[NAME], label[LABEL];
+  snprintf(name, sizeof name, "/nodal_diameter_%d", n);
+  snprintf(label, sizeof label, "%s: %s", path, name);
+  SHB_CHECK(h5_exists(file, name), SHB_ERR_INPUT,
+            "%s is missing, which the root attribute nodal_diameters lists", label);
+  hid_t group = H5Gopen2(file, name, H5P_DEFAULT);
+  SHB_CHECK(group >= 0, SHB_ERR_INPUT, "%s is not a group", label);
+  shb_status status;
+  if (is_real(d->blades, n)) {
+    status = modal_model_read_real_at(group, label, &d->model[i]);
+  } else {
+    status = modal_model_read_complex_at(group, label, &d->model[i], &d->imaginary[i]);
+    if (status == SHB_OK)
+      status = modal_model_read_backward_at(group, &d->model[i], &d->backward[i]);
+  }
+  H5Gclose(group);
+  SHB_TRY(status);
+  SHB_TRY(check_sizes(label, &d->model[0], &d->model[i]));
+  return check_parts(label, &d->model[0], &d->model[i]);
+}
+
+static shb_status check_list(const char *path, int blades, int n, const int *diameter) {
+  SHB_CHECK(n > 0, SHB_ERR_INPUT,
+            "%s: the root attribute nodal_diameters is missing; a file of version %d lists its "
+            "nodal diameters there",
+            path, MODAL_DIAMETERS_VERSION);
+  SHB_CHECK(blades >= 2 && blades <= MOST_BLADES, SHB_ERR_INPUT,
+            "%s: the root attribute blades is %d; the number of sectors is wanted, 2 to %d", path,
+            blades, MOST_BLADES);
+  for (int i = 0; i < n; i++) {
+    SHB_CHECK(diameter[i] >= 0 && 2 * diameter[i] <= blades, SHB_ERR_INPUT,
+              "%s: the root attribute nodal_diameters holds %d; 0 to %d are wanted with %d blades",
+              path, diameter[i], blades / 2, blades);
+    SHB_CHECK(i == 0 || diameter[i] > diameter[i - 1], SHB_ERR_INPUT,
+              "%s: the root attribute nodal_diameters: value %d (from 0), %d, does not ascend",
+              path, i, diameter[i]);
+  }
+  SHB_CHECK(diameter[0] == 0, SHB_ERR_INPUT,
+            "%s: has no nodal diameter 0, at which the static part of every motion stands", path);
+  return SHB_OK;
+}
+
+static shb_status read_all(hid_t file, const char *path, modal_nodal_diameters *d) {
+  int        blades, n, *diameter = NULL;
+  shb_status status = h5_read_attribute_int(file, "/", "blades", -1, &blades);
+  if (status == SHB_OK)
+    status = h5_read_attribute_ints(file, "/", "nodal_diameters", &n, &diameter);
+  if (status == SHB_OK) status = check_list(path, blades, n, diameter);
+  if (status == SHB_OK) status = modal_nodal_diameters_create(blades, n, d);
+  if (status == SHB_OK) memcpy(d->diameter, diameter, (size_t)n * sizeof *diameter);
+  free(diameter);
+  for (int i = 0; status == SHB_OK && i < d->n; i++) status = read_group(file, path, d, i);
+  return status;
+}
+
+shb_status modal_nodal_diameters_read(const char *path, modal_nodal_diameters *d) {
+  hid_t file;
+  int   version = 1;
+  *d            = (modal_nodal_diameters){0};
+  SHB_TRY(h5_open(path, &file));
+  shb_status status = h5_check_format(file, "shroudhb modal model", MODAL_NEWEST);
+  if (status == SHB_OK) status = h5_read_attribute_int(file, "/", "format_version", 1, &version);
+  if (status == SHB_OK && version == MODAL_DIAMETERS_VERSION) status = read_all(file, path, d);
+  h5_close(file);
+  if (status != SHB_OK) modal_nodal_diameters_free(d);
+  return status;
+}
