@@ -254,18 +254,23 @@ static void turn_vector(const double T[3][3], bool transposed, double complex ph
   }
 }
 
-/* Motion of one node from column x. */
-static void node_motion(const fem_sector *s, int node, double complex phase,
-                        const double complex *x, double complex v[3]) {
+void fem_sector_motion(const fem_sector *s, int node, double complex phase, const double complex *x,
+                       double complex v[3]) {
   const int row = s->row[node];
   for (int d = 0; d < 3; d++) v[d] = row < 0 ? 0 : x[3 * (size_t)row + (size_t)d];
   if (row >= 0 && s->turned[node]) turn_vector(s->turn, false, phase, v);
 }
 
+void fem_sector_force(const fem_sector *s, int node, double complex phase, const double f[3],
+                      double complex v[3]) {
+  for (int d = 0; d < 3; d++) v[d] = f[d];
+  if (s->turned[node]) turn_vector(s->turn, true, conj(phase), v);
+}
+
 void fem_sector_expand(const fem_sector *s, double theta, const double complex *x,
                        double complex *nodal) {
   const double complex phase = cexp(-I * theta);
-  for (int i = 0; i < s->n_nodes; i++) node_motion(s, i, phase, x, nodal + 3 * (size_t)i);
+  for (int i = 0; i < s->n_nodes; i++) fem_sector_motion(s, i, phase, x, nodal + 3 * (size_t)i);
 }
 
 /* sum = M C X at node i, [columns][3] complex.
@@ -288,7 +293,7 @@ void fem_sector_mass(const fem_sector *s, double theta, int columns, const doubl
   for (int i = 0; i < s->n_nodes; i++)
     for (size_t c = 0; c < (size_t)columns; c++) {
       double complex v[3];
-      node_motion(s, i, phase, X + c * order, v);
+      fem_sector_motion(s, i, phase, X + c * order, v);
       memcpy(V + width * (size_t)i + 6 * c, v, sizeof v);
     }
   memset(Y, 0, order * (size_t)columns * sizeof *Y);

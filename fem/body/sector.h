@@ -47,6 +47,13 @@ void fem_sector_stiffness(const fem_sector *sector, double theta, double complex
 void fem_sector_expand(const fem_sector *sector, double theta, const double complex *x,
                        double complex *nodal);
 
+/* Motion of one node from x, and the share C^H f of a force f at a node in its block row.
+ *   phase  in  e^(-j theta) */
+void fem_sector_motion(const fem_sector *sector, int node, double complex phase,
+                       const double complex *x, double complex v[3]);
+void fem_sector_force(const fem_sector *sector, int node, double complex phase, const double f[3],
+                      double complex v[3]);
+
 /* Numbers in the scratch of a product with that many columns. */
 size_t fem_sector_scratch(const fem_sector *sector, int columns);
 

@@ -1,0 +1,512 @@
+#include "modal/cyclic/wave_condense.h"
+
+#include <cblas.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "mesh/base/constants.h"
+#include "mesh/base/progress.h"
+#include "modal/cyclic/wave_ritz.h"
+
+/* As in modal/condense/condense.c. */
+enum { BATCH = 32, MAX_COLUMNS = 96, BLOCKS = MODAL_RESIDUAL_BLOCKS, MAX_NUMBERS = 1 << 26 };
+static const double NEGLIGIBLE = 1e-10;
+
+static const double complex one = 1, zero = 0;
+
+/* Right-hand sides: contact dofs, then load patterns; and the vectors of one batch of them. V_i and
+ * mu_i are those of modal/condense/residual_modes.h. */
+typedef struct {
+  wave_operator            *op;
+  const wave_modes         *modes;
+  const modal_condensation *to;
+  modal_model              *model, *imaginary, *backward;
+  int                       n_contact, n_column, batch;
+  modal_dofs                column;
+  double complex           *X, *Y, *MX;         /* [batch][order] */
+  double complex           *C;                  /* [batch][modes] */
+  double complex           *sample[BLOCKS];     /* [column][batch] V_0, V_1, V_2 at the columns */
+  double complex           *probe[BLOCKS];      /* [probe dof][batch] */
+  double complex           *moment[2 * BLOCKS]; /* [batch][batch] mu_1 .. mu_6 */
+  double                   *tail[2];            /* [column] */
+} workspace;
+
+/* ------------------------------------------------------------------ dofs */
+
+/* X[:, c] = C^H b_(first + c) for c < count; the other columns are zeroed. */
+static void spread(const workspace *w, int first, int count, double complex *X) {
+  const modal_dofs *dofs  = &w->column;
+  const size_t      order = w->op->order;
+  memset(X, 0, (size_t)w->batch * order * sizeof *X);
+  for (int c = 0; c < count; c++)
+    for (int e = dofs->start[first + c]; e < dofs->start[first + c + 1]; e++) {
+      const int      row = w->op->sector->row[dofs->node[e]];
+      double complex v[3];
+      if (row < 0) continue;
+      fem_sector_force(w->op->sector, dofs->node[e], w->op->phase, dofs->weight + 3 * (size_t)e, v);
+      for (int d = 0; d < 3; d++) X[(size_t)c * order + 3 * (size_t)row + (size_t)d] += v[d];
+    }
+}
+
+static double complex motion_of(const workspace *w, const modal_dofs *dofs, int c,
+                                const double complex *x) {
+  double complex sum = 0;
+  for (int e = dofs->start[c]; e < dofs->start[c + 1]; e++) {
+    double complex v[3];
+    fem_sector_motion(w->op->sector, dofs->node[e], w->op->phase, x, v);
+    for (int d = 0; d < 3; d++) sum += dofs->weight[3 * (size_t)e + (size_t)d] * v[d];
+  }
+  return sum;
+}
+
+/* value[c][k] = b_c^T C X[:, k]; stride numbers a row. */
+static void sample(const workspace *w, const modal_dofs *dofs, const double complex *X, int columns,
+                   int stride, double complex *value) {
+  for (int c = 0; c < dofs->n; c++)
+    for (int k = 0; k < columns; k++)
+      value[(size_t)c * (size_t)stride + (size_t)k] =
+          motion_of(w, dofs, c, X + (size_t)k * w->op->order);
+}
+
+/* ------------------------------------------------------------------ model */
+
+/* Allocate the arrays of a model, its imaginary part and the load of the backward wave. */
+static shb_status allocate(const workspace *w) {
+  const modal_condensation *to = w->to;
+  modal_model              *re = w->model, *im = w->imaginary, *back = w->backward;
+  const size_t m = (size_t)w->modes->n, pairs = (size_t)to->n_pairs, nc = (size_t)to->contact.n;
+  const size_t q3 = (size_t)to->probe.n, K = (size_t)to->load.n_harmonics + 1;
+  const struct {
+    double **re, **im; /* im NULL: real */
+    size_t   n;
+  } real[] = {{&re->frequency, NULL, m},
+              {&re->damping_ratio, NULL, m},
+              {&re->eigen_residual, NULL, m},
+              {&re->right, &im->right, 3 * pairs * m},
+              {&re->left, &im->left, to->has_left ? 3 * pairs * m : 0},
+              {&re->probe, &im->probe, q3 * m + 1},
+              {&re->residual_flexibility, &im->residual_flexibility, nc * nc},
+              {&re->residual_inertia, &im->residual_inertia, nc * nc},
+              {&re->residual_fourth, &im->residual_fourth, nc * nc},
+              {&re->probe_contact_residual, &im->probe_contact_residual, q3 * nc + 1},
+              {&re->probe_contact_inertia, &im->probe_contact_inertia, q3 * nc + 1},
+              {&re->probe_contact_fourth, &im->probe_contact_fourth, q3 * nc + 1},
+              {&re->contact_tail, NULL, 2 * nc},
+              {&re->load_tail, NULL, nc > 0 ? 2 * K : 0}};
+  const struct {
+    double complex **forward, **back;
+    size_t           n;
+  } load[]  = {{&re->modal_force, &back->modal_force, m},
+               {&re->load_residual, &back->load_residual, nc},
+               {&re->load_inertia, &back->load_inertia, nc},
+               {&re->load_fourth, &back->load_fourth, nc},
+               {&re->probe_load_residual, &back->probe_load_residual, nc > 0 ? q3 : 0},
+               {&re->probe_load_inertia, &back->probe_load_inertia, nc > 0 ? q3 : 0},
+               {&re->probe_load_fourth, &back->probe_load_fourth, nc > 0 ? q3 : 0}};
+  bool made = true;
+  for (size_t i = 0; i < sizeof real / sizeof *real; i++) {
+    if (real[i].n == 0) continue;
+    made = (*real[i].re = calloc(real[i].n, sizeof(double))) && made;
+    if (real[i].im) made = (*real[i].im = calloc(real[i].n, sizeof(double))) && made;
+  }
+  for (size_t i = 0; i < sizeof load / sizeof *load; i++) {
+    if (load[i].n == 0 && i > 3) continue; /* without contact there are no residual terms */
+    made = (*load[i].forward = calloc(K * load[i].n + 1, sizeof(double complex))) && made;
+    made = (*load[i].back = calloc(K * load[i].n + 1, sizeof(double complex))) && made;
+  }
+  re->n_modes  = (int)m;
+  re->n_pairs  = to->n_pairs;
+  re->has_left = to->has_left;
+  re->n_probes = to->probe.n / 3;
+  re->n_load   = to->load.n_harmonics;
+  SHB_CHECK(made, SHB_ERR_IO, "out of memory for a modal model of %zu contact dofs", nc);
+  return SHB_OK;
+}
+
+static void split(size_t n, const double complex *value, double *re, double *im) {
+  for (size_t i = 0; i < n; i++) re[i] = creal(value[i]), im[i] = cimag(value[i]);
+}
+
+/* Add column value of a pattern in each harmonic, forward and, conjugate, backward.
+ *   rows, stride  in  of value */
+static void add_load(const workspace *w, int pattern, int rows, int stride,
+                     const double complex *value, double complex *forward,
+                     double complex *backward) {
+  const modal_load *load = &w->to->load;
+  for (int k = 0; k <= load->n_harmonics; k++)
+    for (int r = 0; r < rows; r++) {
+      const double complex weight = load->weight[k * load->dofs.n + pattern];
+      forward[k * rows + r] += weight * value[r * stride];
+      backward[k * rows + r] += weight * conj(value[r * stride]);
+    }
+}
+
+static shb_status fill_shapes(const workspace *w) {
+  const modal_condensation *to = w->to;
+  const int                 m = w->modes->n, most = to->contact.n + to->probe.n + to->load.dofs.n;
+  const size_t              side  = 3 * (size_t)to->n_pairs * (size_t)m;
+  double complex           *value = malloc(((size_t)most * (size_t)m + 1) * sizeof *value);
+  SHB_CHECK(value, SHB_ERR_IO, "out of memory for the condensation");
+  sample(w, &to->contact, w->modes->phi, m, m, value);
+  split(side, value, w->model->right, w->imaginary->right);
+  if (to->has_left) split(side, value + side, w->model->left, w->imaginary->left);
+  sample(w, &to->probe, w->modes->phi, m, m, value);
+  split((size_t)to->probe.n * (size_t)m, value, w->model->probe, w->imaginary->probe);
+  sample(w, &to->load.dofs, w->modes->phi, m, m, value);
+  for (int c = 0; c < to->load.dofs.n; c++) { /* phi^H f is the conjugate of the pattern's motion */
+    for (int i = 0; i < m; i++) value[c * m + i] = conj(value[c * m + i]);
+    add_load(w, c, m, 1, value + (size_t)c * (size_t)m, w->model->modal_force,
+             w->backward->modal_force);
+  }
+  free(value);
+  for (int i = 0; i < m; i++) {
+    w->model->frequency[i]      = sqrt(w->modes->lambda[i]) / SHB_TWO_PI;
+    w->model->eigen_residual[i] = w->modes->eigen_residual[i];
+    SHB_TRY(modal_damping_ratio(&to->damping, i, sqrt(w->modes->lambda[i]),
+                                &w->model->damping_ratio[i]));
+  }
+  return SHB_OK;
+}
+
+/* ------------------------------------------------------------------ residual terms */
+
+/* X = P K^-1 X of the batch. */
+static shb_status solve(workspace *w, double complex *B, double complex *X) {
+  SHB_TRY(wave_operator_solve(w->op, w->batch, B, X));
+  wave_modes_project_out(w->modes, w->batch, X, w->C);
+  return SHB_OK;
+}
+
+/* product[a][b] = X_a^H Y_b by rows. */
+static void products(const workspace *w, const double complex *X, const double complex *Y,
+                     double complex *product) {
+  const int b = w->batch;
+  wave_inner(w->op->order, b, Y, b, X, product); /* Y_b^H X_a at [a][b] by rows */
+  for (int i = 0; i < b * b; i++) product[i] = conj(product[i]);
+}
+
+/* tail[first + c] = X_c^H Y_c */
+static void column_products(const workspace *w, const double complex *X, const double complex *Y,
+                            int first, int count, double *tail) {
+  for (int c = 0; c < count; c++) {
+    double complex value;
+    const size_t   at = (size_t)c * w->op->order;
+    wave_inner(w->op->order, 1, X + at, 1, Y + at, &value);
+    tail[first + c] = creal(value);
+  }
+}
+
+/* V_0, V_1, ... of a batch, as compute_chain of modal/condense/condense.c. */
+static shb_status compute_chain(workspace *w, int first, int count, bool single_batch) {
+  const int       last = single_batch ? BLOCKS : BLOCKS - 1, b = w->batch;
+  double complex *V = w->X, *next = w->Y;
+  spread(w, first, count, w->MX);
+  SHB_TRY(solve(w, w->MX, V));
+  for (int i = 0;; i++) {
+    if (i < BLOCKS) {
+      sample(w, &w->column, V, b, b, w->sample[i]);
+      sample(w, &w->to->probe, V, b, b, w->probe[i]);
+    }
+    if (i == last && !single_batch) break;
+    SHB_TRY(wave_operator_mass(w->op, b, V, w->MX));
+    if (single_batch && i < BLOCKS) products(w, V, w->MX, w->moment[2 * i + 1]);
+    if (single_batch && i == BLOCKS) column_products(w, V, w->MX, first, count, w->tail[1]);
+    if (!single_batch && i == 1) column_products(w, V, w->MX, first, count, w->tail[0]);
+    if (i == last) break;
+    SHB_TRY(solve(w, w->MX, next));
+    /* solve may not change its right-hand side: MX = M V is still needed */
+    if (i + 1 < BLOCKS && single_batch) products(w, next, w->MX, w->moment[2 * i + 2]);
+    if (i + 1 == last) column_products(w, next, w->MX, first, count, w->tail[single_batch ? 0 : 1]);
+    double complex *done = V;
+    V                    = next;
+    next                 = done;
+  }
+  if (single_batch) memcpy(w->moment[0], w->sample[0], (size_t)(b * b) * sizeof **w->moment);
+  return SHB_OK;
+}
+
+/* Columns first .. first + count - 1 of to [rows][n_contact] from the samples [rows][batch]. */
+static void put_columns(const workspace *w, const double complex *value, int rows, int first,
+                        int count, double *re, double *im) {
+  const size_t columns = (size_t)w->n_contact, batch = (size_t)w->batch;
+  for (size_t r = 0; r < (size_t)rows; r++)
+    for (int c = 0; c < count; c++) {
+      const double complex v  = value[r * batch + (size_t)c];
+      const size_t         at = r * columns + (size_t)(first + c);
+      re[at] = creal(v), im[at] = cimag(v);
+    }
+}
+
+static void store_terms(const workspace *w, int first, int count) {
+  const modal_model *m = w->model, *i = w->imaginary, *b = w->backward;
+  const int          nc = w->n_contact, q3 = w->to->probe.n;
+  const int          contacts           = first + count <= nc ? count : nc > first ? nc - first : 0;
+  double            *contact[][2]       = {{m->residual_flexibility, i->residual_flexibility},
+                                           {m->residual_inertia, i->residual_inertia},
+                                           {m->residual_fourth, i->residual_fourth}};
+  double            *probe_contact[][2] = {{m->probe_contact_residual, i->probe_contact_residual},
+                                           {m->probe_contact_inertia, i->probe_contact_inertia},
+                                           {m->probe_contact_fourth, i->probe_contact_fourth}};
+  double complex    *load[][2]          = {{m->load_residual, b->load_residual},
+                                           {m->load_inertia, b->load_inertia},
+                                           {m->load_fourth, b->load_fourth}};
+  double complex    *probe_load[][2]    = {{m->probe_load_residual, b->probe_load_residual},
+                                           {m->probe_load_inertia, b->probe_load_inertia},
+                                           {m->probe_load_fourth, b->probe_load_fourth}};
+  for (int t = 0; t < BLOCKS; t++) {
+    put_columns(w, w->sample[t], nc, first, contacts, contact[t][0], contact[t][1]);
+    put_columns(w, w->probe[t], q3, first, contacts, probe_contact[t][0], probe_contact[t][1]);
+    for (int c = contacts; c < count; c++) {
+      add_load(w, first + c - nc, nc, w->batch, w->sample[t] + c, load[t][0], load[t][1]);
+      if (q3 > 0)
+        add_load(w, first + c - nc, q3, w->batch, w->probe[t] + c, probe_load[t][0],
+                 probe_load[t][1]);
+    }
+  }
+}
+
+/* Tails of the contact dofs and of the load harmonics, as in modal/condense/condense.c. */
+static void store_tails(const workspace *w, int order) {
+  const modal_load *load  = &w->to->load;
+  double            ratio = 0;
+  w->model->tail_order    = order;
+  for (int c = 0; c < w->n_contact; c++)
+    for (int i = 0; i < 2; i++) w->model->contact_tail[2 * c + i] = w->tail[i][c];
+  for (int c = w->n_contact; c < w->n_column; c++)
+    if (w->tail[0][c] > 0) ratio = fmax(ratio, w->tail[1][c] / w->tail[0][c]);
+  for (int k = 0; k <= load->n_harmonics; k++) {
+    double root = 0;
+    for (int c = 0; c < load->dofs.n; c++)
+      root += cabs(load->weight[k * load->dofs.n + c]) * sqrt(w->tail[0][w->n_contact + c]);
+    w->model->load_tail[2 * k]     = root * root;
+    w->model->load_tail[2 * k + 1] = root * root * ratio;
+  }
+}
+
+/* ------------------------------------------------------------------ residual modes */
+
+/* Residual modes at the columns and the probes. */
+typedef struct {
+  wave_ritz       ritz;
+  double complex *psi, *at_probe; /* [columns][n], [probe dofs][n] */
+  double         *size;           /* [columns][n] |psi| */
+} ritz_shapes;
+
+/* psi[rows][n] = sum_i sample_i weight_i */
+static void form_shapes(const workspace *w, const wave_ritz *ritz, int rows,
+                        double complex *const value[BLOCKS], double complex *psi) {
+  const int b = w->batch, n = ritz->n;
+  for (int i = 0; i < BLOCKS && rows > 0 && n > 0; i++)
+    cblas_zgemm(CblasRowMajor, CblasNoTrans, CblasNoTrans, rows, n, b, &one, value[i], b,
+                ritz->weight + (size_t)i * (size_t)b * (size_t)n, n, i > 0 ? &one : &zero, psi, n);
+}
+
+/* Tail behind all residual modes. */
+static void subtract_ritz_tails(workspace *w, const ritz_shapes *s) {
+  static const double rounding = 1e-11;
+  for (int c = 0; c < w->n_column; c++) {
+    double a = w->tail[0][c], b = w->tail[1][c];
+    for (int i = 0; i < s->ritz.n; i++) {
+      const double shape = s->size[c * s->ritz.n + i];
+      const double term  = shape * shape / pow(s->ritz.lambda[i], 2 * BLOCKS + 1);
+      a -= term;
+      b -= term / s->ritz.lambda[i];
+    }
+    w->tail[0][c] = fmax(a, rounding * w->tail[0][c]);
+    w->tail[1][c] = fmax(b, 0);
+  }
+}
+
+/* Number of residual modes that are needed; scale as in modal/condense/condense.c. */
+static int count_needed(const workspace *w, const ritz_shapes *s) {
+  const modal_residual_modes sizes = {.n = s->ritz.n, .lambda = s->ritz.lambda};
+  const size_t               next  = (size_t)w->batch + 1;
+  const double               last  = w->modes->lambda[w->modes->n - 1];
+  double                     scale[MAX_COLUMNS], most = 0;
+  for (int c = 0; c < w->n_contact; c++) most = fmax(most, creal(w->moment[0][(size_t)c * next]));
+  for (int c = 0; c < w->n_column; c++)
+    scale[c] = c < w->n_contact ? most : creal(w->moment[0][(size_t)c * next]);
+  return modal_residual_modes_needed(&sizes, w->n_column, s->size, scale, last / 2, NEGLIGIBLE);
+}
+
+static shb_status allocate_residual_modes(const workspace *w, int kept) {
+  modal_model *m = w->model, *i = w->imaginary;
+  const size_t r = (size_t)kept, nc = (size_t)w->n_contact, q3 = (size_t)w->to->probe.n;
+  const size_t K              = (size_t)m->n_load + 1;
+  m->n_residual               = kept;
+  m->residual_frequency       = calloc(r + 1, sizeof(double));
+  m->residual_shape           = calloc(nc * r + 1, sizeof(double));
+  i->residual_shape           = calloc(nc * r + 1, sizeof(double));
+  m->residual_probe           = calloc(q3 * r + 1, sizeof(double));
+  i->residual_probe           = calloc(q3 * r + 1, sizeof(double));
+  m->residual_force           = calloc(K * r + 1, sizeof(double complex));
+  w->backward->residual_force = calloc(K * r + 1, sizeof(double complex));
+  SHB_CHECK(m->residual_frequency && m->residual_shape && i->residual_shape && m->residual_probe &&
+                i->residual_probe && m->residual_force && w->backward->residual_force,
+            SHB_ERR_IO, "out of memory for residual modes");
+  return SHB_OK;
+}
+
+static void store_residual_modes(const workspace *w, const ritz_shapes *s, int kept) {
+  modal_model      *m = w->model, *im = w->imaginary;
+  const modal_load *load = &w->to->load;
+  const int         n = s->ritz.n, nc = w->n_contact;
+  for (int i = 0; i < kept; i++) {
+    m->residual_frequency[i] = sqrt(s->ritz.lambda[i]) / SHB_TWO_PI;
+    for (int c = 0; c < nc; c++)
+      split(1, s->psi + c * n + i, m->residual_shape + c * kept + i,
+            im->residual_shape + c * kept + i);
+    for (int c = 0; c < w->to->probe.n; c++)
+      split(1, s->at_probe + c * n + i, m->residual_probe + c * kept + i,
+            im->residual_probe + c * kept + i);
+    for (int k = 0; k <= load->n_harmonics; k++)
+      for (int c = 0; c < load->dofs.n; c++) {
+        const double complex weight = load->weight[k * load->dofs.n + c];
+        const double complex psi    = s->psi[(nc + c) * n + i];
+        m->residual_force[k * kept + i] += weight * conj(psi);
+        w->backward->residual_force[k * kept + i] += weight * psi;
+      }
+  }
+}
+
+static shb_status make_residual_modes(workspace *w, ritz_shapes *s) {
+  SHB_TRY(wave_ritz_create(w->n_column, w->moment, &s->ritz));
+  const size_t n = (size_t)s->ritz.n, columns = (size_t)w->n_column, q3 = (size_t)w->to->probe.n;
+  if (n == 0) return SHB_OK;
+  s->psi      = malloc((columns * n + 1) * sizeof *s->psi);
+  s->at_probe = malloc((q3 * n + 1) * sizeof *s->at_probe);
+  s->size     = malloc((columns * n + 1) * sizeof *s->size);
+  SHB_CHECK(s->psi && s->at_probe && s->size, SHB_ERR_IO, "out of memory for residual modes");
+  form_shapes(w, &s->ritz, w->n_column, w->sample, s->psi);
+  form_shapes(w, &s->ritz, w->to->probe.n, w->probe, s->at_probe);
+  for (size_t i = 0; i < columns * n; i++) s->size[i] = cabs(s->psi[i]);
+  subtract_ritz_tails(w, s);
+  const int kept = count_needed(w, s);
+  SHB_TRY(allocate_residual_modes(w, kept));
+  store_residual_modes(w, s, kept);
+  return SHB_OK;
+}
+
+static shb_status create_residual_modes(workspace *w) {
+  ritz_shapes s      = {.psi = NULL};
+  shb_status  status = make_residual_modes(w, &s);
+  wave_ritz_free(&s.ritz);
+  free(s.psi);
+  free(s.at_probe);
+  free(s.size);
+  return status;
+}
+
+/* ------------------------------------------------------------------ together */
+
+static shb_status create_columns(workspace *w) {
+  w->n_contact = w->to->contact.n;
+  w->n_column  = w->n_contact + w->to->load.dofs.n;
+  SHB_TRY(modal_dofs_append(&w->column, &w->to->contact));
+  SHB_TRY(modal_dofs_append(&w->column, &w->to->load.dofs));
+  for (int i = 0; i < 2; i++) {
+    w->tail[i] = calloc((size_t)w->n_column + 1, sizeof **w->tail);
+    SHB_CHECK(w->tail[i], SHB_ERR_IO, "out of memory for the condensation");
+  }
+  return SHB_OK;
+}
+
+static shb_status create_batch(workspace *w, int batch) {
+  const size_t b = (size_t)batch, size = b * w->op->order;
+  w->batch  = batch;
+  w->X      = malloc(size * sizeof *w->X);
+  w->Y      = malloc(size * sizeof *w->Y);
+  w->MX     = malloc(size * sizeof *w->MX);
+  w->C      = malloc(b * (size_t)w->modes->n * sizeof *w->C);
+  bool made = w->X && w->Y && w->MX && w->C;
+  for (int i = 0; i < BLOCKS; i++) {
+    w->sample[i] = malloc((size_t)w->n_column * b * sizeof **w->sample);
+    w->probe[i]  = malloc(((size_t)w->to->probe.n * b + 1) * sizeof **w->probe);
+    made         = made && w->sample[i] && w->probe[i];
+  }
+  for (int i = 0; i < 2 * BLOCKS; i++) {
+    w->moment[i] = malloc(b * b * sizeof **w->moment);
+    made         = made && w->moment[i];
+  }
+  SHB_CHECK(made, SHB_ERR_IO, "out of memory for the condensation");
+  return SHB_OK;
+}
+
+static void free_workspace(workspace *w) {
+  free(w->X);
+  free(w->Y);
+  free(w->MX);
+  free(w->C);
+  for (int i = 0; i < BLOCKS; i++) {
+    free(w->sample[i]);
+    free(w->probe[i]);
+  }
+  for (int i = 0; i < 2 * BLOCKS; i++) free(w->moment[i]);
+  free(w->tail[0]);
+  free(w->tail[1]);
+  modal_dofs_free(&w->column);
+}
+
+/* Make a term of the contact Hermitian: rounding differences go. */
+static void symmetrise(double *re, double *im, size_t n) {
+  for (size_t i = 0; i < n; i++)
+    for (size_t j = 0; j <= i; j++) {
+      const size_t a = i * n + j, b = j * n + i;
+      re[a] = re[b] = (re[a] + re[b]) / 2;
+      im[a]         = (im[a] - im[b]) / 2;
+      im[b]         = -im[a];
+    }
+}
+
+/* Residual modes need all columns in one batch. */
+static bool fits_single_batch(const workspace *w) {
+  return w->n_column <= MAX_COLUMNS &&
+         w->n_column <= (double)MAX_NUMBERS / (3. * (double)w->op->order);
+}
+
+static shb_status fill(workspace *w) {
+  SHB_TRY(create_columns(w));
+  SHB_TRY(fill_shapes(w));
+  const int n = w->n_column, nc = w->n_contact;
+  if (nc == 0) return SHB_OK;
+  const bool single_batch = fits_single_batch(w);
+  SHB_TRY(create_batch(w, single_batch || n < BATCH ? n : BATCH));
+  for (int first = 0; first < n; first += w->batch) {
+    const int count = n - first < w->batch ? n - first : w->batch;
+    SHB_CHECK(!shb_interrupted(), SHB_INTERRUPTED, "interrupted");
+    SHB_TRY(compute_chain(w, first, count, single_batch));
+    store_terms(w, first, count);
+  }
+  modal_model *m = w->model, *i = w->imaginary;
+  symmetrise(m->residual_flexibility, i->residual_flexibility, (size_t)nc);
+  symmetrise(m->residual_inertia, i->residual_inertia, (size_t)nc);
+  symmetrise(m->residual_fourth, i->residual_fourth, (size_t)nc);
+  if (single_batch) SHB_TRY(create_residual_modes(w));
+  store_tails(w, single_batch ? 2 * BLOCKS : BLOCKS);
+  return SHB_OK;
+}
+
+static bool load_is_real(const modal_load *load) {
+  for (int i = 0; i < (load->n_harmonics + 1) * load->dofs.n; i++)
+    if (cimag(load->weight[i]) != 0) return false;
+  return true;
+}
+
+shb_status wave_condense(wave_operator *op, const wave_modes *modes, const modal_condensation *to,
+                         modal_model *model, modal_model *imaginary, modal_model *backward) {
+  workspace w = {.op        = op,
+                 .modes     = modes,
+                 .to        = to,
+                 .model     = model,
+                 .imaginary = imaginary,
+                 .backward  = backward};
+  memset(model, 0, sizeof *model);
+  memset(imaginary, 0, sizeof *imaginary);
+  memset(backward, 0, sizeof *backward);
+  shb_status status = allocate(&w);
+  if (status == SHB_OK) status = fill(&w);
+  free_workspace(&w);
+  if (load_is_real(&to->load)) modal_model_free(backward);
+  return status;
+}

@@ -1,0 +1,72 @@
+#include "modal/cyclic/wave_operator.h"
+
+#include <cblas.h>
+#include <stdlib.h>
+#include <string.h>
+
+static const double complex one = 1, zero = 0;
+
+static shb_status factorise(const fem_hermitian_order *order, wave_operator *op) {
+  const size_t    count    = 9 * (size_t)op->sector->blocks.start[op->sector->blocks.n];
+  double complex *value    = malloc((count + 1) * sizeof *value);
+  bool            definite = false;
+  SHB_CHECK(value, SHB_ERR_IO, "out of memory for the stiffness of a sector");
+  fem_sector_stiffness(op->sector, op->theta, value);
+  shb_status status = fem_hermitian_create(order, value, &definite, &op->factor);
+  free(value);
+  SHB_TRY(status);
+  SHB_CHECK(definite, SHB_ERR_INPUT,
+            "the stiffness matrix of the sector is not positive definite: the clamp on group root "
+            "does not hold the disc, the material is not physical, or the equilibrium at "
+            "rotor.speed is not stable");
+  return SHB_OK;
+}
+
+shb_status wave_operator_create(const fem_sector *sector, const fem_hermitian_order *order,
+                                double theta, wave_operator *op) {
+  *op = (wave_operator){.sector = sector,
+                        .theta  = theta,
+                        .phase  = cexp(-I * theta),
+                        .order  = 3 * (size_t)sector->n_rows};
+  return factorise(order, op);
+}
+
+shb_status wave_operator_solve(wave_operator *op, int columns, const double complex *B,
+                               double complex *X) {
+  return fem_hermitian_solve(op->factor, columns, B, X);
+}
+
+shb_status wave_operator_mass(wave_operator *op, int columns, const double complex *X,
+                              double complex *Y) {
+  if (op->columns < columns) {
+    free(op->scratch);
+    op->scratch = malloc(fem_sector_scratch(op->sector, columns) * sizeof *op->scratch);
+    op->columns = op->scratch ? columns : 0;
+  }
+  SHB_CHECK(op->scratch, SHB_ERR_IO, "out of memory for products with the mass of a sector");
+  fem_sector_mass(op->sector, op->theta, columns, X, Y, op->scratch);
+  return SHB_OK;
+}
+
+void wave_inner(size_t order, int nx, const double complex *X, int ny, const double complex *Y,
+                double complex *C) {
+  const int n = (int)order;
+  if (nx > 0 && ny > 0)
+    cblas_zgemm(CblasColMajor, CblasConjTrans, CblasNoTrans, nx, ny, n, &one, X, n, Y, n, &zero, C,
+                nx);
+}
+
+void wave_add(size_t order, double factor, int nx, const double complex *X, const double complex *C,
+              int ny, double complex *Y) {
+  const int            n     = (int)order;
+  const double complex alpha = factor;
+  if (nx > 0 && ny > 0)
+    cblas_zgemm(CblasColMajor, CblasNoTrans, CblasNoTrans, n, ny, nx, &alpha, X, n, C, nx, &one, Y,
+                n);
+}
+
+void wave_operator_free(wave_operator *op) {
+  fem_hermitian_free(op->factor);
+  free(op->scratch);
+  memset(op, 0, sizeof *op);
+}

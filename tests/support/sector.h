@@ -1,0 +1,25 @@
+/* A small sector with a disc, and the explicit ring of all its sectors. */
+#ifndef TESTS_SUPPORT_SECTOR_H
+#define TESTS_SUPPORT_SECTOR_H
+
+#include "mesh/core/fe_mesh.h"
+
+/* A sector about the x axis of the elements in use (tests/support/fem.h). The bore is group root.
+ * The disc has the sides cyclic_right and cyclic_left. A narrow leaning blade carries a shroud with
+ * contact_right and contact_left; its top is group load. Nothing is symmetric, so that the sign of
+ * the phase counts. The sides are not paired yet.
+ *   fine  in  1 or more: cells grow by this factor in every direction */
+mesh_fe make_bladed_sector(int blades, int fine);
+
+/* Nodes of sector b in the ring: ring node of node i is node[b n_nodes + i]. */
+typedef struct {
+  mesh_fe mesh;
+  int     blades;
+  int    *node;
+} sector_ring;
+
+/* The ring of a paired sector (mesh_cyclic_pair): nodes of neighbours merged. */
+sector_ring make_sector_ring(const mesh_fe *sector, mesh_axis axis, int blades);
+void        free_sector_ring(sector_ring *ring);
+
+#endif
