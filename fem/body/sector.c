@@ -6,6 +6,7 @@
 
 #include "fem/body/pressure.h"
 #include "fem/element/finite_strain.h"
+#include "mesh/base/constants.h"
 
 /* ------------------------------------------------------------------ stiffness */
 
@@ -145,11 +146,17 @@ static PetscErrorCode find_coupling(const fem_body *body, const double *state,
   PetscFunctionReturn(0);
 }
 
-void fem_sector_stiffness(const fem_sector *s, double theta, double complex *value) {
+double complex fem_sector_phase(int n, int blades) {
+  const int m = (n % blades + blades) % blades;
+  if (m == 0) return 1;
+  if (2 * m == blades) return -1;
+  return cexp(-I * (SHB_TWO_PI * m / blades));
+}
+
+void fem_sector_stiffness(const fem_sector *s, double complex phase, double complex *value) {
   const size_t count = 9 * (size_t)s->blocks.start[s->blocks.n];
+  const double less = creal(phase) - 1, sine = -cimag(phase);
   for (size_t i = 0; i < count; i++) value[i] = s->stiffness[i];
-  /* cos - 1 without cancellation */
-  const double less = -2 * sin(theta / 2) * sin(theta / 2), sine = sin(theta);
   for (int q = 0; q < s->n_coupled; q++) {
     double complex *block = value + 9 * (size_t)s->coupled[q];
     for (int i = 0; i < 9; i++) block[i] += CMPLX(less * s->cosine[q][i], sine * s->sine[q][i]);
@@ -267,9 +274,8 @@ void fem_sector_force(const fem_sector *s, int node, double complex phase, const
   if (s->turned[node]) turn_vector(s->turn, true, conj(phase), v);
 }
 
-void fem_sector_expand(const fem_sector *s, double theta, const double complex *x,
+void fem_sector_expand(const fem_sector *s, double complex phase, const double complex *x,
                        double complex *nodal) {
-  const double complex phase = cexp(-I * theta);
   for (int i = 0; i < s->n_nodes; i++) fem_sector_motion(s, i, phase, x, nodal + 3 * (size_t)i);
 }
 
@@ -285,11 +291,10 @@ static void mass_row(const fem_sector *s, int i, size_t width, const double *V, 
 }
 
 /* Products in the order of the nodes: the columns of a node lie together. */
-void fem_sector_mass(const fem_sector *s, double theta, int columns, const double complex *X,
-                     double complex *Y, double *V) {
-  const double complex phase = cexp(-I * theta);
-  const size_t         width = 6 * (size_t)columns, order = 3 * (size_t)s->n_rows;
-  double              *sum = V + width * (size_t)s->n_nodes;
+void fem_sector_mass(const fem_sector *s, double complex phase, int columns,
+                     const double complex *X, double complex *Y, double *V) {
+  const size_t width = 6 * (size_t)columns, order = 3 * (size_t)s->n_rows;
+  double      *sum = V + width * (size_t)s->n_nodes;
   for (int i = 0; i < s->n_nodes; i++)
     for (size_t c = 0; c < (size_t)columns; c++) {
       double complex v[3];

@@ -40,15 +40,17 @@ typedef struct {
 PetscErrorCode fem_sector_create(const fem_body *body, const double *state,
                                  const fem_system *system, fem_sector *sector);
 
-/* K(theta), [block][9]. */
-void fem_sector_stiffness(const fem_sector *sector, double theta, double complex *value);
+/* e^(-j theta) of nodal diameter n of N blades; n may be negative. Real without rounding at 0 and N/2. */
+double complex fem_sector_phase(int n, int blades);
+
+/* K(theta), [block][9]; phase = e^(-j theta) here and below. */
+void fem_sector_stiffness(const fem_sector *sector, double complex phase, double complex *value);
 
 /* C x: motion of all nodes, [n_nodes][3], zero where clamped. */
-void fem_sector_expand(const fem_sector *sector, double theta, const double complex *x,
+void fem_sector_expand(const fem_sector *sector, double complex phase, const double complex *x,
                        double complex *nodal);
 
-/* Motion of one node from x, and the share C^H f of a force f at a node in its block row.
- *   phase  in  e^(-j theta) */
+/* Motion of one node from x, and the share C^H f of a force f at a node in its block row. */
 void fem_sector_motion(const fem_sector *sector, int node, double complex phase,
                        const double complex *x, double complex v[3]);
 void fem_sector_force(const fem_sector *sector, int node, double complex phase, const double f[3],
@@ -60,8 +62,8 @@ size_t fem_sector_scratch(const fem_sector *sector, int columns);
 /* Y = M(theta) X.
  *   X, Y     in/out   [columns][3 n_rows], different
  *   scratch  scratch  [fem_sector_scratch] */
-void fem_sector_mass(const fem_sector *sector, double theta, int columns, const double complex *X,
-                     double complex *Y, double *scratch);
+void fem_sector_mass(const fem_sector *sector, double complex phase, int columns,
+                     const double complex *X, double complex *Y, double *scratch);
 
 /* Diagonal of M(theta) without the coupling of the sides, [n_rows] kg. */
 void fem_sector_mass_diagonal(const fem_sector *sector, double *diagonal);

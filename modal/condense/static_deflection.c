@@ -107,20 +107,21 @@ static shb_status write_samples(hid_t file, const modal_deflection *d, const mod
   const hsize_t pairs   = (hsize_t)model->n_pairs;
   const hsize_t contact = (hsize_t)modal_model_contact_dofs(model);
   const hsize_t probe   = 3 * (hsize_t)model->n_probes;
+  const bool    root = h5_exists(file, "/modes"); /* a file of nodal diameters has no root model */
   if (pairs > 0) {
     SHB_TRY(h5_write_double(file, "/static/contact", H5_SHAPE(contact), d->contact, "m",
                             "static displacement of the contact patches, cylindrical axes"));
-    SHB_TRY(h5_attach_scale(file, "/static/contact", 0, "/contact/dof"));
+    if (root) SHB_TRY(h5_attach_scale(file, "/static/contact", 0, "/contact/dof"));
     SHB_TRY(
         h5_write_double(file, "/static/closing", H5_SHAPE(pairs), d->closing, "m",
                         "static motion of the right face against the left one along its normal, "
                         "faces free; kv times it is the interference load"));
-    SHB_TRY(h5_attach_scale(file, "/static/closing", 0, "/contact/pair"));
+    if (root) SHB_TRY(h5_attach_scale(file, "/static/closing", 0, "/contact/pair"));
   }
   if (probe == 0) return SHB_OK;
   SHB_TRY(h5_write_double(file, "/static/probe", H5_SHAPE(probe), d->probe, "m",
                           "static displacement of the probes, cylindrical axes"));
-  return h5_attach_scale(file, "/static/probe", 0, "/probe/dof");
+  return root ? h5_attach_scale(file, "/static/probe", 0, "/probe/dof") : SHB_OK;
 }
 
 shb_status modal_deflection_write(hid_t file, const modal_deflection *d, int n_nodes,

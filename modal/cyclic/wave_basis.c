@@ -43,7 +43,10 @@ static double complex normal(uint64_t key) {
 
 void wave_basis_randomise(const wave_basis *b, uint64_t seed) {
   const size_t size = (size_t)b->p * b->order;
-  for (size_t i = 0; i < size; i++) b->W[i] = normal(seed * size + i);
+  for (size_t i = 0; i < size; i++) {
+    const double complex z = normal(seed * size + i);
+    b->W[i]                = b->op->is_real ? sqrt(2) * creal(z) : z;
+  }
 }
 
 static shb_status apply_mass(wave_basis *b) {

@@ -507,6 +507,7 @@ shb_status wave_condense(wave_operator *op, const wave_modes *modes, const modal
   shb_status status = allocate(&w);
   if (status == SHB_OK) status = fill(&w);
   free_workspace(&w);
-  if (load_is_real(&to->load)) modal_model_free(backward);
+  if (op->is_real || load_is_real(&to->load)) modal_model_free(backward);
+  if (op->is_real) modal_model_free(imaginary);
   return status;
 }

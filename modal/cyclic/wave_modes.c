@@ -149,7 +149,7 @@ static shb_status refine(const wave_operator *op, const fem_body *body, const do
     const int left = out->n - first, count = left < FEM_FIELDS / 2 ? left : FEM_FIELDS / 2;
     for (int i = 0; i < count; i++) {
       double *re = u + 2 * (size_t)i * stride, *im = re + stride;
-      fem_sector_expand(op->sector, op->theta, out->phi + (size_t)(first + i) * out->order, nodal);
+      fem_sector_expand(op->sector, op->phase, out->phi + (size_t)(first + i) * out->order, nodal);
       for (size_t k = 0; k < stride; k++) re[k] = creal(nodal[k]), im[k] = cimag(nodal[k]);
     }
     fem_tangent_energies(body, state, 2 * count, u, energy);

@@ -11,7 +11,7 @@ static shb_status factorise(const fem_hermitian_order *order, wave_operator *op)
   double complex *value    = malloc((count + 1) * sizeof *value);
   bool            definite = false;
   SHB_CHECK(value, SHB_ERR_IO, "out of memory for the stiffness of a sector");
-  fem_sector_stiffness(op->sector, op->theta, value);
+  fem_sector_stiffness(op->sector, op->phase, value);
   shb_status status = fem_hermitian_create(order, value, &definite, &op->factor);
   free(value);
   SHB_TRY(status);
@@ -22,12 +22,11 @@ static shb_status factorise(const fem_hermitian_order *order, wave_operator *op)
   return SHB_OK;
 }
 
-shb_status wave_operator_create(const fem_sector *sector, const fem_hermitian_order *order,
-                                double theta, wave_operator *op) {
-  *op = (wave_operator){.sector = sector,
-                        .theta  = theta,
-                        .phase  = cexp(-I * theta),
-                        .order  = 3 * (size_t)sector->n_rows};
+shb_status wave_operator_create(const fem_sector *sector, const fem_hermitian_order *order, int n,
+                                int blades, wave_operator *op) {
+  *op = (wave_operator){
+      .sector = sector, .phase = fem_sector_phase(n, blades), .order = 3 * (size_t)sector->n_rows};
+  op->is_real = cimag(op->phase) == 0;
   return factorise(order, op);
 }
 
@@ -44,7 +43,7 @@ shb_status wave_operator_mass(wave_operator *op, int columns, const double compl
     op->columns = op->scratch ? columns : 0;
   }
   SHB_CHECK(op->scratch, SHB_ERR_IO, "out of memory for products with the mass of a sector");
-  fem_sector_mass(op->sector, op->theta, columns, X, Y, op->scratch);
+  fem_sector_mass(op->sector, op->phase, columns, X, Y, op->scratch);
   return SHB_OK;
 }
 

@@ -10,17 +10,17 @@
 
 typedef struct {
   const fem_sector *sector;
-  double            theta; /* rad, 2 pi n/N */
-  double complex    phase; /* e^(-j theta) */
+  double complex    phase;   /* e^(-j theta), theta = 2 pi n/N */
+  bool              is_real; /* at nodal diameters 0 and N/2: all vectors may be real */
   size_t            order;
   fem_hermitian    *factor;  /* of K(theta) */
   double           *scratch; /* of products with M of columns columns */
   int               columns;
 } wave_operator;
 
-/* Factorise K(theta). Errors: SHB_ERR_INPUT not positive definite; SHB_ERR_IO no memory. */
-shb_status wave_operator_create(const fem_sector *sector, const fem_hermitian_order *order,
-                                double theta, wave_operator *op);
+/* Factorise K(theta) of nodal diameter n of N blades; order: of sector->blocks. Errors: SHB_ERR_INPUT not positive definite; SHB_ERR_IO no memory. */
+shb_status wave_operator_create(const fem_sector *sector, const fem_hermitian_order *order, int n,
+                                int blades, wave_operator *op);
 
 /* X = K^-1 B; X may be B. */
 shb_status wave_operator_solve(wave_operator *op, int columns, const double complex *B,

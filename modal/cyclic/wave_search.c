@@ -148,8 +148,9 @@ static shb_status largest_ritz_value(const search *s, int blocks, double *value)
 }
 
 static shb_status iterate(search *s, double t, modal_missed_modes *out) {
-  wave_basis *b    = s->b;
-  bool        good = true;
+  wave_basis *b     = s->b;
+  const int   parts = b->op->is_real ? 1 : 2;
+  bool        good  = true;
   copy_block(b, s->residual);
   wave_basis_randomise(b, 1);
   SHB_TRY(scale_rows(b));
@@ -160,8 +161,8 @@ static shb_status iterate(search *s, double t, modal_missed_modes *out) {
     SHB_TRY(step(s, out->steps++, t, &good));
     SHB_TRY(largest_ritz_value(s, out->steps, &out->ratio));
     out->ratio /= t;
-    out->probability =
-        modal_missed_modes_probability(out->ratio, out->steps, 2 * b->p, 2. * (double)b->order);
+    out->probability = modal_missed_modes_probability(out->ratio, out->steps, parts * b->p,
+                                                      parts * (double)b->order);
     if (out->ratio > 1 + ROUNDING) out->verdict = MODAL_VERDICT_MISSING;
     if (out->probability <= ACCEPTED_PROBABILITY) out->verdict = MODAL_VERDICT_COMPLETE;
     if (out->ratio > COINCIDENT && out->ratio - previous < ROUNDING)

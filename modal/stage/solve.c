@@ -241,9 +241,14 @@ static shb_status solve(MPI_Comm comm, const fem_body *body, const modal_setting
   modal_phase(comm, progress, "participation", "effective masses");
   SHB_TRY(modal_residual_shapes_create(&result->system, &result->eigen, to, &result->residual));
   modal_phase(comm, progress, "residual shapes", "%d columns", result->residual.n);
-  SHB_TRY(name_probes(settings, &result->model));
-  SHB_TRY(name_interfaces(settings, &result->patches, &result->model));
-  return copy_patches(&result->patches, &result->model);
+  return modal_label(settings, &result->patches, &result->model);
+}
+
+shb_status modal_label(const modal_settings *settings, const modal_patches *patches,
+                       modal_model *model) {
+  SHB_TRY(name_probes(settings, model));
+  SHB_TRY(name_interfaces(settings, patches, model));
+  return copy_patches(patches, model);
 }
 
 shb_status modal_body_create(const mesh_fe *mesh, const modal_settings *settings,
@@ -272,14 +277,9 @@ static shb_status solve_body(MPI_Comm comm, const mesh_fe *mesh, const modal_set
 
 shb_status modal_solve(MPI_Comm comm, const mesh_fe *mesh, const modal_settings *settings,
                        shb_progress *progress, modal_result *result) {
-  modal_condensation to = {0};
   memset(result, 0, sizeof *result);
-  shb_status status = modal_agree(comm, prepare(mesh, settings, &result->patches, &to));
-  if (status == SHB_OK) status = solve_body(comm, mesh, settings, &to, progress, result);
-  modal_dofs_free(&to.contact);
-  modal_dofs_free(&to.probe);
-  modal_load_free(&to.load);
-  return status;
+  SHB_TRY(modal_agree(comm, prepare(mesh, settings, &result->patches, &result->to)));
+  return solve_body(comm, mesh, settings, &result->to, progress, result);
 }
 
 void modal_result_free(modal_result *result) {
@@ -288,6 +288,9 @@ void modal_result_free(modal_result *result) {
   modal_deflection_free(&result->deflection);
   modal_participation_free(&result->participation);
   modal_residual_shapes_free(&result->residual);
+  modal_dofs_free(&result->to.contact);
+  modal_dofs_free(&result->to.probe);
+  modal_load_free(&result->to.load);
   (void)modal_eigen_destroy(&result->eigen);
   (void)fem_system_destroy(&result->system);
   memset(result, 0, sizeof *result);

@@ -58,9 +58,11 @@ typedef struct {
   const modal_probe   *probe;
   bool                 may_be_free; /* without the groups of contact there is no contact */
   bool                 to_ground;
-  int                  points;     /* contact patches; 0: one for each node */
-  const double        *psi, *phi;  /* rad, checked against the faces; NULL: not given */
-  int                  n_contacts; /* 0: one, of contact_right and contact_left */
+  int                  points;      /* contact patches; 0: one for each node */
+  const double        *psi, *phi;   /* rad, checked against the faces; NULL: not given */
+  int                  n_diameters; /* of a sector with a disc, besides 0; -1: all to N/2 */
+  const int           *diameter;    /* [n_diameters] from 0 */
+  int                  n_contacts;  /* 0: one, of contact_right and contact_left */
   const modal_contact *contact;
 } modal_settings;
 
@@ -84,11 +86,17 @@ typedef struct {
   modal_deflection      deflection; /* static, under the centrifugal load; zero at rest */
   modal_participation   participation;
   modal_residual_shapes residual;
+  modal_condensation    to; /* dofs that were condensed to */
 } modal_result;
+
+/* Give a model the names of probes and interfaces, normals and areas. Errors: SHB_ERR_IO no
+ * memory. */
+shb_status modal_label(const modal_settings *settings, const modal_patches *patches,
+                       modal_model *model);
 
 /* Assemble, solve the static equilibrium if the blade rotates, compute the modes, condense. K is
  * then the tangent stiffness at that equilibrium. Contact faces, axes and loads are those of the
- * undeformed mesh. Collective; the mesh is the same on every rank, its sets oriented
+ * undeformed mesh. Of a sector with a disc (mesh->image) this is nodal diameter 0. Collective; the mesh is the same on every rank, its sets oriented
  * (mesh_fe_orient).
  *
  * Errors:

@@ -6,11 +6,14 @@
 #include "fem/body/partition.h"
 #include "fem/body/stress.h"
 #include "fem/solver/petsc_error.h"
+#include "mesh/core/cyclic_sides.h"
 #include "mesh/core/group_checks.h"
 #include "mesh/io/read.h"
 #include "modal/common/phases.h"
 #include "modal/common/session.h"
 #include "modal/stage/model_export.h"
+#include "modal/stage/sector_export.h"
+#include "modal/stage/sector_solve.h"
 #include "modal/stage/speed_range.h"
 
 /* All mode shapes on rank 0, [m][n_nodes][3]; NULL elsewhere. Free with free. */
@@ -60,11 +63,24 @@ static shb_status find_stresses(const mesh_fe *mesh, const modal_settings *setti
   return status;
 }
 
-/* speeds: n = 0 for one speed. */
-static shb_status write_all(hid_t file, const mesh_fe *mesh, const modal_result *result,
-                            const modal_speeds *speeds, const fields *of,
-                            const shb_provenance *provenance) {
-  SHB_TRY(modal_model_write(file, &result->model, provenance));
+/* All that rank 0 writes. */
+typedef struct {
+  const mesh_fe        *mesh;
+  const modal_result   *result;
+  const modal_speeds   *speeds; /* n = 0: one speed */
+  const modal_sector   *sector; /* models.n = 0: a clamped blade */
+  const fields         *of;
+  const shb_provenance *provenance;
+} contents;
+
+static shb_status write_all(hid_t file, const contents *c) {
+  const mesh_fe      *mesh   = c->mesh;
+  const modal_result *result = c->result;
+  const modal_speeds *speeds = c->speeds;
+  const fields       *of     = c->of;
+  if (c->sector->models.n > 0)
+    return modal_sector_write(file, mesh, result, of->shape, c->sector, c->provenance);
+  SHB_TRY(modal_model_write(file, &result->model, c->provenance));
   if (speeds->n > 0) SHB_TRY(modal_speeds_write(file, speeds));
   SHB_TRY(modal_export_mesh(file, mesh));
   SHB_TRY(modal_export_shapes(file, result->model.n_modes, mesh->n_nodes, of->shape));
@@ -80,17 +96,15 @@ static shb_status write_all(hid_t file, const mesh_fe *mesh, const modal_result 
 }
 
 /* The phases of progress are written to the file. */
-static shb_status publish(const char *path, const mesh_fe *mesh, const modal_result *result,
-                          const modal_speeds *speeds, const fields *of,
-                          const shb_provenance *provenance, const shb_progress *progress) {
+static shb_status publish(const char *path, const contents *all, const shb_progress *progress) {
   char *temporary = shb_publish_temporary(path);
   SHB_CHECK(temporary, SHB_ERR_IO, "out of memory");
   hid_t      file   = -1;
   shb_status status = h5_create(temporary, &file);
   if (status == SHB_OK) {
     int ranks;
-    MPI_Comm_size(result->system.comm, &ranks);
-    status = write_all(file, mesh, result, speeds, of, provenance);
+    MPI_Comm_size(all->result->system.comm, &ranks);
+    status = write_all(file, all);
     if (status == SHB_OK) status = modal_phases_write(file, ranks, progress, "write");
     shb_status closed = h5_close(file);
     if (status == SHB_OK) status = closed;
@@ -103,7 +117,19 @@ static shb_status publish(const char *path, const mesh_fe *mesh, const modal_res
   return status;
 }
 
-static shb_status read_mesh(const char *path, const modal_settings *settings, mesh_fe *mesh) {
+/* Pair the sides of a sector with a disc, if the mesh has them. */
+static shb_status pair_sides(const modal_settings *settings, mesh_fe *mesh,
+                             shb_progress *progress) {
+  mesh_cyclic_sides sides;
+  SHB_TRY(mesh_cyclic_pair(mesh, settings->axis, settings->blades, &sides));
+  if (sides.n > 0)
+    shb_progress_note(progress, "cyclic sides: %d pairs of nodes, largest gap %.2g m, no orphans",
+                      sides.n, sides.gap);
+  return SHB_OK;
+}
+
+static shb_status read_mesh(const char *path, const modal_settings *settings,
+                            shb_progress *progress, mesh_fe *mesh) {
   mesh_names names = {.n_more = settings->n_groups, .n_volumes = settings->n_regions};
   for (int i = 0; i < settings->n_groups; i++)
     names.more[i].label = names.more[i].name = settings->group[i];
@@ -117,6 +143,7 @@ static shb_status read_mesh(const char *path, const modal_settings *settings, me
     if (right < 0 || left < 0 || !mesh->set[right].n || !mesh->set[left].n) continue;
     SHB_TRY(mesh_fe_orient_groups(mesh, settings->axis, right, left));
   }
+  SHB_TRY(pair_sides(settings, mesh, progress));
   bool free = settings->may_be_free && settings->blades < 2;
   if (free || settings->n_contacts || mesh->set[MESH_CONTACT_RIGHT].n == 0 ||
       mesh->set[MESH_CONTACT_LEFT].n == 0)
@@ -129,27 +156,32 @@ static shb_status run(MPI_Comm comm, int rank, const char *out_path, const mesh_
                       shb_progress *progress) {
   modal_result result;
   modal_speeds speeds = {0};
+  modal_sector sector = {0};
   fields       of     = {NULL, NULL, NULL};
   shb_status   status;
+  if (mesh->image) SHB_TRY(modal_sector_check(comm, settings));
   if (settings->n_speeds > 1)
     status = modal_speed_range_solve(comm, mesh, settings, progress, &speeds, &result);
   else
     status = modal_solve(comm, mesh, settings, progress, &result);
   if (status == SHB_OK) status = gather_shapes(&result, rank, &of.shape);
-  if (status == SHB_OK)
+  if (status == SHB_OK && mesh->image)
+    status = modal_sector_solve(mesh, settings, progress, &result, &sector);
+  else if (status == SHB_OK)
     status = modal_agree(comm, rank == 0 ? find_stresses(mesh, settings, &result, &of) : SHB_OK);
-  if (status == SHB_OK)
+  if (status == SHB_OK && !mesh->image)
     modal_phase(comm, progress, "stress", "%d modes at %d nodes", result.eigen.n, mesh->n_nodes);
   if (status == SHB_OK) {
     shb_progress_show(progress, 96, "writing %s", out_path);
-    shb_status mine =
-        rank != 0 ? SHB_OK : publish(out_path, mesh, &result, &speeds, &of, provenance, progress);
-    status = modal_agree(comm, mine);
+    const contents all  = {mesh, &result, &speeds, &sector, &of, provenance};
+    shb_status     mine = rank != 0 ? SHB_OK : publish(out_path, &all, progress);
+    status              = modal_agree(comm, mine);
     if (status == SHB_OK) modal_phase(comm, progress, "write", "%s", out_path);
   }
   free(of.shape);
   free(of.stress);
   free(of.residual_stress);
+  modal_sector_free(&sector, &result);
   modal_speed_range_free(&speeds, &result);
   modal_result_free(&result);
   return status;
@@ -162,7 +194,8 @@ shb_status modal_stage(MPI_Comm comm, const char *mesh_path, const char *out_pat
   mesh_fe mesh = {0};
   MPI_Comm_rank(comm, &rank);
   shb_progress_show(progress, 0, "reading %s", mesh_path);
-  shb_status status = modal_agree(comm, rank == 0 ? read_mesh(mesh_path, settings, &mesh) : SHB_OK);
+  shb_status status =
+      modal_agree(comm, rank == 0 ? read_mesh(mesh_path, settings, progress, &mesh) : SHB_OK);
   if (status == SHB_OK) status = fem_petsc_status(fem_mesh_broadcast(comm, &mesh));
   if (status == SHB_OK)
     modal_phase(comm, progress, "mesh", "%d nodes, %d elements", mesh.n_nodes, mesh.n_elements);

@@ -77,7 +77,7 @@ static void force_at(const scene *s, int which, int *node, double complex f[3]) 
 
 /* Add the travelling wave of a nodal force to the ring: on sector b turned by b sectors and with
  * the phase e^(-j b theta). */
-static void spread_wave(const scene *s, double theta, bool imaginary, Vec f) {
+static void spread_wave(const scene *s, int n, bool imaginary, Vec f) {
   double *value;
   assert_int_equal(VecZeroEntries(f), 0);
   assert_int_equal(VecGetArray(f, &value), 0);
@@ -88,7 +88,7 @@ static void spread_wave(const scene *s, double theta, bool imaginary, Vec f) {
       int            node;
       force_at(s, which, &node, force);
       for (int d = 0; d < 3; d++) {
-        const double complex now = force[d] * cexp(-I * theta * b);
+        const double complex now = force[d] * cpow(fem_sector_phase(n, BLADES), b);
         part[d]                  = imaginary ? cimag(now) : creal(now);
       }
       mesh_axis_rotate(axis, SHB_TWO_PI * b / BLADES, part, turned);
@@ -99,7 +99,7 @@ static void spread_wave(const scene *s, double theta, bool imaginary, Vec f) {
 }
 
 /* K^-1 f, or K^-1 M K^-1 f, of the ring at the nodes of sector b: [n_nodes][3]. */
-static void solve_ring(const scene *s, double theta, bool twice, int b, double complex *out) {
+static void solve_ring(const scene *s, int diameter, bool twice, int b, double complex *out) {
   const size_t n     = (size_t)s->mesh.n_nodes;
   double      *nodal = malloc(3 * (size_t)s->ring.mesh.n_nodes * sizeof *nodal);
   Vec          f, x;
@@ -107,7 +107,7 @@ static void solve_ring(const scene *s, double theta, bool twice, int b, double c
   assert_int_equal(MatCreateVecs(s->whole.K, &f, &x), 0);
   memset(out, 0, 3 * n * sizeof *out);
   for (int imaginary = 0; imaginary < 2; imaginary++) {
-    spread_wave(s, theta, imaginary, f);
+    spread_wave(s, diameter, imaginary, f);
     assert_int_equal(fem_factor_solve(s->factor, f, x), 0);
     if (twice) {
       assert_int_equal(MatMult(s->whole.M, x, f), 0);
@@ -124,13 +124,13 @@ static void solve_ring(const scene *s, double theta, bool twice, int b, double c
   free(nodal);
 }
 
-/* The same of the sector at phase theta, as it moves at sector b. */
-static void solve_sector(const scene *s, double theta, bool twice, int b, double complex *out) {
+/* The same of the sector as it moves at sector b. */
+static void solve_sector(const scene *s, int diameter, bool twice, int b, double complex *out) {
   const size_t    order = 3 * (size_t)s->sector.n_rows, n = (size_t)s->mesh.n_nodes;
   double complex *f = calloc(order, sizeof *f), *x = malloc(order * sizeof *x);
   wave_operator   op;
   assert_true(f && x);
-  assert_ok(wave_operator_create(&s->sector, s->order, theta, &op));
+  assert_ok(wave_operator_create(&s->sector, s->order, diameter, BLADES, &op));
   for (int which = 0; which < 2; which++) {
     double complex force[3], share[3];
     double         part[3];
@@ -148,11 +148,11 @@ static void solve_sector(const scene *s, double theta, bool twice, int b, double
     assert_ok(wave_operator_mass(&op, 1, x, f));
     assert_ok(wave_operator_solve(&op, 1, f, x));
   }
-  fem_sector_expand(&s->sector, theta, x, out);
+  fem_sector_expand(&s->sector, op.phase, x, out);
   for (size_t i = 0; i < n; i++) {
     double part[2][3];
     for (int d = 0; d < 3; d++) {
-      const double complex now = out[3 * i + (size_t)d] * cexp(-I * theta * b);
+      const double complex now = out[3 * i + (size_t)d] * cpow(op.phase, b);
       part[0][d] = creal(now), part[1][d] = cimag(now);
     }
     for (int p = 0; p < 2; p++) mesh_axis_rotate(axis, SHB_TWO_PI * b / BLADES, part[p], part[p]);
@@ -176,16 +176,15 @@ static void travelling_waves_of_the_ring(void **state) {
   scene *s = *state;
   for (int n = 0; n <= BLADES / 2; n++)
     for (int k = 0; k < 4; k++) {
-      const double    theta = SHB_TWO_PI * n / BLADES;
       const size_t    size  = 3 * (size_t)s->mesh.n_nodes;
       const bool      twice = k > 1;
       const int       b     = k % 2 ? BLADES - 1 : 0;
       double complex *ring = malloc(size * sizeof *ring), *own = malloc(size * sizeof *own);
       assert_true(ring && own);
-      solve_ring(s, theta, twice, b, ring);
-      solve_sector(s, theta, twice, b, own);
+      solve_ring(s, n, twice, b, ring);
+      solve_sector(s, n, twice, b, own);
       const double off = distance(size, own, ring);
-      solve_sector(s, -theta, twice, b, own);
+      solve_sector(s, -n, twice, b, own);
       const double wrong = distance(size, own, ring);
       print_message("nodal diameter %d, sector %d, K^-1%s: off by %.1e; opposite sign %.1e\n", n, b,
                     twice ? " M K^-1" : "", off, wrong);
@@ -210,7 +209,7 @@ static void modes_of_the_ring(void **state) {
   for (int n = 0; n <= BLADES / 2; n++) {
     wave_operator op;
     wave_modes    modes;
-    assert_ok(wave_operator_create(&s->sector, s->order, SHB_TWO_PI * n / BLADES, &op));
+    assert_ok(wave_operator_create(&s->sector, s->order, n, BLADES, &op));
     assert_ok(wave_modes_solve(&op, &wanted, &s->body, NULL, &modes));
     assert_string_equal(modes.check.method, "restart");
     for (int i = 0; i < MODES; i++) {
@@ -249,10 +248,11 @@ static void real_nodal_diameters(void **state) {
     double               worst = 0;
     assert_int_equal(fem_system_create(PETSC_COMM_SELF, &mesh, &steel, FEM_STANDARD, &system), 0);
     assert_int_equal(modal_eigen_solve(&system, &settings, &eigen), 0);
-    assert_ok(wave_operator_create(&s->sector, s->order, half * SHB_PI, &op));
+    assert_ok(wave_operator_create(&s->sector, s->order, half * BLADES / 2, BLADES, &op));
     assert_ok(wave_modes_solve(&op, &wanted, &s->body, NULL, &modes));
     for (int i = 0; i < MODES; i++)
       worst = fmax(worst, fabs(eigen.lambda[i] / modes.lambda[i] - 1));
+    for (size_t i = 0; i < modes.order * MODES; i++) assert_true(cimag(modes.phi[i]) == 0);
     print_message("nodal diameter %s: eigenvalues off by %.1e\n", half ? "N/2" : "0", worst);
     check_below(worst, 1e-9, "eigenvalues");
     wave_modes_free(&modes);
@@ -269,7 +269,7 @@ static void too_many_modes(void **state) {
   wave_settings wanted = {.modes = 1000000};
   wave_operator op;
   wave_modes    modes;
-  assert_ok(wave_operator_create(&s->sector, s->order, 1, &op));
+  assert_ok(wave_operator_create(&s->sector, s->order, 1, BLADES, &op));
   assert_refused(wave_modes_solve(&op, &wanted, &s->body, NULL, &modes), SHB_ERR_INPUT,
                  "1000000 modes asked of a mesh with");
   wave_modes_free(&modes);

@@ -1,0 +1,226 @@
+#include "modal/stage/sector_solve.h"
+
+#include <omp.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "fem/body/sector.h"
+#include "fem/solver/hermitian.h"
+#include "fem/solver/memory.h"
+#include "fem/solver/petsc_error.h"
+#include "modal/common/phases.h"
+#include "modal/cyclic/wave_condense.h"
+#include "modal/cyclic/wave_modes.h"
+
+enum { MESSAGE = 512 };
+
+/* What all threads share, and what each nodal diameter leaves. */
+typedef struct {
+  const fem_body       *body;
+  const double         *state; /* static displacement, NULL at rest */
+  const modal_settings *settings;
+  const modal_result   *first;
+  fem_sector            matrices;
+  fem_hermitian_order  *order;
+  modal_sector         *out;
+  shb_status           *status; /* [n] */
+  char (*message)[MESSAGE];     /* [n] */
+} work;
+
+shb_status modal_sector_check(MPI_Comm comm, const modal_settings *settings) {
+  int ranks;
+  MPI_Comm_size(comm, &ranks);
+  SHB_CHECK(ranks == 1, SHB_ERR_INPUT,
+            "a sector with cyclic sides runs on one rank, not %d; its nodal diameters run on "
+            "threads (OMP_NUM_THREADS)",
+            ranks);
+  SHB_CHECK(settings->n_speeds <= 1, SHB_ERR_INPUT,
+            "rotor.speed: a sector with cyclic sides takes one speed, not %d", settings->n_speeds);
+  SHB_CHECK(settings->modes > 0, SHB_ERR_INPUT,
+            "modal.modes: auto is for a clamped blade; give the number of modes at each nodal "
+            "diameter");
+  SHB_CHECK(settings->check != MODAL_CHECK_INERTIA, SHB_ERR_INPUT,
+            "modal.check: inertia is for a clamped blade; leave it at auto, or give never");
+  for (int i = 0; i < settings->n_diameters; i++)
+    SHB_CHECK(2 * settings->diameter[i] <= settings->blades, SHB_ERR_INPUT,
+              "modal.nodal_diameters: %d is above N/2 = %g of %d blades; nodal diameter n above "
+              "N/2 is the backward wave of N - n",
+              settings->diameter[i], settings->blades / 2., settings->blades);
+  return SHB_OK;
+}
+
+/* The nodal diameters wanted, ascending, with 0. */
+static shb_status list_diameters(const modal_settings *settings, modal_sector *out) {
+  const int most = settings->blades / 2;
+  int      *list = malloc(((size_t)most + 1) * sizeof *list), n = 0;
+  SHB_CHECK(list, SHB_ERR_IO, "out of memory for the nodal diameters");
+  for (int d = 0; d <= most; d++) {
+    bool wanted = d == 0 || settings->n_diameters < 0;
+    for (int i = 0; i < settings->n_diameters; i++) wanted = wanted || settings->diameter[i] == d;
+    if (wanted) list[n++] = d;
+  }
+  shb_status status = modal_nodal_diameters_create(settings->blades, n, &out->models);
+  if (status == SHB_OK) memcpy(out->models.diameter, list, (size_t)n * sizeof *list);
+  free(list);
+  return status;
+}
+
+static shb_status expand_shapes(const wave_operator *op, const wave_modes *modes, int n_nodes,
+                                double complex **shape) {
+  const size_t stride = 3 * (size_t)n_nodes;
+  *shape              = malloc((size_t)modes->n * stride * sizeof **shape);
+  SHB_CHECK(*shape, SHB_ERR_IO, "out of memory for the mode shapes");
+  for (size_t i = 0; i < (size_t)modes->n; i++)
+    fem_sector_expand(op->sector, op->phase, modes->phi + i * modes->order, *shape + i * stride);
+  return SHB_OK;
+}
+
+/* Modes and condensation with a factor. */
+static shb_status solve_with(const work *w, int i, wave_operator *op, wave_modes *modes) {
+  const wave_settings    wanted = {.modes = w->settings->modes, .check = w->settings->check};
+  modal_nodal_diameters *all    = &w->out->models;
+  SHB_TRY(wave_modes_solve(op, &wanted, w->body, w->state, modes));
+  w->out->check[i] = modes->check;
+  SHB_TRY(expand_shapes(op, modes, w->body->mesh->n_nodes, &w->out->shape[i]));
+  SHB_TRY(wave_condense(op, modes, &w->first->to, &all->model[i], &all->imaginary[i],
+                        &all->backward[i]));
+  return modal_label(w->settings, &w->first->patches, &all->model[i]);
+}
+
+static shb_status solve_one(const work *w, int i) {
+  wave_operator op     = {0};
+  wave_modes    modes  = {0};
+  shb_status    status = wave_operator_create(&w->matrices, w->order, w->out->models.diameter[i],
+                                              w->settings->blades, &op);
+  if (status == SHB_OK) status = solve_with(w, i, &op, &modes);
+  wave_modes_free(&modes);
+  wave_operator_free(&op);
+  return status;
+}
+
+/* Bytes of one nodal diameter: factor, Lanczos basis, modes, vectors of the condensation. */
+static double bytes_each(const work *w) {
+  const double order = 3. * w->matrices.n_rows, modes = w->settings->modes;
+  return fem_hermitian_bytes(w->order) + 16 * order * (5 * modes + 40 + 4 * 30);
+}
+
+/* Threads that the memory allows; SHB_ERR_INPUT: not even one. */
+static shb_status count_threads(const work *w, int *threads) {
+  const double each = bytes_each(w), left = fem_memory_available();
+  *threads = omp_get_max_threads();
+  SHB_CHECK(each <= left, SHB_ERR_INPUT,
+            "a nodal diameter of this mesh (%d free nodes) needs %.3g GB more memory, and %.3g GB "
+            "are left; make a coarser mesh",
+            w->matrices.n_rows, 1e-9 * each, 1e-9 * left);
+  if (left < each * *threads) *threads = (int)(left / each);
+  return SHB_OK;
+}
+
+/* All nodal diameters but the first. Error texts belong to their thread and are kept. */
+static void solve_all(work *w, int threads) {
+  const int n = w->out->models.n, levels = omp_get_max_active_levels();
+#pragma omp parallel for schedule(dynamic) num_threads(threads)
+  for (int i = 1; i < n; i++) {
+    if (shb_interrupted()) {
+      w->status[i] = SHB_INTERRUPTED;
+      snprintf(w->message[i], MESSAGE, "interrupted");
+      continue;
+    }
+    w->status[i] = solve_one(w, i);
+    if (w->status[i] != SHB_OK) snprintf(w->message[i], MESSAGE, "%s", shb_message());
+  }
+  omp_set_max_active_levels(levels);
+}
+
+/* The first failure, with its nodal diameter. */
+static shb_status report(const work *w) {
+  for (int i = 1; i < w->out->models.n; i++)
+    if (w->status[i] != SHB_OK)
+      return shb_fail(w->status[i], __FILE__, __LINE__, "nodal diameter %d: %s",
+                      w->out->models.diameter[i], w->message[i]);
+  return SHB_OK;
+}
+
+static void note(const work *w, shb_progress *progress) {
+  for (int i = 0; i < w->out->models.n; i++)
+    shb_progress_note(progress,
+                      "nodal diameter %d: %d modes, %.6g to %.6g Hz, none missing below %.6g Hz "
+                      "by %s",
+                      w->out->models.diameter[i], w->out->models.model[i].n_modes,
+                      w->out->models.model[i].frequency[0],
+                      w->out->models.model[i].frequency[w->settings->modes - 1],
+                      modal_check_frequency(&w->out->check[i]), w->out->check[i].method);
+}
+
+/* Free the factor of nodal diameter 0, the largest part of a result. */
+static PetscErrorCode drop_factor(modal_result *first) {
+  PetscFunctionBeginUser;
+  PetscCall(EPSDestroy(&first->eigen.eps));
+  PetscCall(fem_factor_destroy(&first->eigen.factor));
+  PetscFunctionReturn(0);
+}
+
+static shb_status allocate(modal_sector *out, work *w) {
+  const size_t n = (size_t)out->models.n;
+  out->check     = calloc(n, sizeof *out->check);
+  out->shape     = calloc(n, sizeof *out->shape);
+  w->status      = calloc(n, sizeof *w->status);
+  w->message     = calloc(n, sizeof *w->message);
+  SHB_CHECK(out->check && out->shape && w->status && w->message, SHB_ERR_IO,
+            "out of memory for the nodal diameters");
+  return SHB_OK;
+}
+
+static shb_status solve(work *w, shb_progress *progress, modal_result *first) {
+  int threads = 1;
+  SHB_TRY(allocate(w->out, w));
+  w->out->models.model[0] = first->model;
+  w->out->check[0]        = first->eigen.check;
+  FEM_PETSC(drop_factor(first));
+  FEM_PETSC(fem_sector_create(w->body, w->state, &first->system, &w->matrices));
+  SHB_TRY(fem_hermitian_analyse(&w->matrices.blocks, &w->order));
+  SHB_TRY(count_threads(w, &threads));
+  modal_phase(first->system.comm, progress, "sector",
+              "%d blocks couple the sides, %.3g GB a factor", w->matrices.n_coupled,
+              1e-9 * fem_hermitian_bytes(w->order));
+  shb_progress_show(progress, 85, "%d nodal diameters", w->out->models.n - 1);
+  solve_all(w, threads);
+  SHB_TRY(report(w));
+  modal_phase(first->system.comm, progress, "nodal diameters", "%d on %d threads",
+              w->out->models.n - 1, threads);
+  note(w, progress);
+  return SHB_OK;
+}
+
+shb_status modal_sector_solve(const mesh_fe *mesh, const modal_settings *settings,
+                              shb_progress *progress, modal_result *first, modal_sector *sector) {
+  modal_body *body = NULL;
+  memset(sector, 0, sizeof *sector);
+  SHB_TRY(list_diameters(settings, sector));
+  shb_status status = modal_body_create(mesh, settings, &body);
+  if (status == SHB_OK) {
+    work w = {.body     = &body->body,
+              .state    = first->deflection.at.displacement,
+              .settings = settings,
+              .first    = first,
+              .out      = sector};
+    status = solve(&w, progress, first);
+    fem_hermitian_order_free(w.order);
+    fem_sector_free(&w.matrices);
+    free(w.status);
+    free(w.message);
+  }
+  free(body);
+  return status;
+}
+
+void modal_sector_free(modal_sector *sector, const modal_result *first) {
+  if (sector->models.model && sector->models.model[0].frequency == first->model.frequency)
+    memset(&sector->models.model[0], 0, sizeof sector->models.model[0]);
+  for (int i = 0; sector->shape && i < sector->models.n; i++) free(sector->shape[i]);
+  modal_nodal_diameters_free(&sector->models);
+  free(sector->shape);
+  free(sector->check);
+  memset(sector, 0, sizeof *sector);
+}

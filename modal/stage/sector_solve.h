@@ -1,0 +1,32 @@
+/* Models of a sector with a disc at every nodal diameter wanted, one a thread. */
+#ifndef MODAL_STAGE_SECTOR_SOLVE_H
+#define MODAL_STAGE_SECTOR_SOLVE_H
+
+#include "modal/model/nodal_diameters.h"
+#include "modal/stage/solve.h"
+
+typedef struct {
+  modal_nodal_diameters models; /* model[0] is shared with the result of modal_solve */
+  modal_check          *check;  /* [n] */
+  double complex      **shape;  /* [n] [modes][n_nodes][3] of all but the first, which is NULL */
+} modal_sector;
+
+/* Can a sector with these settings be solved? Errors: SHB_ERR_INPUT several speeds or ranks, modes:
+ * auto, modal.check: inertia, a nodal diameter above N/2. */
+shb_status modal_sector_check(MPI_Comm comm, const modal_settings *settings);
+
+/* Add the other nodal diameters to that of 0.
+ *
+ * The stiffness is that about the static equilibrium of nodal diameter 0. As many threads run as
+ * OpenMP and the memory allow; the results do not depend on their number.
+ *   first   in/out  modal_solve of the mesh on one rank; its factor is freed
+ *   sector  out     freed by the caller in any case
+ * Errors: as modal_solve. */
+shb_status modal_sector_solve(const mesh_fe *mesh, const modal_settings *settings,
+                              shb_progress *progress, modal_result *first, modal_sector *sector);
+
+/* Free all but the model shared with first. Call it before modal_result_free; also on a zeroed
+ * struct. */
+void modal_sector_free(modal_sector *sector, const modal_result *first);
+
+#endif
