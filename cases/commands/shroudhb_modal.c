@@ -6,6 +6,7 @@
 #include <unistd.h>
 
 #include "cases/commands/command.h"
+#include "cases/commands/nodal_diameters.h"
 #include "cases/commands/subprocess.h"
 #include "cases/commands/up_to_date.h"
 #include "cases/schema/case.h"
@@ -91,7 +92,8 @@ static int parse(const words *line, command_options *options, case_file *file) {
 static modal_settings stage_settings(const case_file *file, modal_probe probe[CASE_MAX_PROBES],
                                      modal_region  region[MESH_MAX_VOLUMES],
                                      fem_load      loads[CASE_MAX_LOADS],
-                                     modal_contact contacts[MHB_MAX_INTERFACES]) {
+                                     modal_contact contacts[MHB_MAX_INTERFACES],
+                                     int           diameters[CASE_MOST_DIAMETERS]) {
   const mhb_settings *mhb = &file->mhb;
   for (int q = 0; q < file->n_probes; q++) {
     probe[q].name = file->probe[q].name;
@@ -139,6 +141,8 @@ static modal_settings stage_settings(const case_file *file, modal_probe probe[CA
       .n_contacts       = file->n_interfaces,
       .contact          = contacts,
       .n_groups         = file->source.rules.n_more,
+      .n_diameters      = nodal_diameters(file, diameters),
+      .diameter         = diameters,
   };
   for (int i = 0; i < out.n_groups; i++) out.group[i] = file->source.rules.more[i].name;
   return out;
@@ -152,7 +156,8 @@ static shb_status decide(const case_file *file, bool force, const char *mesh, co
   *settings = NULL;
   if (rank == 0) {
     answer[0] = up_to_date_settings(file, CASE_MODAL, mesh, settings);
-    answer[1] = answer[0] == SHB_OK && !force && up_to_date_with(output, *settings);
+    answer[1] = answer[0] == SHB_OK && !force && up_to_date_with(output, *settings) &&
+                nodal_diameters_held(file, output);
   }
   MPI_Bcast(answer, 2, MPI_INT, 0, PETSC_COMM_WORLD);
   *skip = answer[1];
@@ -166,6 +171,7 @@ static shb_status run(const case_file *file, const command_options *options, int
   modal_region  region[MESH_MAX_VOLUMES];
   fem_load      loads[CASE_MAX_LOADS];
   modal_contact contacts[MHB_MAX_INTERFACES];
+  int           diameters[CASE_MOST_DIAMETERS];
   char         *mesh = case_mesh_path(file), *output = case_output(file, ".modal.h5");
   char         *settings = NULL;
   bool          skip;
@@ -174,7 +180,7 @@ static shb_status run(const case_file *file, const command_options *options, int
   if (status == SHB_OK) status = decide(file, options->force, mesh, output, &settings, &skip);
   if (status == SHB_OK && skip) shb_progress_note(&progress, "%s is up to date", output);
   if (status == SHB_OK && !skip) {
-    modal_settings stage      = stage_settings(file, probe, region, loads, contacts);
+    modal_settings stage      = stage_settings(file, probe, region, loads, contacts, diameters);
     shb_provenance provenance = command_provenance(file, settings, "shroudhb-modal");
     status = modal_stage(PETSC_COMM_WORLD, mesh, output, &stage, &provenance, &progress);
     shb_progress_note(&progress, "%.2f s in all", shb_seconds() - progress.started);

@@ -35,6 +35,14 @@ typedef struct {
   double at[3], direction[3]; /* m; of any length; mesh axes */
 } case_gauge;
 
+/* Nodal diameters of a sector with a disc; what: place in the words of modal.nodal_diameters. */
+enum { CASE_MOST_DIAMETERS = 501 };
+typedef enum { CASE_DIAMETERS_AUTO, CASE_DIAMETERS_ALL, CASE_DIAMETERS_LISTED } case_diameters_kind;
+typedef struct {
+  case_diameters_kind what;
+  int                 n, list[CASE_MOST_DIAMETERS]; /* with LISTED, ascending */
+} case_diameters;
+
 /* One of several contact interfaces. */
 typedef struct {
   mhb_interface mhb;
@@ -88,6 +96,7 @@ typedef struct {
   double           tolerance, band; /* with modes: auto; Hz */
   modal_damping    damping;
   modal_check_kind check;
+  case_diameters   diameters;
   bool             full_integration; /* modal.integration: full */
   char            *modal_file;       /* resolved path of modal.file, or NULL */
 

@@ -25,6 +25,7 @@ static const char *type_name(const case_key *key) {
                                                   [CASE_ORDERS]    = "list",
                                                   [CASE_POINTS]    = "integer or list",
                                                   [CASE_SAVED]     = "word or list",
+                                                  [CASE_DIAMETERS] = "word or list",
                                                   [CASE_FACTORS]   = "mapping",
                                                   [CASE_PROBES]    = "mapping",
                                                   [CASE_GAUGES]    = "mapping",

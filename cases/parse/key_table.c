@@ -185,6 +185,10 @@ static const case_key table[] = {
      .stages = CASE_MODAL, .when = CASE_IF_OWN_MODES,
      .help = "that no mode is missing: by a search of what the modes leave out (auto), or by "
              "counting with a second factorisation"},
+    {"modal.nodal_diameters", CASE_DIAMETERS, "", 0, 500, .words = "auto all", .fallback = "auto",
+     AT(diameters), .stages = CASE_MODAL, .when = CASE_IF_OWN_MODES,
+     .help = "of a sector with a disc (groups cyclic_right, cyclic_left): those that the harmonics "
+             "need, 0 to N/2 (stability needs all), or a list"},
     {"modal.integration", CASE_SWITCH, "", .words = "reduced full", .fallback = "reduced",
      AT(full_integration), .stages = CASE_MODAL, .when = CASE_IF_OWN_MODES,
      .help = "points of the stiffness: hexahedra 2x2x2 or 3x3x3, curved tetrahedra 4 or 27"},

@@ -30,6 +30,7 @@ typedef enum {
   CASE_ORDERS,    /* list of whole numbers, ascending: the case_file's mhb.search */
   CASE_POINTS,    /* number of points, or list: the case_file's integrate.frequency */
   CASE_SAVED,     /* one of words, or list of frequencies: the case_file's mhb.save */
+  CASE_DIAMETERS, /* one of words, or list of whole numbers, ascending: the case_file's diameters */
   CASE_FACTORS,   /* {k: [factor, phase]}: fem_load, its factors */
   CASE_PROBES,    /* {name: [x, y, z]}: the case_file's probe */
   CASE_GAUGES,    /* {name: {at: [x, y, z], direction: [x, y, z]}}: the case_file's gauge */

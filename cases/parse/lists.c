@@ -110,12 +110,9 @@ bool case_list_saved(const case_value_context *c, const case_node *node, void *s
   return case_value_numbers(c, c->path, node, node->n, save->frequency);
 }
 
-bool case_list_orders(const case_value_context *c, const case_node *node, void *slot) {
-  mhb_search_settings *search = &c->file->mhb.search;
-  int                 *order  = slot;
-  bool                 good   = list_room(c, node, MHB_MAX_SEARCH_ORDERS);
-  if (!good) return false;
-  search->n_orders = node->n;
+/* Reads whole numbers that increase. */
+static bool read_ascending(const case_value_context *c, const case_node *node, int *value) {
+  bool good = true;
   for (int i = 0; i < node->n && good; i++) {
     const case_node *child = &node->child[i];
     char             path[CASE_PATH];
@@ -123,13 +120,27 @@ bool case_list_orders(const case_value_context *c, const case_node *node, void *
     case_value_context one = *c;
     one.path               = path;
     if (child->kind != CASE_SCALAR) return case_value_refuse_kind(c, path, child, "a whole number");
-    good = case_value_integer(&one, child, &order[i]);
-    if (!good || i == 0 || order[i] > order[i - 1]) continue;
+    good = case_value_integer(&one, child, &value[i]);
+    if (!good || i == 0 || value[i] > value[i - 1]) continue;
     case_issue_add(c->issues, child->line, child->column, path,
-                   "is %d after %d; they must increase", order[i], order[i - 1]);
+                   "is %d after %d; they must increase", value[i], value[i - 1]);
     good = false;
   }
   return good;
+}
+
+bool case_list_orders(const case_value_context *c, const case_node *node, void *slot) {
+  if (!list_room(c, node, MHB_MAX_SEARCH_ORDERS)) return false;
+  c->file->mhb.search.n_orders = node->n;
+  return read_ascending(c, node, slot);
+}
+
+bool case_list_diameters(const case_value_context *c, const case_node *node, void *slot) {
+  case_diameters *diameters = slot;
+  if (!list_room(c, node, CASE_MOST_DIAMETERS)) return false;
+  diameters->what = CASE_DIAMETERS_LISTED;
+  diameters->n    = node->n;
+  return read_ascending(c, node, diameters->list);
 }
 
 /* Reads the number of points over the range of the sweep, or the list of frequencies. */

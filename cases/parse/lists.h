@@ -5,12 +5,13 @@
 #include "cases/parse/value_context.h"
 
 /* The types CASE_PRELOADS, CASE_PLACES, CASE_ORDERS, CASE_POINTS, CASE_FACTORS, CASE_PROBES and
- * CASE_GAUGES of keys.h, and the list of CASE_SAVED. */
+ * CASE_GAUGES of keys.h, and the lists of CASE_SAVED and CASE_DIAMETERS. */
 bool case_list_preloads(const case_value_context *c, const case_node *node, void *slot);
 bool case_list_places(const case_value_context *c, const case_node *node, void *slot);
 bool case_list_orders(const case_value_context *c, const case_node *node, void *slot);
 bool case_list_frequencies(const case_value_context *c, const case_node *node, void *slot);
 bool case_list_saved(const case_value_context *c, const case_node *node, void *slot);
+bool case_list_diameters(const case_value_context *c, const case_node *node, void *slot);
 bool case_list_factors(const case_value_context *c, const case_node *node, void *slot);
 bool case_list_probes(const case_value_context *c, const case_node *node, void *slot);
 bool case_list_gauges(const case_value_context *c, const case_node *node, void *slot);

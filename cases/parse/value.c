@@ -218,6 +218,14 @@ static bool read_stiffness(const case_value_context *c, const case_node *node, v
   return false;
 }
 
+static bool read_diameters(const case_value_context *c, const case_node *node, void *slot) {
+  case_diameters *diameters = slot;
+  if (node->kind == CASE_SEQUENCE) return case_list_diameters(c, node, slot);
+  int index = choose(c, node);
+  if (index >= 0) diameters->what = (case_diameters_kind)index;
+  return index >= 0;
+}
+
 static bool read_damping(const case_value_context *c, const case_node *node, void *slot) {
   return case_damping_read(c->issues, c->path, node, slot);
 }
@@ -259,7 +267,8 @@ bool case_value_read(case_issues *issues, const case_key *key, const char *path,
                                                         [CASE_PLACES]    = case_list_places,
                                                         [CASE_ORDERS]    = case_list_orders,
                                                         [CASE_POINTS]    = case_list_frequencies,
-                                                        [CASE_SAVED]     = read_saved};
+                                                        [CASE_SAVED]     = read_saved,
+                                                        [CASE_DIAMETERS] = read_diameters};
   const case_value_context c = {.issues = issues, .key = key, .path = path, .file = file};
   return readers[key->type](&c, node, slot);
 }

@@ -27,6 +27,7 @@ void case_value_expected(const case_key *key, char *text, size_t size) {
       [CASE_ORDERS]    = "a list of whole numbers",
       [CASE_POINTS]    = "a whole number of points or a list",
       [CASE_SAVED]     = "a list of frequencies or one of",
+      [CASE_DIAMETERS] = "a list of whole numbers or one of",
       [CASE_FACTORS]   = "a mapping {harmonic: [factor, phase]}",
       [CASE_PROBES]    = "a mapping {name: [x, y, z]}",
       [CASE_GAUGES]    = "a mapping {name: {at: [x, y, z], direction: [x, y, z]}}",

@@ -133,6 +133,10 @@ static void print_alternative(const case_key *key, FILE *out) {
       fputs(", ", out);
       print_numbers(key, 1, 0, out);
       break;
+    case CASE_DIAMETERS:
+      fputs(", ", out);
+      print_integers(key, out);
+      break;
     case CASE_DAMPING:
       fputs(", ", out);
       print_mapping("^(loss_factor|rayleigh)$", out);
@@ -158,6 +162,7 @@ static void print_forms(const case_key *key, FILE *out) {
     case CASE_SWITCH:
     case CASE_ACCURACY:
     case CASE_SAVED:
+    case CASE_DIAMETERS:
       print_words_or(key, out);
       break;
     case CASE_WORD:

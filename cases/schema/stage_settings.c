@@ -125,6 +125,15 @@ static void print_scalar(FILE *out, const case_key *key, const case_file *file, 
   }
 }
 
+/* auto depends on the engine order and goes by what the file holds
+ * (cases/commands/nodal_diameters.h). */
+static void print_diameters(FILE *out, const char *path, const case_diameters *diameters) {
+  if (diameters->what == CASE_DIAMETERS_AUTO) return;
+  fprintf(out, "%s =%s", path, diameters->what == CASE_DIAMETERS_ALL ? " all" : "");
+  for (int i = 0; i < diameters->n; i++) fprintf(out, " %d", diameters->list[i]);
+  fputc('\n', out);
+}
+
 /* Prints one value of the file, or of an element whose slots start at base. */
 static void print_value(FILE *out, const case_key *key, const char *path, const case_file *file,
                         const void *base) {
@@ -133,6 +142,8 @@ static void print_value(FILE *out, const case_key *key, const char *path, const 
     print_factors(out, path, slot);
   } else if (key->type == CASE_GROUPS) {
     case_groups_print(out, path, slot);
+  } else if (key->type == CASE_DIAMETERS) {
+    print_diameters(out, path, slot);
   } else if (key->type == CASE_PROBES) {
     print_probes(out, path, file);
   } else if (key->type == CASE_GAUGES) {
