@@ -24,7 +24,7 @@ shb_test(modal/condense load_patterns tests_fem shb_modal)
 shb_test(modal/condense contact_patches tests_fem shb_modal)
 shb_test(modal/condense condense tests_fem shb_modal PkgConfig::LAPACKE)
 shb_test(modal/cyclic wave_modes tests_fem shb_modal)
-foreach(noun rotating materials modal_stress stage vtkhdf)
+foreach(noun rotating materials modal_stress sector stage vtkhdf)
   shb_test(modal/stage ${noun} tests_fem shb_modal)
 endforeach()
 

@@ -1,0 +1,468 @@
+/* The stage of a sector with a disc, file to file, against the explicit ring of all sectors. */
+#include <complex.h>
+#include <math.h>
+#include <petscksp.h>
+
+#include "fem/body/equilibrium.h"
+#include "mesh/base/constants.h"
+#include "mesh/core/cyclic_sides.h"
+#include "modal/common/session.h"
+#include "modal/model/nodal_diameters.h"
+#include "modal/model/residual_series.h"
+#include "modal/stage/stage.h"
+#include "tests/support/box.h"
+#include "tests/support/fem.h"
+#include "tests/support/files.h"
+#include "tests/support/sector.h"
+
+enum { BLADES = 6, MODES = 20 };
+
+static const modal_probe probe[1] = {{"tip", {0.02, -0.03, 0.17}}};
+
+static modal_settings default_settings(void) {
+  return (modal_settings){
+      .material    = steel,
+      .axis        = MESH_AXIS_X,
+      .blades      = BLADES,
+      .modes       = MODES,
+      .damping     = {.ratio = 0.002},
+      .load        = {.kind        = FEM_LOAD_PRESSURE,
+                      .pressure    = 2385,
+                      .n_harmonics = 2,
+                      .factor      = {0.3, 1, -0.2 + 0.5 * I}},
+      .n_probes    = 1,
+      .probe       = probe,
+      .points      = 1,
+      .n_diameters = -1,
+  };
+}
+
+static const shb_provenance provenance = {"case.yaml", "name: case\n", "modal.modes = 20\n",
+                                          "shroudhb-modal"};
+
+/* The sector, the ring of it, and both their systems at rest. */
+typedef struct {
+  mesh_fe               mesh;
+  sector_ring           ring;
+  fem_system            whole;
+  modal_result          result;
+  modal_nodal_diameters models; /* as read from the file */
+} scene;
+
+static void create(scene *s) {
+  modal_settings    settings = default_settings();
+  mesh_cyclic_sides sides;
+  use_elements(MESH_HEX20);
+  s->mesh = make_bladed_sector(BLADES, 1);
+  assert_ok(box_write(&s->mesh, scratch("sector.msh")));
+  assert_ok(modal_stage(PETSC_COMM_WORLD, scratch("sector.msh"), scratch("sector.modal.h5"),
+                        &settings, &provenance, NULL));
+  assert_ok(modal_nodal_diameters_read(scratch("sector.modal.h5"), &s->models));
+  assert_ok(mesh_cyclic_pair(&s->mesh, MESH_AXIS_X, BLADES, &sides));
+  assert_ok(mesh_fe_orient(&s->mesh, MESH_AXIS_X));
+  assert_ok(modal_solve(PETSC_COMM_WORLD, &s->mesh, &settings, NULL, &s->result));
+  s->ring = make_sector_ring(&s->mesh, MESH_AXIS_X, BLADES);
+  assert_int_equal(
+      fem_system_create(PETSC_COMM_SELF, &s->ring.mesh, &steel, FEM_STANDARD, &s->whole), 0);
+}
+
+static void destroy(scene *s) {
+  modal_nodal_diameters_free(&s->models);
+  modal_result_free(&s->result);
+  fem_system_destroy(&s->whole);
+  free_sector_ring(&s->ring);
+  mesh_fe_free(&s->mesh);
+}
+
+/* ------------------------------------------------------------------ the ring, driven directly */
+
+/* Factor of K - omega^2 M of the ring, which is indefinite. */
+static Mat factor_at(const scene *s, double omega) {
+  MatFactorInfo info;
+  Mat           A, factor;
+  assert_int_equal(fem_system_shifted(&s->whole, omega * omega, &A), 0);
+  assert_int_equal(MatSetOption(A, MAT_SPD, PETSC_FALSE), 0);
+  assert_int_equal(MatSetOption(A, MAT_SYMMETRIC, PETSC_TRUE), 0);
+  assert_int_equal(MatGetFactor(A, MATSOLVERMUMPS, MAT_FACTOR_CHOLESKY, &factor), 0);
+  assert_int_equal(MatFactorInfoInitialize(&info), 0);
+  assert_int_equal(MatCholeskyFactorSymbolic(factor, A, NULL, &info), 0);
+  assert_int_equal(MatCholeskyFactorNumeric(factor, A, &info), 0);
+  MatDestroy(&A);
+  return factor;
+}
+
+/* f += factor times the force of dof c on sector b, turned by b sectors. */
+static void add_force(const scene *s, const modal_dofs *dofs, int c, int b, double factor, Vec f) {
+  double *value;
+  assert_int_equal(VecGetArray(f, &value), 0);
+  for (int e = dofs->start[c]; e < dofs->start[c + 1]; e++) {
+    double         turned[3];
+    const PetscInt row = s->whole.row[s->ring.node[b * s->mesh.n_nodes + dofs->node[e]]];
+    mesh_axis_rotate(MESH_AXIS_X, SHB_TWO_PI * b / BLADES, dofs->weight + 3 * e, turned);
+    for (int d = 0; d < 3 && row >= 0; d++) value[3 * row + d] += factor * turned[d];
+  }
+  assert_int_equal(VecRestoreArray(f, &value), 0);
+}
+
+/* Response at the dofs at of sector 0 to the travelling wave sum_c weight[c] dof c.
+ *   wave  in   n, sector b lags by 2 pi n b/N
+ *   out   out  [at->n] */
+static void drive(const scene *s, Mat factor, int wave, const modal_dofs *dofs, int n,
+                  const double complex *weight, const modal_dofs *at, double complex *out) {
+  double *nodal = malloc(3 * (size_t)s->ring.mesh.n_nodes * sizeof *nodal);
+  double *own   = malloc(3 * (size_t)s->mesh.n_nodes * sizeof *own);
+  double *value = malloc(((size_t)at->n + 1) * sizeof *value);
+  Vec     f, x;
+  assert_true(nodal && own && value);
+  assert_int_equal(MatCreateVecs(s->whole.K, &f, &x), 0);
+  memset(out, 0, (size_t)at->n * sizeof *out);
+  for (int imaginary = 0; imaginary < 2; imaginary++) {
+    assert_int_equal(VecZeroEntries(f), 0);
+    for (int b = 0; b < BLADES; b++)
+      for (int c = 0; c < n; c++) {
+        const double complex now = weight[c] * cexp(-I * SHB_TWO_PI * wave * b / BLADES);
+        add_force(s, dofs, c, b, imaginary ? cimag(now) : creal(now), f);
+      }
+    assert_int_equal(MatSolve(factor, f, x), 0);
+    assert_int_equal(fem_system_gather(&s->whole, x, nodal), 0);
+    for (int i = 0; i < s->mesh.n_nodes; i++)
+      memcpy(own + 3 * i, nodal + 3 * s->ring.node[i], 3 * sizeof *own);
+    modal_dofs_sample_nodal(at, own, value);
+    for (int r = 0; r < at->n; r++) out[r] += (imaginary ? I : 1) * value[r];
+  }
+  VecDestroy(&f);
+  VecDestroy(&x);
+  free(nodal), free(own), free(value);
+}
+
+/* ------------------------------------------------------------------ the models of the file */
+
+/* Rows and columns of an array of a wave: real part and imaginary part, or NULL. */
+static double complex at(const modal_wave *w, const double *re, const double *im, size_t i) {
+  return modal_wave_value(w, re, im, i);
+}
+
+/* Shape of mode i at contact dof c. */
+static double complex contact_shape(const modal_wave *w, int c, int i) {
+  const modal_model *m = w->model, *im = w->imaginary;
+  const int          right = 3 * m->n_pairs, row = c < right ? c : c - right;
+  const size_t       k = (size_t)row * (size_t)m->n_modes + (size_t)i;
+  return c < right ? at(w, m->right, im ? im->right : NULL, k)
+                   : at(w, m->left, im ? im->left : NULL, k);
+}
+
+/* Undamped receptance between contact dofs p and l. */
+static double complex receptance(const modal_wave *w, double omega, int p, int l) {
+  const modal_model *m = w->model, *im = w->imaginary;
+  const int          n      = modal_model_contact_dofs(m);
+  const modal_series series = modal_series_at(m, omega);
+  const size_t       k      = (size_t)p * (size_t)n + (size_t)l;
+  double complex     sum    = 0;
+  double             slope;
+  for (int i = 0; i < m->n_modes; i++)
+    sum += contact_shape(w, p, i) * conj(contact_shape(w, l, i)) /
+           (pow(SHB_TWO_PI * m->frequency[i], 2) - omega * omega);
+  sum += series.weight[0] * at(w, m->residual_flexibility, im ? im->residual_flexibility : NULL, k);
+  sum += series.weight[1] * at(w, m->residual_inertia, im ? im->residual_inertia : NULL, k);
+  sum += series.weight[2] * at(w, m->residual_fourth, im ? im->residual_fourth : NULL, k);
+  for (int i = 0; i < m->n_residual; i++) {
+    const double  *re = m->residual_shape, *part = im ? im->residual_shape : NULL;
+    const size_t   r = (size_t)m->n_residual;
+    double complex a = at(w, re, part, (size_t)p * r + (size_t)i);
+    double complex b = at(w, re, part, (size_t)l * r + (size_t)i);
+    sum += modal_series_mode(m, i, &series, &slope) * a * conj(b);
+  }
+  return sum;
+}
+
+/* Response of contact dof p, or with probe that of the probe's axis p, to load harmonic h. */
+static double complex load_response(const modal_wave *w, double omega, int p, int h,
+                                    bool at_probe) {
+  const modal_model    *m = w->model, *im = w->imaginary, *l = w->loads;
+  const modal_series    series = modal_series_at(m, omega);
+  const int             nc = modal_model_contact_dofs(m), q3 = 3 * m->n_probes;
+  const double complex *term[3]   = {l->load_residual, l->load_inertia, l->load_fourth};
+  const double complex *probes[3] = {l->probe_load_residual, l->probe_load_inertia,
+                                     l->probe_load_fourth};
+  double complex        sum       = 0;
+  double                slope;
+  for (int i = 0; i < m->n_modes; i++) {
+    const double complex shape =
+        at_probe ? at(w, m->probe, im ? im->probe : NULL, (size_t)(p * m->n_modes + i))
+                 : contact_shape(w, p, i);
+    sum += shape * l->modal_force[h * m->n_modes + i] /
+           (pow(SHB_TWO_PI * m->frequency[i], 2) - omega * omega);
+  }
+  for (int t = 0; t < 3; t++)
+    sum += series.load_weight[t] * (at_probe ? probes[t][h * q3 + p] : term[t][h * nc + p]);
+  for (int i = 0; i < m->n_residual; i++) {
+    const double  *re   = at_probe ? m->residual_probe : m->residual_shape;
+    const double  *part = !im ? NULL : at_probe ? im->residual_probe : im->residual_shape;
+    double complex psi  = at(w, re, part, (size_t)(p * m->n_residual + i));
+    sum +=
+        modal_series_mode(m, i, &series, &slope) * psi * l->residual_force[h * m->n_residual + i];
+  }
+  return sum;
+}
+
+/* ------------------------------------------------------------------ tests */
+
+/* Every nodal diameter and its backward wave: all contact receptances, and the response of contact
+ * and probe to each load harmonic, up to a third of the last mode. */
+static void receptances_of_the_ring(void **state) {
+  scene *s = *state;
+  /* the series of a probe is one-sided: its order is lower */
+  static const double probe_bound[3] = {1e-9, 1e-8, 1e-5};
+  const double        last           = SHB_TWO_PI * s->models.model[0].frequency[MODES - 1];
+  for (int f = 0; f < 3; f++) {
+    const double omega    = f * last / 6;
+    Mat          factor   = factor_at(s, omega);
+    double       worst[3] = {0}, wrong = 0;
+    for (int wave = 0; wave < BLADES; wave++) {
+      const modal_condensation *to = &s->result.to;
+      const int                 nc = to->contact.n, q3 = to->probe.n;
+      double complex            out[16], force         = 1;
+      modal_wave                w, opposite;
+      int                       missing;
+      double                    most = 0, off = 0, against = 0;
+      assert_true(nc <= 16 && q3 <= 16);
+      assert_true(modal_nodal_diameters_wave(&s->models, wave, &w, &missing));
+      assert_true(modal_nodal_diameters_wave(&s->models, -wave, &opposite, &missing));
+      for (int l = 0; l < nc; l++) {
+        modal_dofs one = {.n         = 1,
+                          .n_entries = to->contact.n_entries,
+                          .start     = to->contact.start + l,
+                          .node      = to->contact.node,
+                          .weight    = to->contact.weight};
+        drive(s, factor, wave, &one, 1, &force, &to->contact, out);
+        for (int p = 0; p < nc; p++) {
+          most    = fmax(most, cabs(out[p]));
+          off     = fmax(off, cabs(out[p] - receptance(&w, omega, p, l)));
+          against = fmax(against, cabs(out[p] - receptance(&opposite, omega, p, l)));
+        }
+      }
+      worst[0] = fmax(worst[0], off / most);
+      if (wave % (BLADES / 2)) wrong = wave == 1 ? against / most : fmin(wrong, against / most);
+      for (int h = 0; h <= to->load.n_harmonics; h++)
+        for (int where = 0; where < 2; where++) {
+          const modal_dofs *there = where ? &to->probe : &to->contact;
+          most = off = 0;
+          drive(s, factor, wave, &to->load.dofs, to->load.dofs.n,
+                to->load.weight + h * to->load.dofs.n, there, out);
+          for (int p = 0; p < there->n; p++) {
+            most = fmax(most, cabs(out[p]));
+            off  = fmax(off, cabs(out[p] - load_response(&w, omega, p, h, where)));
+          }
+          worst[1 + where] = fmax(worst[1 + where], off / most);
+        }
+    }
+    print_message(
+        "%.5g Hz: contact off by %.1e, load at contact %.1e, at probe %.1e; opposite sign "
+        "%.1e\n",
+        omega / SHB_TWO_PI, worst[0], worst[1], worst[2], wrong);
+    for (int i = 0; i < 3; i++) check_below(worst[i], i < 2 ? 1e-9 : probe_bound[f], "receptance");
+    assert_true(wrong > 1e-4);
+    MatDestroy(&factor);
+  }
+}
+
+/* The shapes in the file have unit mass and belong to the sector; the check of completeness and the
+ * contact patches are there, the root has no model. */
+static void content_of_the_file(void **state) {
+  scene *s = *state;
+  hid_t  file;
+  char  *by;
+  assert_ok(h5_open(scratch("sector.modal.h5"), &file));
+  assert_false(h5_exists(file, "/modes"));
+  assert_true(h5_exists(file, "/mesh/sets/cyclic_left"));
+  assert_true(h5_exists(file, "/nodal_diameter_0/contact/nodes"));
+  for (int n = 0; n <= BLADES / 2; n++) {
+    char path[64];
+    snprintf(path, sizeof path, "/nodal_diameter_%d/modes", n);
+    assert_ok(h5_read_attribute_text(file, path, "checked", &by));
+    assert_string_equal(by, n > 0 ? "restart" : "inertia"); /* the mesh is small */
+    free(by);
+    h5_shape        shape = H5_SHAPE(MODES, (hsize_t)s->mesh.n_nodes, 3);
+    double complex *phi;
+    snprintf(path, sizeof path, "/nodal_diameter_%d/modes/shape", n);
+    assert_ok(h5_read_complex(file, path, &shape, &phi));
+    double off = 0, most = 0;
+    for (int i = 0; i < s->mesh.n_nodes; i++) {
+      double re[3], im[3];
+      if (s->mesh.image[i] < 0) continue;
+      const double complex *left = phi + 3 * s->mesh.image[i], *right = phi + 3 * i;
+      const double complex  phase = cexp(-I * SHB_TWO_PI * n / BLADES);
+      for (int d = 0; d < 3; d++) re[d] = creal(phase * left[d]), im[d] = cimag(phase * left[d]);
+      mesh_axis_rotate(MESH_AXIS_X, SHB_TWO_PI / BLADES, re, re);
+      mesh_axis_rotate(MESH_AXIS_X, SHB_TWO_PI / BLADES, im, im);
+      for (int d = 0; d < 3; d++) {
+        off  = fmax(off, cabs(right[d] - CMPLX(re[d], im[d])));
+        most = fmax(most, cabs(right[d]));
+      }
+    }
+    check_below(off, 1e-12 * most, "motion of the sides");
+    free(phi);
+  }
+  assert_ok(h5_close(file));
+}
+
+static int ascending(const void *a, const void *b) {
+  const double p = *(const double *)a, q = *(const double *)b;
+  return (p > q) - (p < q);
+}
+
+/* At speed: the static equilibrium of the sector is that of the ring, and the frequencies about it,
+ * with stress stiffening and spin softening, are those of the ring. */
+static void at_speed(void **state) {
+  scene                *s        = *state;
+  modal_settings        settings = default_settings();
+  modal_nodal_diameters models;
+  const fem_body        body = {
+             &s->ring.mesh, &steel, make_element_tables(FEM_STANDARD), {MESH_AXIS_X, 1500}, 1e6};
+  fem_equilibrium      ring;
+  fem_system           system;
+  modal_eigen_settings wanted = {.modes = 12};
+  modal_eigen          eigen;
+  double               all[BLADES * MODES], off = 0, most = 0, worst = 0, *u;
+  int                  n_all = 0;
+  settings.speed             = 1500;
+  settings.pressure          = 1e6;
+  assert_ok(modal_stage(PETSC_COMM_WORLD, scratch("sector.msh"), scratch("speed.modal.h5"),
+                        &settings, &provenance, NULL));
+  assert_ok(modal_nodal_diameters_read(scratch("speed.modal.h5"), &models));
+  assert_int_equal(fem_system_create(PETSC_COMM_SELF, &s->ring.mesh, &steel, FEM_STANDARD, &system),
+                   0);
+  assert_int_equal(fem_equilibrium_solve(&body, &system, NULL, &ring), 0);
+  assert_int_equal(modal_eigen_solve(&system, &wanted, &eigen), 0);
+  hid_t    file;
+  h5_shape shape = H5_SHAPE((hsize_t)s->mesh.n_nodes, 3);
+  assert_ok(h5_open(scratch("speed.modal.h5"), &file));
+  assert_ok(h5_read_double(file, "/static/displacement", &shape, &u));
+  assert_ok(h5_close(file));
+  for (int i = 0; i < 3 * s->mesh.n_nodes; i++) {
+    const double there = ring.displacement[3 * s->ring.node[i / 3] + i % 3];
+    most               = fmax(most, fabs(there));
+    off                = fmax(off, fabs(u[i] - there));
+  }
+  for (int n = 0; n <= BLADES / 2; n++)
+    for (int i = 0; i < MODES; i++) {
+      all[n_all++] = models.model[n].frequency[i];
+      if (n % (BLADES / 2)) all[n_all++] = models.model[n].frequency[i];
+    }
+  qsort(all, (size_t)n_all, sizeof *all, ascending);
+  for (int i = 0; i < wanted.modes; i++)
+    worst = fmax(worst, fabs(sqrt(eigen.lambda[i]) / SHB_TWO_PI / all[i] - 1));
+  print_message(
+      "at speed: displacement %.3g m off by %.1e, first mode %.6g Hz (at rest %.6g), "
+      "frequencies off by %.1e\n",
+      most, off / most, all[0], s->models.model[BLADES / 2].frequency[0], worst);
+  check_below(off, 1e-9 * most, "displacement");
+  check_below(worst, 1e-9, "frequencies");
+  assert_true(fabs(all[0] / s->models.model[BLADES / 2].frequency[0] - 1) > 1e-3);
+  free(u);
+  free((void *)body.element);
+  modal_eigen_destroy(&eigen);
+  fem_equilibrium_free(&ring);
+  fem_system_destroy(&system);
+  modal_nodal_diameters_free(&models);
+}
+
+/* One thread or several: the same numbers. A list of nodal diameters, with 0 added. */
+static void a_list_of_nodal_diameters(void **state) {
+  scene                *s        = *state;
+  modal_settings        settings = default_settings();
+  const int             list[]   = {2};
+  modal_nodal_diameters models;
+  settings.n_diameters = 1;
+  settings.diameter    = list;
+  assert_ok(modal_stage(PETSC_COMM_WORLD, scratch("sector.msh"), scratch("list.modal.h5"),
+                        &settings, &provenance, NULL));
+  assert_ok(modal_nodal_diameters_read(scratch("list.modal.h5"), &models));
+  assert_int_equal(models.n, 2);
+  assert_int_equal(models.diameter[0], 0);
+  assert_int_equal(models.diameter[1], 2);
+  for (int i = 0; i < MODES; i++)
+    assert_true(models.model[1].frequency[i] == s->models.model[2].frequency[i]);
+  modal_nodal_diameters_free(&models);
+}
+
+static void refused(const modal_settings *settings, const char *mesh, const char *text) {
+  assert_refused(modal_stage(PETSC_COMM_WORLD, scratch(mesh), scratch("refused.modal.h5"), settings,
+                             &provenance, NULL),
+                 SHB_ERR_INPUT, text);
+  assert_int_not_equal(access(scratch("refused.modal.h5"), F_OK), 0);
+}
+
+static void bad_input(void **state) {
+  (void)state;
+  modal_settings settings = default_settings();
+  const int      above[]  = {1, 4};
+  const double   speed[2] = {0, 100};
+  settings.blades         = 7;
+  refused(
+      &settings, "sector.msh",
+      "the cyclic sides are 60 deg apart, a sector of 6 blades; rotor.blades is 7 (51.4286 deg)");
+  settings        = default_settings();
+  settings.blades = 0;
+  refused(&settings, "sector.msh", "rotor.blades: the mesh has cyclic sides");
+  settings             = default_settings();
+  settings.n_diameters = 2;
+  settings.diameter    = above;
+  refused(&settings, "sector.msh", "modal.nodal_diameters: 4 is above N/2 = 3 of 6 blades");
+  settings       = default_settings();
+  settings.modes = 0;
+  refused(&settings, "sector.msh", "modal.modes: auto");
+  settings          = default_settings();
+  settings.n_speeds = 2;
+  settings.speeds   = speed;
+  refused(&settings, "sector.msh", "rotor.speed: a sector with cyclic sides takes one speed");
+  settings       = default_settings();
+  settings.check = MODAL_CHECK_INERTIA;
+  refused(&settings, "sector.msh", "modal.check: inertia");
+}
+
+/* Two blades: both cyclic sides lie half a turn apart, and nodal diameters 0 and 1 are real. */
+static void two_blades(void **state) {
+  (void)state;
+  modal_settings        settings = default_settings();
+  mesh_fe               mesh     = make_bladed_sector(2, 2);
+  modal_nodal_diameters models;
+  settings.blades = 2;
+  assert_ok(box_write(&mesh, scratch("two.msh")));
+  assert_ok(modal_stage(PETSC_COMM_WORLD, scratch("two.msh"), scratch("two.modal.h5"), &settings,
+                        &provenance, NULL));
+  assert_ok(modal_nodal_diameters_read(scratch("two.modal.h5"), &models));
+  assert_int_equal(models.n, 2);
+  assert_null(models.imaginary[1].right);
+  assert_true(models.model[1].frequency[0] > 0);
+  modal_nodal_diameters_free(&models);
+  mesh_fe_free(&mesh);
+}
+
+static int set_up(void **state) {
+  static scene s;
+  if (scratch_make(state)) return 1;
+  create(&s);
+  *state = &s;
+  return 0;
+}
+
+static int tear_down(void **state) {
+  destroy(*state);
+  return scratch_remove(state);
+}
+
+int main(int argc, char **argv) {
+  modal_session           session;
+  const struct CMUnitTest tests[] = {cmocka_unit_test(receptances_of_the_ring),
+                                     cmocka_unit_test(content_of_the_file),
+                                     cmocka_unit_test(at_speed),
+                                     cmocka_unit_test(a_list_of_nodal_diameters),
+                                     cmocka_unit_test(two_blades),
+                                     cmocka_unit_test(bad_input)};
+  if (modal_session_start(&argc, &argv, &session) != SHB_OK) return 1;
+  int failed    = cmocka_run_group_tests(tests, set_up, tear_down);
+  session.fault = false;
+  modal_session_end(&session, SHB_OK);
+  return failed;
+}
