@@ -5,8 +5,8 @@
  * owns the block rows first .. last - 1. It computes every element that touches them, so assembly
  * needs no communication.
  *
- * Of a sector (mesh->image) the nodes of cyclic_right have the block rows of their partners: u_right
- * = turn u_left. This is nodal diameter 0, or N/2 on the mesh of mesh_cyclic_alternating. */
+ * Of a sector (mesh->image) the nodes of cyclic_right have the block rows of their partners:
+ * u_right = turn u_left. At the turn of the mesh this is nodal diameter 0. */
 #ifndef FEM_BODY_ASSEMBLE_H
 #define FEM_BODY_ASSEMBLE_H
 

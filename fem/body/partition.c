@@ -16,6 +16,14 @@ static PetscErrorCode share(MPI_Comm comm, int rank, void **data, size_t count, 
   PetscFunctionReturn(0);
 }
 
+/* The paired sides of a sector. */
+static PetscErrorCode share_sides(MPI_Comm comm, int rank, mesh_fe *mesh) {
+  PetscFunctionBeginUser;
+  PetscCall(share(comm, rank, (void **)&mesh->image, (size_t)mesh->n_nodes, MPI_INT));
+  PetscCallMPI(MPI_Bcast(mesh->turn, 9, MPI_DOUBLE, 0, comm));
+  PetscFunctionReturn(0);
+}
+
 PetscErrorCode fem_mesh_broadcast(MPI_Comm comm, mesh_fe *mesh) {
   enum { HEAD = 6 };
   int rank, n[HEAD + MESH_MAX_SETS];
@@ -52,10 +60,7 @@ PetscErrorCode fem_mesh_broadcast(MPI_Comm comm, mesh_fe *mesh) {
     if (n[HEAD + s] == 0) continue;
     PetscCall(share(comm, rank, (void **)&mesh->set[s].nodes, face * (size_t)n[HEAD + s], MPI_INT));
   }
-  if (n[5]) {
-    PetscCall(share(comm, rank, (void **)&mesh->image, nodes, MPI_INT));
-    PetscCallMPI(MPI_Bcast(mesh->turn, 9, MPI_DOUBLE, 0, comm));
-  }
+  if (n[5]) PetscCall(share_sides(comm, rank, mesh));
   if (n[4] == 0) PetscFunctionReturn(0);
   PetscCall(share(comm, rank, (void **)&mesh->region_name, MESH_WORD * (size_t)n[4], MPI_CHAR));
   PetscCall(share(comm, rank, (void **)&mesh->region, elements, MPI_INT));

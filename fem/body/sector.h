@@ -40,7 +40,8 @@ typedef struct {
 PetscErrorCode fem_sector_create(const fem_body *body, const double *state,
                                  const fem_system *system, fem_sector *sector);
 
-/* e^(-j theta) of nodal diameter n of N blades; n may be negative. Real without rounding at 0 and N/2. */
+/* e^(-j theta) of nodal diameter n of N blades; n may be negative. Real without rounding at 0 and
+ * N/2. */
 double complex fem_sector_phase(int n, int blades);
 
 /* K(theta), [block][9]; phase = e^(-j theta) here and below. */

@@ -6,9 +6,9 @@
 
 /* Eight points give 48 strains; a hexahedron has 54 modes besides its rigid motions. A column of
  * single elements keeps one zero-energy mode an element, clamped or not. Two elements side by side
- * across the column keep none (counted for boxes of up to 3x3x2). Tetrahedra always pass.
- * Errors: SHB_ERR_INPUT if an element has two pairs of opposite faces that are free: neither shared
- * with another element or sector nor clamped. The message gives the number of such elements and one tag. */
+ * across the column keep none (counted for boxes of up to 3x3x2). Tetrahedra always pass. Errors:
+ * SHB_ERR_INPUT if an element has two pairs of opposite faces that are free: neither shared with
+ * another element or sector nor clamped. The message gives their number and one tag. */
 shb_status fem_hourglass_check(const mesh_fe *mesh);
 
 #endif

@@ -119,8 +119,7 @@ static shb_status refuse(const pairing *p) {
   const mesh_fe *mesh  = p->mesh;
   const double   angle = fabs(angle_between(mesh, p->axis, &p->left, &p->right));
   const double   other = SHB_TWO_PI / angle, wanted = SHB_TWO_PI / p->blades;
-  SHB_CHECK(p->orphans < MOST_ORPHANS * p->right.n || fabs(angle - wanted) < 1e-3 * wanted,
-            SHB_ERR_INPUT,
+  SHB_CHECK(p->orphans < MOST_ORPHANS * p->right.n || lround(other) == p->blades, SHB_ERR_INPUT,
             "the cyclic sides are %.6g deg apart, a sector of %.5g blades; rotor.blades is %d "
             "(%.6g deg)",
             angle * 360 / SHB_TWO_PI, other, p->blades, wanted * 360 / SHB_TWO_PI);
@@ -199,7 +198,7 @@ static shb_status pair(pairing *p, mesh_cyclic_sides *out) {
   const place **partner = NULL;
   SHB_TRY(collect(mesh, MESH_CYCLIC_RIGHT, p->axis, 0, &p->right));
   SHB_TRY(collect(mesh, MESH_CYCLIC_LEFT, p->axis, sector, &p->left));
-  partner = malloc(((size_t)p->right.n + 1) * sizeof *partner);
+  partner = malloc(((size_t)p->right.n + 1) * sizeof(place *));
   SHB_CHECK(partner, SHB_ERR_IO, "no memory to pair the cyclic sides");
   match(p, partner, out);
   shb_status status = p->orphans > 0 || p->right.n != p->left.n ? refuse(p) : store(p, partner);

@@ -19,9 +19,10 @@ typedef struct {
 /* Set mesh->image and mesh->turn; nothing where both groups are absent. The groups are swapped if
  * cyclic_right is the side at -2 pi/N.
  *
- * Errors: SHB_ERR_INPUT one group is absent; nodes without a partner (the message gives their
- * number and the distance of the worst); the sides are those of another number of blades; a node on
- * the engine axis; a node that is clamped and its partner not. SHB_ERR_IO no memory. */
+ * Errors: SHB_ERR_INPUT if one group is absent, or the sides are those of another number of blades.
+ * SHB_ERR_INPUT for nodes without a partner; the message gives their number and the worst distance.
+ * SHB_ERR_INPUT for a node on the engine axis, or a clamped node with a free partner. SHB_ERR_IO no
+ * memory. */
 shb_status mesh_cyclic_pair(mesh_fe *mesh, mesh_axis axis, int blades, mesh_cyclic_sides *out);
 
 /* View of the mesh for nodal diameter N/2 (u_right = -T u_left); it owns nothing. */

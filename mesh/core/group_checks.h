@@ -8,8 +8,9 @@
  * overlap.
  *
  * A contact face must not have all its nodes in group root. Another group must not lie in root as a
- * whole. A face must not be both contact_right and contact_left, nor a face of contact or load one of
- * a cyclic side. Faces that meet along an edge are allowed. The message names the groups, the number of faces and the place of the first.
+ * whole. A face must not be both contact_right and contact_left, nor a face of contact or load one
+ * of a cyclic side. Faces that meet along an edge are allowed. The message names the groups, the
+ * number of faces and the place of the first.
  *   name  in  heads the message
  * Errors: SHB_ERR_INPUT; SHB_ERR_IO no memory. */
 shb_status mesh_fe_check_groups(const mesh_fe *mesh, const char *name);

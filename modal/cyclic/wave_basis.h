@@ -27,8 +27,8 @@ typedef struct {
 shb_status wave_basis_create(wave_operator *op, int p, int capacity, wave_basis *b);
 void       wave_basis_free(wave_basis *b); /* also on a zeroed struct */
 
-/* Fill W with complex normally distributed numbers, different for each seed. They are real where the
- * matrices are: then all shapes are real without rounding. */
+/* Fill W with complex normally distributed numbers, different for each seed. They are real where
+ * the matrices are: then all shapes are real without rounding. */
 void wave_basis_randomise(const wave_basis *b, uint64_t seed);
 
 /* W -= Q Q^H M W, with MW = M W on entry to the projection. The coefficients of the last block are

@@ -10,9 +10,8 @@
 #include "modal/model/nodal_diameters.h"
 
 /* Fill model, imaginary and backward of modal/model/nodal_diameters.h, zeroed first, except probe
- * names, interfaces, normals and areas. backward is left zero where the load is real, both where the
- * wave is. Errors:
- * SHB_ERR_IO no memory; SHB_INTERRUPTED. */
+ * names, interfaces, normals and areas. backward is left zero where the load is real, both where
+ * the wave is. Errors: SHB_ERR_IO no memory; SHB_INTERRUPTED. */
 shb_status wave_condense(wave_operator *op, const wave_modes *modes, const modal_condensation *to,
                          modal_model *model, modal_model *imaginary, modal_model *backward);
 

@@ -121,9 +121,8 @@ static shb_status collect(wave_basis *b, wave_modes *out) {
 static shb_status find_residuals(wave_operator *op, wave_modes *out) {
   const size_t    size = (size_t)out->n * out->order;
   double complex *X = malloc(size * sizeof *X), *MX = malloc(size * sizeof *MX);
-  shb_status      status =
-      X && MX ? SHB_OK
-                   : shb_fail(SHB_ERR_IO, __FILE__, __LINE__, "out of memory for the modes of a sector");
+  shb_status      status = SHB_OK;
+  if (!X || !MX) status = shb_fail(SHB_ERR_IO, __FILE__, __LINE__, "out of memory for residuals");
   if (status == SHB_OK) status = wave_operator_solve(op, out->n, out->m_phi, X);
   for (size_t i = 0; status == SHB_OK && i < size; i++)
     X[i] = out->phi[i] - out->lambda[i / out->order] * X[i];

@@ -18,7 +18,8 @@ typedef struct {
   int               columns;
 } wave_operator;
 
-/* Factorise K(theta) of nodal diameter n of N blades; order: of sector->blocks. Errors: SHB_ERR_INPUT not positive definite; SHB_ERR_IO no memory. */
+/* Factorise K(theta) of nodal diameter n of N blades; order: of sector->blocks. Errors:
+ * SHB_ERR_INPUT not positive definite; SHB_ERR_IO no memory. */
 shb_status wave_operator_create(const fem_sector *sector, const fem_hermitian_order *order, int n,
                                 int blades, wave_operator *op);
 

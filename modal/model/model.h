@@ -74,9 +74,8 @@ shb_status modal_model_write_at(hid_t at, const modal_model *model);
 shb_status modal_model_read_at(hid_t at, const char *path, modal_model *model);
 
 /* Both for a travelling wave, whose shapes and residual terms are complex. imaginary holds the
- * imaginary parts of right, left, probe, residual_flexibility, residual_inertia, residual_fourth,
- * residual_shape, residual_probe and probe_contact_...; the rest of it is NULL, its sizes are 0.
- * NULL: real. */
+ * imaginary parts of shapes, residual terms and residual modes at contact and probes. The rest of
+ * it is NULL, its sizes are 0. NULL: real. */
 shb_status modal_model_write_complex_at(hid_t at, const modal_model *model,
                                         const modal_model *imaginary);
 shb_status modal_model_read_complex_at(hid_t at, const char *path, modal_model *model,
@@ -92,9 +91,9 @@ shb_status modal_model_write_backward_at(hid_t at, const modal_model *model,
  * before the call and freed by the caller in any case. */
 shb_status modal_model_read_backward_at(hid_t at, const modal_model *model, modal_model *loads);
 
-/* Read and check a modal file, whatever program wrote it. Of nodal diameters, that of 0. Errors: SHB_ERR_IO missing, not HDF5, or
- * truncated; SHB_ERR_INPUT foreign format, missing dataset, wrong shape, value not finite,
- * frequency not positive or descending, damping outside [0, 1). */
+/* Read and check a modal file, whatever program wrote it; of nodal diameters, that of 0. Errors:
+ * SHB_ERR_IO missing, not HDF5, or truncated; SHB_ERR_INPUT foreign format, missing dataset, wrong
+ * shape, value not finite, frequency not positive or descending, damping outside [0, 1). */
 shb_status modal_model_read(const char *path, modal_model *model);
 
 void modal_model_free(modal_model *model);

@@ -1,7 +1,7 @@
 /* Modal models of a sector of a bladed disc, one a nodal diameter, and their file. Free of PETSc.
  *
- * Of N sectors, the next one at +2 pi/N about the axis lags: u_(b+1) = e^(-j theta) u_b, theta =
- * 2 pi n/N. Shapes and residual terms at nodal diameter n are complex for 0 < n < N/2; the terms
+ * Of N sectors, the next one at +2 pi/N about the axis lags by theta = 2 pi n/N: u_(b+1) = e^(-j
+ * theta) u_b. Shapes and residual terms at nodal diameter n are complex for 0 < n < N/2; the terms
  * are Hermitian. A wave that runs backwards, n' = N - n, has the conjugate shapes and terms. Its
  * response to a load f is the conjugate of that of nodal diameter n to conj(f).
  *

@@ -96,8 +96,8 @@ shb_status modal_label(const modal_settings *settings, const modal_patches *patc
 
 /* Assemble, solve the static equilibrium if the blade rotates, compute the modes, condense. K is
  * then the tangent stiffness at that equilibrium. Contact faces, axes and loads are those of the
- * undeformed mesh. Of a sector with a disc (mesh->image) this is nodal diameter 0. Collective; the mesh is the same on every rank, its sets oriented
- * (mesh_fe_orient).
+ * undeformed mesh. Of a sector with a disc (mesh->image) this is nodal diameter 0. Collective; the
+ * mesh is the same on every rank, its sets oriented (mesh_fe_orient).
  *
  * Errors:
  *

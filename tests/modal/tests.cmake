@@ -49,12 +49,14 @@ if(SHROUDHB_PYTHON)
 endif()
 
 # Against CalculiX; skipped where it is not installed.
-add_executable(test_modal_stage_calculix modal/stage/test_calculix.c)
-target_link_libraries(test_modal_stage_calculix PRIVATE tests_fem shb_modal)
-if(SHROUDHB_CCX)
-  add_test(NAME modal.stage.calculix COMMAND test_modal_stage_calculix ${SHROUDHB_CCX})
-else()
-  add_test(NAME modal.stage.calculix COMMAND test_modal_stage_calculix)
-endif()
-set_tests_properties(modal.stage.calculix PROPERTIES SKIP_RETURN_CODE 77
-  ENVIRONMENT OPENBLAS_NUM_THREADS=1)
+foreach(room stage cyclic)
+  add_executable(test_modal_${room}_calculix modal/${room}/test_calculix.c)
+  target_link_libraries(test_modal_${room}_calculix PRIVATE tests_fem shb_modal)
+  if(SHROUDHB_CCX)
+    add_test(NAME modal.${room}.calculix COMMAND test_modal_${room}_calculix ${SHROUDHB_CCX})
+  else()
+    add_test(NAME modal.${room}.calculix COMMAND test_modal_${room}_calculix)
+  endif()
+  set_tests_properties(modal.${room}.calculix PROPERTIES SKIP_RETURN_CODE 77
+    ENVIRONMENT OPENBLAS_NUM_THREADS=1)
+endforeach()
