@@ -3,6 +3,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "fem/solver/supernodal_hermitian.h"
+
 struct fem_hermitian_order {
   fem_blocks      pattern;
   int            *place; /* [n] index of a block row in the factor */
@@ -13,7 +15,7 @@ struct fem_hermitian_order {
 struct fem_hermitian {
   const fem_hermitian_order *order;
   cholmod_factor            *L;
-  cholmod_dense             *x, *work; /* right-hand sides in the factor's order, of x->ncol */
+  fem_complex_lanes         *x, *work; /* right-hand sides in the factor's order; a supernode */
   cholmod_common             common;
 };
 
@@ -140,41 +142,49 @@ shb_status fem_hermitian_create(const fem_hermitian_order *order, const double c
   return status;
 }
 
-/* Workspace for count right-hand sides, kept between solves. */
-static bool make_room(fem_hermitian *factor, size_t count) {
-  cholmod_common *common = &factor->common;
-  if (factor->x && factor->x->ncol == count) return true;
-  cholmod_free_dense(&factor->x, common);
-  cholmod_free_dense(&factor->work, common);
-  const size_t n = 3 * (size_t)factor->order->pattern.n, rows = factor->L->maxesize;
-  factor->x    = cholmod_allocate_dense(n, count, n, CHOLMOD_COMPLEX, common);
-  factor->work = cholmod_allocate_dense(rows, count, rows, CHOLMOD_COMPLEX, common);
+/* Workspace for four right-hand sides, kept between solves. */
+static bool make_room(fem_hermitian *factor) {
+  const size_t alignment = sizeof(fem_lanes), each = sizeof(fem_complex_lanes);
+  const size_t n = 3 * (size_t)factor->order->pattern.n, rows = fem_supernodal_rows(factor->L);
+  if (factor->x && factor->work) return true;
+  factor->x    = aligned_alloc(alignment, n * each);
+  factor->work = aligned_alloc(alignment, rows * each);
   return factor->x && factor->work;
+}
+
+/* Solve for count <= FEM_LANES columns; unused lanes are zero. */
+static void solve_few(fem_hermitian *factor, size_t count, const double complex *b,
+                      double complex *x) {
+  const size_t n     = (size_t)factor->order->pattern.n;
+  const int   *place = factor->order->place;
+  for (size_t i = 0; i < 3 * n; i++) {
+    fem_complex_lanes *at = factor->x + 3 * (size_t)place[i / 3] + i % 3;
+    for (size_t c = 0; c < FEM_LANES; c++) {
+      at->re[c] = c < count ? creal(b[3 * n * c + i]) : 0;
+      at->im[c] = c < count ? cimag(b[3 * n * c + i]) : 0;
+    }
+  }
+  fem_supernodal_solve_hermitian(factor->L, factor->x, factor->work);
+  for (size_t i = 0; i < 3 * n; i++) {
+    const fem_complex_lanes *at = factor->x + 3 * (size_t)place[i / 3] + i % 3;
+    for (size_t c = 0; c < count; c++) x[3 * n * c + i] = CMPLX(at->re[c], at->im[c]);
+  }
 }
 
 shb_status fem_hermitian_solve(fem_hermitian *factor, int count, const double complex *b,
                                double complex *x) {
-  const size_t n     = (size_t)factor->order->pattern.n;
-  const int   *place = factor->order->place;
-  SHB_CHECK(make_room(factor, (size_t)count), SHB_ERR_IO, "out of memory for %d solutions", count);
-  double complex *own = factor->x->x;
-  for (size_t c = 0; c < (size_t)count; c++)
-    for (size_t i = 0; i < n; i++)
-      memcpy(own + 3 * (c * n + (size_t)place[i]), b + 3 * (c * n + i), 3 * sizeof *x);
-  const bool good = cholmod_super_lsolve(factor->L, factor->x, factor->work, &factor->common) &&
-                    cholmod_super_ltsolve(factor->L, factor->x, factor->work, &factor->common);
-  SHB_CHECK(good, SHB_ERR_IO, "CHOLMOD: no solution");
-  for (size_t c = 0; c < (size_t)count; c++)
-    for (size_t i = 0; i < n; i++)
-      memcpy(x + 3 * (c * n + i), own + 3 * (c * n + (size_t)place[i]), 3 * sizeof *x);
+  const size_t all = (size_t)count, order = 3 * (size_t)factor->order->pattern.n;
+  SHB_CHECK(make_room(factor), SHB_ERR_IO, "out of memory for %d solutions", count);
+  for (size_t c = 0; c < all; c += FEM_LANES)
+    solve_few(factor, all - c < FEM_LANES ? all - c : FEM_LANES, b + c * order, x + c * order);
   return SHB_OK;
 }
 
 void fem_hermitian_free(fem_hermitian *factor) {
   if (!factor) return;
   cholmod_free_factor(&factor->L, &factor->common);
-  cholmod_free_dense(&factor->x, &factor->common);
-  cholmod_free_dense(&factor->work, &factor->common);
   cholmod_finish(&factor->common);
+  free(factor->x);
+  free(factor->work);
   free(factor);
 }
