@@ -3,6 +3,7 @@
 #include <complex.h>
 
 #include "mesh/base/constants.h"
+#include "modal/model/nodal_diameters.h"
 #include "modal/model/reduce.h"
 
 static shb_status read_speeds(const char *path, int modes, bool residuals, case_model *m) {
@@ -41,9 +42,23 @@ static shb_status check_use(const char *path, const modal_model *model) {
   return SHB_OK;
 }
 
+/* A file of nodal diameters has a model for each wave, which the balance does not use yet. */
+static shb_status refuse_disc(const char *path) {
+  modal_nodal_diameters disc;
+  SHB_TRY(modal_nodal_diameters_read(path, &disc));
+  const int n = disc.n;
+  modal_nodal_diameters_free(&disc);
+  SHB_CHECK(n == 0, SHB_ERR_INPUT,
+            "%s: holds modes of a disc at %d nodal diameters, which the balance does not use yet; "
+            "leave out the groups cyclic_right and cyclic_left and clamp the sides or the blade",
+            path, n);
+  return SHB_OK;
+}
+
 shb_status case_model_read(const case_file *file, const char *path, int modes, bool residuals,
                            case_model *m) {
   *m = (case_model){.settings = file->mhb};
+  SHB_TRY(refuse_disc(path));
   if (file->run_up) return read_speeds(path, modes, residuals, m);
   SHB_TRY(modal_model_read(path, &m->model));
   SHB_TRY(check_use(path, &m->model));
