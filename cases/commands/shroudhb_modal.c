@@ -6,13 +6,14 @@
 #include <unistd.h>
 
 #include "cases/commands/command.h"
-#include "cases/commands/nodal_diameters.h"
 #include "cases/commands/subprocess.h"
 #include "cases/commands/up_to_date.h"
 #include "cases/schema/case.h"
 #include "cases/schema/case_paths.h"
+#include "cases/schema/nodal_diameters.h"
 #include "mesh/base/publish.h"
 #include "modal/common/session.h"
+#include "modal/hdf5/h5.h"
 #include "modal/stage/stage.h"
 
 static const char usage[] =
@@ -141,11 +142,35 @@ static modal_settings stage_settings(const case_file *file, modal_probe probe[CA
       .n_contacts       = file->n_interfaces,
       .contact          = contacts,
       .n_groups         = file->source.rules.n_more,
-      .n_diameters      = nodal_diameters(file, diameters),
+      .n_diameters      = case_nodal_diameters(file, diameters),
       .diameter         = diameters,
   };
   for (int i = 0; i < out.n_groups; i++) out.group[i] = file->source.rules.more[i].name;
   return out;
+}
+
+static bool holds(int n, const int *held, int diameter) {
+  for (int i = 0; i < n; i++)
+    if (held[i] == diameter) return true;
+  return false;
+}
+
+/* Does the modal file at path hold the nodal diameters of the case? true also if it is no file of
+ * nodal diameters. */
+static bool holds_diameters(const case_file *file, const char *path) {
+  int   n = 0, *held = NULL, list[CASE_MOST_DIAMETERS];
+  bool  all = true;
+  hid_t at;
+  if (h5_open(path, &at) != SHB_OK) return true;
+  if (h5_exists(at, "/nodal_diameter_0") &&
+      h5_read_attribute_ints(at, "/", "nodal_diameters", &n, &held) == SHB_OK && n > 0) {
+    const int wanted = case_nodal_diameters(file, list);
+    for (int i = 0; i < wanted; i++) all = all && holds(n, held, list[i]);
+    for (int d = 0; wanted < 0 && d <= file->blades / 2; d++) all = all && holds(n, held, d);
+  }
+  free(held);
+  h5_close(at);
+  return all;
 }
 
 /* Rank 0 decides whether the stage must run. *settings is malloc'ed there and NULL elsewhere. */
@@ -157,7 +182,7 @@ static shb_status decide(const case_file *file, bool force, const char *mesh, co
   if (rank == 0) {
     answer[0] = up_to_date_settings(file, CASE_MODAL, mesh, settings);
     answer[1] = answer[0] == SHB_OK && !force && up_to_date_with(output, *settings) &&
-                nodal_diameters_held(file, output);
+                holds_diameters(file, output);
   }
   MPI_Bcast(answer, 2, MPI_INT, 0, PETSC_COMM_WORLD);
   *skip = answer[1];

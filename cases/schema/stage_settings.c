@@ -126,7 +126,7 @@ static void print_scalar(FILE *out, const case_key *key, const case_file *file, 
 }
 
 /* auto depends on the engine order and goes by what the file holds
- * (cases/commands/nodal_diameters.h). */
+ * (cases/schema/nodal_diameters.h). */
 static void print_diameters(FILE *out, const char *path, const case_diameters *diameters) {
   if (diameters->what == CASE_DIAMETERS_AUTO) return;
   fprintf(out, "%s =%s", path, diameters->what == CASE_DIAMETERS_ALL ? " all" : "");

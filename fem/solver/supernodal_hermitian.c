@@ -5,8 +5,8 @@
 
 enum { GROUP = 4 }; /* columns that are processed together */
 
-/* A supernode: columns first .. first + columns - 1, dense from the diagonal down. Numbers are pairs
- * (Re, Im). The diagonal is real. */
+/* A supernode: columns first .. first + columns - 1, dense from the diagonal down. Numbers are
+ * pairs (Re, Im). The diagonal is real. */
 typedef struct {
   int           columns, rows;
   const int    *row;   /* [rows]; the first ones are the columns themselves */

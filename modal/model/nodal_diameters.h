@@ -6,7 +6,7 @@
  * response to a load f is the conjugate of that of nodal diameter n to conj(f).
  *
  * In the file: groups /nodal_diameter_n, root attributes blades and nodal_diameters
- * (docs/user/own_modes.md). Derivation: docs/theory/nodal_diameters.md. */
+ * (docs/user/own_modes.md). Derivation: docs/theory/cyclic_sector.md. */
 #ifndef MODAL_MODEL_NODAL_DIAMETERS_H
 #define MODAL_MODEL_NODAL_DIAMETERS_H
 

@@ -1,5 +1,5 @@
-/* Six modes of a sector with a disc at its nodal diameters, beside CalculiX's cyclic symmetry:
- * processor seconds and peak memory on the same mesh of ten-node tetrahedra, one thread each.
+/* Six modes of a sector with a disc at its nodal diameters, beside CalculiX's cyclic symmetry.
+ * Processor seconds and peak memory are of the same mesh of ten-node tetrahedra, one thread each.
  *
  *   bench_cyclic CCX 7k 31k    rungs, by nodes; CCX: the program ccx, "" if not installed
  *   bench_cyclic CCX --quick   1k: fails if the frequencies differ

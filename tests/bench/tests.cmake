@@ -33,4 +33,5 @@ add_executable(bench_cyclic bench/bench_cyclic.c)
 target_link_libraries(bench_cyclic PRIVATE tests_fem shb_modal m)
 add_test(NAME bench.cyclic COMMAND bench_cyclic "$<$<BOOL:${SHROUDHB_CCX}>:${SHROUDHB_CCX}>"
   --quick)
-set_tests_properties(bench.elements bench.modal bench.cyclic PROPERTIES ENVIRONMENT OPENBLAS_NUM_THREADS=1)
+set_tests_properties(bench.elements bench.modal bench.cyclic PROPERTIES
+  ENVIRONMENT OPENBLAS_NUM_THREADS=1)

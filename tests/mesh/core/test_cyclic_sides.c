@@ -1,4 +1,4 @@
-/* Nodes of the two sides of a sector are paired by the turn to the next blade; sides that do not
+/* Nodes of the two sides of a sector are paired by the turn to the next blade. Sides that do not
  * match are refused with the distance. */
 #include <math.h>
 #include <setjmp.h>

@@ -202,9 +202,9 @@ static void test_format(void **state) {
   modal_model model = sample(false);
   write_model("format.h5", &model);
   hid_t file = edit("format.h5");
-  assert_ok(h5_write_attribute_int(file, "/", "format_version", 3));
+  assert_ok(h5_write_attribute_int(file, "/", "format_version", 4));
   H5Fclose(file);
-  assert_refused(read_only(scratch("format.h5")), SHB_ERR_INPUT, "format_version is 3");
+  assert_refused(read_only(scratch("format.h5")), SHB_ERR_INPUT, "format_version is 4");
   file = edit("format.h5");
   assert_ok(h5_write_attribute_text(file, "/", "format", "shroudhb response"));
   H5Fclose(file);
