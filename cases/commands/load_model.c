@@ -1,8 +1,11 @@
 #include "cases/commands/load_model.h"
 
 #include <complex.h>
+#include <stdlib.h>
+#include <string.h>
 
 #include "mesh/base/constants.h"
+#include "mhb/mistuning/deviations.h"
 #include "modal/model/nodal_diameters.h"
 #include "modal/model/reduce.h"
 
@@ -55,6 +58,43 @@ static shb_status refuse_disc(const char *path) {
   return SHB_OK;
 }
 
+/* value[n][*columns] <- the deviations of the case, to be freed. */
+static shb_status deviations(const case_file *file, int n_modes, int *columns, double **value) {
+  const case_mistuning *m = &file->mistuning;
+  const size_t          N = (size_t)file->mhb.blades;
+  if (m->kind == CASE_MISTUNED_FILE)
+    return mhb_deviations_read(m->file, file->mhb.blades, n_modes, columns, value);
+  *columns   = 1;
+  double *to = *value = malloc(N * sizeof *to);
+  SHB_CHECK(to, SHB_ERR_IO, "out of memory");
+  if (m->kind == CASE_MISTUNED_LIST) {
+    memcpy(to, m->each, N * sizeof *to);
+    return SHB_OK;
+  }
+  return mhb_deviations_random(m->deviation, m->seed, 0, (int)N, to);
+}
+
+/* The model becomes that of the ring. Its stability is not judged, and it is searched for other
+ * motions only where the case says how. */
+static shb_status make_ring(const case_file *file, case_model *m) {
+  double *value     = NULL;
+  int     columns   = 1;
+  m->tuned          = m->model;
+  m->model          = (modal_model){0};
+  shb_status status = deviations(file, m->tuned.n_modes, &columns, &value);
+  if (status == SHB_OK)
+    status = mhb_mistuned_ring_create(&m->tuned, &m->settings, value, columns, &m->ring);
+  free(value);
+  SHB_TRY(status);
+  m->model              = m->ring->whole;
+  m->settings.ring      = m->ring;
+  m->settings.stability = MHB_STABILITY_NEVER;
+  m->settings.lasting   = MHB_LASTING_NEVER;
+  m->settings.flips     = false;
+  if (m->settings.search.starts == MHB_SEARCH_PEAKS) m->settings.search.starts = 0;
+  return SHB_OK;
+}
+
 shb_status case_model_read(const case_file *file, const char *path, int modes, bool residuals,
                            case_model *m) {
   *m = (case_model){.settings = file->mhb};
@@ -62,11 +102,14 @@ shb_status case_model_read(const case_file *file, const char *path, int modes, b
   if (file->run_up) return read_speeds(path, modes, residuals, m);
   SHB_TRY(modal_model_read(path, &m->model));
   SHB_TRY(check_use(path, &m->model));
-  return modes > 0 ? modal_model_reduce(&m->model, modes, residuals) : SHB_OK;
+  if (modes > 0) SHB_TRY(modal_model_reduce(&m->model, modes, residuals));
+  return file->mistuning.kind == CASE_TUNED ? SHB_OK : make_ring(file, m);
 }
 
 void case_model_free(case_model *m) {
-  if (!m->run_up) modal_model_free(&m->model);
+  if (!m->run_up && !m->ring) modal_model_free(&m->model);
+  mhb_mistuned_ring_destroy(m->ring);
+  modal_model_free(&m->tuned);
   mhb_speed_model_destroy(m->top);
   mhb_speed_table_destroy(m->run_up);
   *m = (case_model){0};

@@ -3,13 +3,17 @@
 #define CASES_COMMANDS_LOAD_MODEL_H
 
 #include "cases/parse/case_file.h"
+#include "mhb/mistuning/mistuned_ring.h"
 #include "mhb/structure/speed_model.h"
 
 typedef struct {
-  modal_model      model;    /* in a run-up the one at the upper end of mhb.frequency; owned */
-  mhb_settings     settings; /* of the case, including the run-up */
-  mhb_speed_table *run_up;   /* NULL: one speed */
-  mhb_speed_model *top;      /* owner of the model in a run-up */
+  modal_model  model; /* in a run-up the one at the upper end of mhb.frequency; owned. Of a ring of
+                      * different blades that of the whole ring */
+  mhb_settings settings;     /* of the case, including the run-up and the ring */
+  modal_model  tuned;        /* with a ring: the blade of the file; owned */
+  mhb_mistuned_ring *ring;   /* NULL: equal blades */
+  mhb_speed_table   *run_up; /* NULL: one speed */
+  mhb_speed_model   *top;    /* owner of the model in a run-up */
 } case_model;
 
 /* Read the modal file at path, with all speeds in a run-up.

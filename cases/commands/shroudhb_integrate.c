@@ -13,6 +13,7 @@
 #include "mesh/base/progress.h"
 #include "mesh/base/publish.h"
 #include "mhb/integration/integration_sweep.h"
+#include "mhb/mistuning/dense_ring.h"
 
 static const char usage[] =
     "usage: shroudhb-integrate [--quiet] [--verbose] [--force] [--set KEY=VALUE]... [--into "
@@ -83,6 +84,24 @@ static void warn_of_ring(const case_file *file, const modal_model *model) {
       file->mhb.blades, model->n_modes, file->integrate.max_periods);
 }
 
+/* A ring of different blades is integrated as one model; the file has the wave's numbers. */
+static shb_status integrate(const case_file *file, case_model *model, const mhb_response *balance,
+                            const char *output, const shb_provenance *provenance,
+                            shb_progress *progress, mhb_response **response) {
+  if (!model->ring)
+    return mhb_integration_sweep(&model->model, &model->settings, &file->integrate, balance, output,
+                                 provenance, progress, response);
+  modal_model  dense;
+  mhb_settings settings;
+  shb_status   status = mhb_dense_ring(model->ring, &dense);
+  mhb_dense_ring_settings(&model->settings, &settings);
+  if (status == SHB_OK)
+    status = mhb_integration_sweep(&dense, &settings, &file->integrate, balance, output, provenance,
+                                   progress, response);
+  modal_model_free(&dense);
+  return status;
+}
+
 static shb_status solve(const case_file *file, const char *modal, const mhb_response *balance,
                         char *settings, const char *output, shb_progress *progress) {
   case_model     model;
@@ -91,8 +110,7 @@ static shb_status solve(const case_file *file, const char *modal, const mhb_resp
   shb_status     status     = case_model_read(file, modal, 0, true, &model);
   if (status == SHB_OK && !progress->quiet) warn_of_ring(file, &model.model);
   if (status == SHB_OK)
-    status = mhb_integration_sweep(&model.model, &model.settings, &file->integrate, balance, output,
-                                   &provenance, progress, &response);
+    status = integrate(file, &model, balance, output, &provenance, progress, &response);
   shb_progress_clear(progress);
   if (response && !progress->quiet) summarise(file, response, output);
   shb_progress_note(progress, "%.2f s in all", shb_seconds() - progress->started);

@@ -13,6 +13,7 @@
 #include "cases/schema/case_paths.h"
 #include "mesh/base/progress.h"
 #include "mesh/base/publish.h"
+#include "mhb/amplification/ring_response.h"
 #include "mhb/branches/forced_response.h"
 #include "mhb/tracking/tracked_response.h"
 
@@ -89,6 +90,8 @@ static shb_status solve(const case_file *file, const char *modal, char *settings
   if (status == SHB_OK && model.settings.track != MHB_TRACK_NOTHING)
     status = mhb_tracked_response(&model.model, &model.settings, output, &provenance, progress,
                                   &response);
+  else if (status == SHB_OK && model.ring)
+    status = mhb_ring_response(&model.settings, output, &provenance, progress, &response);
   else if (status == SHB_OK)
     status = mhb_forced_response(&model.model, &model.settings, output, &provenance, progress,
                                  &response);

@@ -12,7 +12,7 @@
 #include "modal/common/completeness.h"
 #include "modal/common/damping.h"
 
-enum { CASE_MAX_PROBES = 32, CASE_MAX_LOADS = 16, CASE_NAME = 64 };
+enum { CASE_MAX_PROBES = 32, CASE_MAX_LOADS = 16, CASE_NAME = 64, CASE_MAX_BLADES = 1000 };
 
 typedef enum {
   CASE_MESH      = 1,
@@ -65,6 +65,23 @@ typedef struct {
   double          endurance, ultimate; /* Pa; 0: not given */
 } case_material;
 
+/* How the blades of a ring differ. */
+typedef enum {
+  CASE_TUNED, /* they do not */
+  CASE_MISTUNED_LIST,
+  CASE_MISTUNED_FILE,
+  CASE_MISTUNED_RANDOM
+} case_mistuning_kind;
+
+typedef struct {
+  case_mistuning_kind kind;
+  int                 n;
+  double              each[CASE_MAX_BLADES]; /* [n] relative frequency deviations */
+  char               *file;                  /* resolved path */
+  double              deviation;             /* standard deviation of random ones */
+  int                 seed;
+} case_mistuning;
+
 typedef struct {
   char *path;   /* as given */
   char *folder; /* of path, "." if none; outputs and relative input files live here */
@@ -86,6 +103,7 @@ typedef struct {
   int             n_materials; /* with materials, instead of material */
   case_material   materials[MESH_MAX_VOLUMES];
   int             blades;
+  case_mistuning  mistuning; /* rotor.mistuning */
   int             n_speeds;
   double          speed[MHB_MAX_PRELOADS]; /* [n_speeds] rad/s, the last that of the response */
   bool            run_up;                  /* the speed follows the frequency */

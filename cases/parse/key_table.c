@@ -152,6 +152,10 @@ static const case_key table[] = {
     {"rotor.blades", CASE_INTEGER, "", 2, 1000, .required = true, .spare = true, AT(blades),
      .stages = CASE_MESH | CASE_MODAL | CASE_MHB, .when = CASE_IF_SECTOR,
      .help = "number of blades; the sector angle is 360 deg / blades"},
+    {"rotor.mistuning", CASE_MISTUNING, "", -0.5, 1, true, AT(mistuning), .stages = CASE_MHB,
+     .when = CASE_IF_MISTUNED,
+     .help = "relative frequency deviations, one a blade; or {file: x.csv}, a line a blade, one "
+             "number or one a mode; or {deviation: 1 %, seed: 7}, normal; the ring is solved"},
     {"rotor.speed", CASE_PRELOADS, "rad/s", 0, 1e5, .fallback = "0 rpm", AT(speed),
      .count_at = offsetof(case_file, n_speeds), .stages = CASE_MODAL, .when = CASE_IF_OWN_MODES,
      .help = "rotation speed: modes about the static equilibrium under the centrifugal load; 0: at "
@@ -485,6 +489,8 @@ bool case_key_applies(const case_key *key, const case_file *file) {
       return file->run_up;
     case CASE_IF_SECTOR:
       return blade || !file->mhb.to_ground;
+    case CASE_IF_MISTUNED:
+      return file->mistuning.kind != CASE_TUNED;
     case CASE_IF_PSI:
       return file->mhb.has_psi && !file->has_interfaces;
     case CASE_IF_PHI:

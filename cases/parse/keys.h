@@ -39,6 +39,8 @@ typedef enum {
   /* list of mappings, whose keys are rows "LIST[].KEY"; elements of size each, counted at
    * count_at */
   CASE_LIST,
+  /* list of deviations, {file: }, or {deviation: , seed: }: the case_file's mistuning */
+  CASE_MISTUNING,
   CASE_SIGNAL, /* [[amplitude, phase], ...] from harmonic 0; read by schema/motion.c */
   CASE_N_TYPES
 } case_type;
@@ -62,6 +64,7 @@ typedef enum {
   CASE_IF_ORDER,      /* contact.to: neighbour, or mhb.run_up: yes */
   CASE_IF_RUN_UP,     /* mhb.run_up: yes */
   CASE_IF_SECTOR,     /* neighbour or parametric blade */
+  CASE_IF_MISTUNED,   /* rotor.mistuning given */
   CASE_IF_PSI,        /* psi given */
   CASE_IF_PHI,        /* phi given */
   CASE_IF_PRESSURE,   /* excitation by pressure, without modal.file; the next ones likewise */

@@ -304,3 +304,54 @@ bool case_list_gauges(const case_value_context *c, const case_node *node, void *
   c->file->n_gauges = node->n;
   return good;
 }
+
+static bool mistuning_list(const case_value_context *c, const case_node *node, case_mistuning *m) {
+  if (node->n < 1 || node->n > CASE_MAX_BLADES) {
+    case_issue_add(c->issues, node->line, node->column, c->path,
+                   "has %d deviations; expected one a blade, at most %d", node->n, CASE_MAX_BLADES);
+    return false;
+  }
+  m->kind = CASE_MISTUNED_LIST;
+  m->n    = node->n;
+  return case_value_numbers(c, c->path, node, node->n, m->each);
+}
+
+/* {deviation: , seed: } */
+bool case_list_mistuning(const case_value_context *c, const case_node *node, void *slot) {
+  static const char expected[] = "missing; expected {deviation: 1 %, seed: 7}";
+  case_mistuning   *m          = slot;
+  if (node->kind == CASE_SEQUENCE) return mistuning_list(c, node, m);
+  if (node->kind != CASE_MAPPING) return case_value_refuse(c, node);
+  const case_node *deviation = case_node_find(node, "deviation"),
+                  *seed      = case_node_find(node, "seed");
+  char path[CASE_PATH], why[CASE_WHY];
+  for (int i = 0; i < node->n; i++) {
+    const case_node *child = &node->child[i];
+    if (child == deviation || child == seed) continue;
+    case_path(path, "%s.%s", c->path, child->key);
+    case_issue_add(c->issues, child->key_line, child->key_column, path,
+                   "unknown key; give a list, {file: NAME} or {deviation: 1 %%, seed: 7}");
+    return false;
+  }
+  if (!deviation || !seed) {
+    case_path(path, "%s.%s", c->path, deviation ? "seed" : "deviation");
+    case_issue_add(c->issues, node->line, node->column, path, "%s", expected);
+    return false;
+  }
+  case_key           range = *c->key;
+  case_value_context own   = *c;
+  range.least              = 0;
+  range.most               = 0.1;
+  range.above              = false;
+  own.key                  = &range;
+  case_path(path, "%s.deviation", c->path);
+  if (!case_value_number(&own, path, deviation, &m->deviation)) return false;
+  case_path(path, "%s.seed", c->path);
+  if (seed->kind != CASE_SCALAR) return case_value_refuse_kind(c, path, seed, "a whole number");
+  if (!case_integer(seed->text, &m->seed, why)) {
+    case_issue_add(c->issues, seed->line, seed->column, path, "%s", why);
+    return false;
+  }
+  m->kind = CASE_MISTUNED_RANDOM;
+  return true;
+}

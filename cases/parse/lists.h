@@ -14,6 +14,8 @@ bool case_list_saved(const case_value_context *c, const case_node *node, void *s
 bool case_list_diameters(const case_value_context *c, const case_node *node, void *slot);
 bool case_list_factors(const case_value_context *c, const case_node *node, void *slot);
 bool case_list_probes(const case_value_context *c, const case_node *node, void *slot);
+/* rotor.mistuning but for {file: }. */
+bool case_list_mistuning(const case_value_context *c, const case_node *node, void *slot);
 bool case_list_gauges(const case_value_context *c, const case_node *node, void *slot);
 
 #endif

@@ -141,6 +141,24 @@ static bool read_file_name(const case_value_context *c, const case_node *node, v
   return keep_text(c, node, slot, path);
 }
 
+/* List, {file: } or {deviation: , seed: }. */
+static bool read_mistuning(const case_value_context *c, const case_node *node, void *slot) {
+  case_mistuning  *m    = slot;
+  const case_node *file = node->kind == CASE_MAPPING ? case_node_find(node, "file") : NULL;
+  char             path[CASE_PATH];
+  if (!file) return case_list_mistuning(c, node, slot);
+  if (node->n > 1) {
+    case_issue_add(c->issues, node->line, node->column, c->path,
+                   "has %d keys; {file: NAME} goes with no other", node->n);
+    return false;
+  }
+  case_value_context own = *c;
+  case_path(path, "%s.file", c->path);
+  own.path = path;
+  m->kind  = CASE_MISTUNED_FILE;
+  return read_file_name(&own, file, &m->file);
+}
+
 static bool read_vector(const case_value_context *c, const case_node *node, void *slot) {
   return case_value_numbers(c, c->path, node, 3, slot);
 }
@@ -260,6 +278,7 @@ bool case_value_read(case_issues *issues, const case_key *key, const char *path,
                                                         [CASE_FACTORS]   = case_list_factors,
                                                         [CASE_PROBES]    = case_list_probes,
                                                         [CASE_GAUGES]    = case_list_gauges,
+                                                        [CASE_MISTUNING] = read_mistuning,
                                                         [CASE_DAMPING]   = read_damping,
                                                         [CASE_GROUPS]    = read_groups,
                                                         [CASE_SIGNAL]    = read_signal,

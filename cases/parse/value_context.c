@@ -31,6 +31,7 @@ void case_value_expected(const case_key *key, char *text, size_t size) {
       [CASE_FACTORS]   = "a mapping {harmonic: [factor, phase]}",
       [CASE_PROBES]    = "a mapping {name: [x, y, z]}",
       [CASE_GAUGES]    = "a mapping {name: {at: [x, y, z], direction: [x, y, z]}}",
+      [CASE_MISTUNING] = "a list, {file: NAME} or {deviation: 1 %, seed: 7}",
       [CASE_DAMPING]   = "a number, a list, {loss_factor: ...} or {rayleigh: [alpha, beta]}",
       [CASE_GROUPS]    = "a mapping {group: rule}",
       [CASE_LIST]      = "a list of mappings",

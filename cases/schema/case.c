@@ -163,6 +163,7 @@ void case_free(case_file *file) {
   free(file->mesh_file);
   free(file->modal_file);
   free(file->field_file);
+  free(file->mistuning.file);
   for (int i = 0; i < CASE_MAX_LOADS; i++) free(file->loads[i].field);
   free(file->converge_output);
   *file = (case_file){0};

@@ -288,6 +288,28 @@ static void check_extension(case_reader *r) {
   free(own);
 }
 
+/* A ring of different blades is one operating range of one wave: what it does not go with. */
+static void check_mistuning(case_reader *r, int stages) {
+  static const char     path[] = "rotor.mistuning";
+  const case_file      *file   = r->file;
+  const case_mistuning *m      = &file->mistuning;
+  if (m->kind == CASE_TUNED || !case_reader_good(r, path)) return;
+  if (file->mhb.to_ground)
+    case_reader_issue(r, path, "needs contact.to: neighbour; blades do not meet");
+  if (m->kind == CASE_MISTUNED_LIST && case_reader_good(r, "rotor.blades") &&
+      case_reader_given(r, "rotor.blades") && m->n != file->blades)
+    case_reader_issue(r, path, "has %d deviations, must have %d, one a blade (rotor.blades)", m->n,
+                      file->blades);
+  if (stages & CASE_CONVERGE) case_reader_issue(r, path, "does not go with shroudhb converge");
+  if (file->run_up) case_reader_issue(r, path, "does not go with mhb.run_up");
+  if (file->mhb.track != MHB_TRACK_NOTHING)
+    case_reader_issue(r, path, "does not go with mhb.track");
+  if (case_reader_given(r, "mhb.stability") && file->mhb.stability != MHB_STABILITY_NEVER)
+    case_reader_issue(
+        r, "mhb.stability",
+        "is not judged for rings of different blades (rotor.mistuning); leave it out");
+}
+
 bool case_check_values(case_reader *r, int stages) {
   case_file *file = r->file;
   bool       own = !file->modal_file, lost = false;
@@ -304,6 +326,7 @@ bool case_check_values(case_reader *r, int stages) {
   check_band(r);
   if (stages & CASE_MHB) check_followed(r);
   if (stages & CASE_MHB) check_run_up(r);
+  if (stages & CASE_MHB) check_mistuning(r, stages);
   case_check_interfaces(r, stages);
   check_places(r, "mhb.search.at", file->mhb.search.n_at, file->mhb.search.at,
                "without it places are chosen");
@@ -317,5 +340,7 @@ bool case_check_values(case_reader *r, int stages) {
   for (int i = 0; i < file->n_loads && own && stages & CASE_MODAL && !lost; i++)
     lost = check_file(r, "excitation.loads", file->loads[i].field);
   if (!own && stages & CASE_MHB) lost = check_file(r, "modal.file", file->modal_file);
+  if (stages & CASE_MHB && !lost && file->mistuning.file)
+    lost = check_file(r, "rotor.mistuning", file->mistuning.file);
   return lost;
 }

@@ -137,6 +137,10 @@ static void print_alternative(const case_key *key, FILE *out) {
       fputs(", ", out);
       print_integers(key, out);
       break;
+    case CASE_MISTUNING:
+      fputs(", ", out);
+      print_mapping("^(file|deviation|seed)$", out);
+      break;
     case CASE_DAMPING:
       fputs(", ", out);
       print_mapping("^(loss_factor|rayleigh)$", out);
@@ -176,6 +180,9 @@ static void print_forms(const case_key *key, FILE *out) {
       break;
     case CASE_SWEEP:
       print_number_or_numbers(key, 2, 2, out);
+      break;
+    case CASE_MISTUNING:
+      print_numbers(key, 1, 0, out);
       break;
     case CASE_PRELOADS:
     case CASE_DAMPING:

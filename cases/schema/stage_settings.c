@@ -62,6 +62,17 @@ static void print_saved(FILE *out, const case_key *key, const mhb_save_settings 
     print_word(out, key->words, (int)save->what);
 }
 
+/* Of a file its content counts, not its name. */
+static void print_mistuning(FILE *out, const case_file *file, const case_mistuning *m) {
+  char fingerprint[17] = "-";
+  if (m->kind == CASE_MISTUNED_LIST) print_numbers(out, m->n, m->each);
+  if (m->kind == CASE_MISTUNED_RANDOM)
+    fprintf(out, "deviation %.17g seed %d", m->deviation, m->seed);
+  if (m->kind != CASE_MISTUNED_FILE) return;
+  if (shb_fingerprint(m->file, fingerprint) != SHB_OK) strcpy(fingerprint, "-");
+  fprintf(out, "file %s %s", inside(file, m->file), fingerprint);
+}
+
 static void print_scalar(FILE *out, const case_key *key, const case_file *file, const void *slot) {
   switch (key->type) {
     case CASE_INTEGER:
@@ -105,6 +116,9 @@ static void print_scalar(FILE *out, const case_key *key, const case_file *file, 
       break;
     case CASE_SAVED:
       print_saved(out, key, slot);
+      break;
+    case CASE_MISTUNING:
+      print_mistuning(out, file, slot);
       break;
     case CASE_INTERVAL:
     case CASE_SWEEP:

@@ -7,8 +7,10 @@
 #include <string.h>
 
 #include "mesh/base/constants.h"
+#include "mhb/balance/ring_limit.h"
 #include "mhb/numerics/fourier.h"
 #include "mhb/numerics/simd.h"
+#include "mhb/structure/ring_receptance.h"
 
 /* Fewer pairs than this are not worth a team of threads. */
 enum { WORTH_THREADS = 24 };
@@ -23,6 +25,18 @@ static shb_status create_contacts(mhb_balance *b) {
     SHB_TRY(mhb_contact_evaluator_create(b->m, b->m, b->settings->tolerance, &b->contacts[i]));
   b->contact = b->contacts[0];
   return SHB_OK;
+}
+
+/* Each contact of a ring is evaluated in the time of its own blade. So the tuned wave has the same
+ * numbers in all of them, whatever the tolerance of the law. */
+static void set_lags(mhb_balance *b) {
+  const int    N     = b->receptance->ring->blades;
+  const double shift = mhb_wave_shift(b->settings) > 0 ? mhb_wave_shift(b->settings) : 0;
+  const double step  = SHB_TWO_PI / b->receptance->nu *
+                      ((double)b->settings->engine_order / b->settings->blades + shift);
+  for (int i = 0; i < N; i++)
+    for (int k = 0; k <= b->m; k++)
+      b->lag[i * (b->m + 1) + k] = cexp(-I * fmod(fmod(i * step, SHB_TWO_PI) * k, SHB_TWO_PI));
 }
 
 /* The laws of the pairs at the interfaces' operating points. */
@@ -58,7 +72,7 @@ shb_status mhb_balance_product(const mhb_balance *b, mhb_receptance *receptance,
 }
 
 static shb_status create_product(mhb_balance *b) {
-  if (b->n_pairs < MHB_MANY_PAIRS || b->receptance->at) return SHB_OK;
+  if (b->n_pairs < MHB_MANY_PAIRS || b->receptance->at || b->receptance->ring) return SHB_OK;
   return mhb_balance_product(b, b->receptance, 0, b->m, &b->product);
 }
 
@@ -78,18 +92,23 @@ shb_status mhb_balance_create_on(mhb_receptance *receptance, const mhb_settings 
                                  mhb_balance **out) {
   mhb_balance *b = calloc(1, sizeof *b);
   SHB_CHECK(b, SHB_ERR_IO, "out of memory");
-  int m             = settings->harmonics;
-  b->settings       = settings;
-  b->receptance     = receptance;
-  b->m              = m;
-  b->n_pairs        = receptance->model->n_pairs;
-  b->n_interfaces   = mhb_interfaces(settings);
-  b->nb             = mhb_real_size(m);
-  b->n              = 3 * b->n_pairs * b->nb;
-  size_t pairs      = (size_t)b->n_pairs;
-  b->law            = shb_arena_take(&b->arena, pairs, sizeof *b->law);
-  b->force_k        = shb_arena_take(&b->arena, 3 * pairs, sizeof(double complex));
-  b->motion_k       = shb_arena_take(&b->arena, 3 * pairs, sizeof(double complex));
+  int m           = settings->harmonics;
+  b->settings     = settings;
+  b->receptance   = receptance;
+  b->m            = m;
+  b->n_pairs      = receptance->model->n_pairs;
+  b->n_interfaces = mhb_interfaces(settings);
+  b->nb           = mhb_real_size(m);
+  b->n            = 3 * b->n_pairs * b->nb;
+  size_t pairs    = (size_t)b->n_pairs;
+  b->law          = shb_arena_take(&b->arena, pairs, sizeof *b->law);
+  b->force_k      = shb_arena_take(&b->arena, 3 * pairs, sizeof(double complex));
+  b->motion_k     = shb_arena_take(&b->arena, 3 * pairs, sizeof(double complex));
+  if (receptance->ring) {
+    b->response_k = shb_arena_take(&b->arena, 3 * pairs, sizeof(double complex));
+    b->lag        = shb_arena_take(&b->arena, pairs * ((size_t)m + 1), sizeof(double complex));
+    if (b->lag) set_lags(b);
+  }
   shb_status status = SHB_OK;
   if (b->arena.failed) status = shb_fail(SHB_ERR_IO, __FILE__, __LINE__, "out of memory");
   if (status == SHB_OK) status = mhb_evaluation_create(b, &b->default_evaluation);
@@ -255,6 +274,16 @@ void mhb_balance_row_times_dp(const mhb_balance *b, const double complex R[3], i
              creal(R[2]) * d[2 * stride + (size_t)j];
 }
 
+/* out[3] <- row of R_k, columns of a pair. */
+static void receptance_row(const mhb_balance *b, int k, int row, int pair, double complex out[3]) {
+  const mhb_receptance *r  = b->receptance;
+  const size_t          n3 = (size_t)r->n;
+  if (r->ring)
+    mhb_ring_receptance_row(r->ring, k, row, pair, out);
+  else
+    memcpy(out, r->R + ((size_t)k * n3 + (size_t)row) * n3 + 3 * pair, 3 * sizeof *out);
+}
+
 /* Columns of one pair in the Jacobian I + R dp. */
 static void assemble_columns(const mhb_balance *b, int pair, double *jacobian) {
   int    block = 3 * b->nb, n3 = 3 * b->n_pairs;
@@ -262,9 +291,9 @@ static void assemble_columns(const mhb_balance *b, int pair, double *jacobian) {
   double re[block], im[block];
   for (int row = 0; row < n3; row++)
     for (int k = 0; k <= b->m; k++) {
+      double complex R[3];
       mhb_receptance_update(b->receptance, k);
-      const double complex *R =
-          b->receptance->R + ((size_t)k * (size_t)n3 + (size_t)row) * (size_t)n3 + 3 * pair;
+      receptance_row(b, k, row, pair, R);
       double *J = jacobian + first * n + row * b->nb + (k ? 2 * k - 1 : 0);
       memset(re, 0, sizeof re);
       memset(im, 0, sizeof im);
@@ -305,25 +334,68 @@ static void set_linear_derivative(const mhb_balance *b, int a) {
   }
 }
 
+/* n rows in real form times lag or its conjugate, harmonic by harmonic. stride: between the numbers
+ * of a row; next: between rows. */
+static void turn(const mhb_balance *b, const double complex *lag, double sign, int n, size_t stride,
+                 size_t next, double *x) {
+  for (int i = 0; i < n; i++, x += next)
+    for (int k = 1; k <= b->m; k++) {
+      double      *re = x + (size_t)(2 * k - 1) * stride, *im = re + stride;
+      const double c = creal(lag[k]), s = sign * cimag(lag[k]), old = *re;
+      *re = c * old - s * *im;
+      *im = s * old + c * *im;
+    }
+}
+
+/* Of a pair of blade 0, and of a blade alone: 1. */
+static const double complex *lag_of(const mhb_balance *b, int a) {
+  const int blade = b->lag ? 3 * a / b->receptance->ring->n : 0;
+  return blade > 0 ? b->lag + blade * (b->m + 1) : NULL;
+}
+
+/* mhb_contact_force in the time of the pair's blade. dp turns on both sides. */
+static void force_of_pair(mhb_balance *b, mhb_contact_evaluator *contact, const double *x, int a,
+                          double *dp) {
+  const size_t          nb = (size_t)b->nb, block = 3 * nb;
+  const double complex *lag = lag_of(b, a);
+  double               *p   = b->eval->p + (size_t)a * block, own[block];
+  memcpy(own, x + (size_t)a * block, sizeof own);
+  if (lag) turn(b, lag, -1, 3, 1, nb, own);
+  mhb_contact_force(contact, &b->law[a], own, p, dp, &b->eval->info[a]);
+  if (!lag) return;
+  turn(b, lag, 1, 3, 1, nb, p);
+  if (!dp) return;
+  turn(b, lag, 1, 3 * (int)block, 1, nb, dp); /* columns: every row has three axes */
+  for (size_t axis = 0; axis < 3; axis++)
+    turn(b, lag, 1, (int)block, block, 1, dp + axis * nb * block);
+}
+
+/* Rows of dp that are the mean friction of a pair at its limit. */
+static void set_mean_gradient(mhb_balance *b, mhb_contact_evaluator *contact, int a) {
+  const double complex *lag    = lag_of(b, a);
+  double *const         row[2] = {mhb_balance_mean_friction_row(b, a, 1),
+                                  mhb_balance_mean_friction_row(b, a, 2)};
+  mhb_contact_mean_gradient(contact, row);
+  for (int i = 0; lag && i < 2; i++) turn(b, lag, 1, 3, 1, (size_t)b->nb, row[i]);
+}
+
 /* A pair that was stuck or open is evaluated without derivative first: it mostly still is. */
 static void evaluate_pair(mhb_balance *b, mhb_contact_evaluator *contact, const double *x, int a,
                           int derivative) {
   size_t  block = 3 * (size_t)b->nb, at = (size_t)a * block;
   double *dp = b->eval->dp + at * block;
   if (!derivative || b->eval->kind[a] != MHB_PAIR_NONLINEAR) {
-    mhb_contact_force(contact, &b->law[a], x + at, b->eval->p + at, NULL, &b->eval->info[a]);
+    force_of_pair(b, contact, x, a, NULL);
     if (!derivative) return;
     b->eval->kind[a] = kind_of(b, a);
   }
   if (b->eval->kind[a] == MHB_PAIR_NONLINEAR) {
-    mhb_contact_force(contact, &b->law[a], x + at, b->eval->p + at, dp, &b->eval->info[a]);
+    force_of_pair(b, contact, x, a, dp);
     b->eval->linear_dp[a] = -1;
     b->eval->kind[a]      = kind_of(b, a);
   }
   if (b->eval->kind[a] != MHB_PAIR_NONLINEAR) set_linear_derivative(b, a);
-  if (b->eval->kind[a] == MHB_PAIR_AT_LIMIT)
-    mhb_contact_mean_gradient(contact, (double *const[2]){mhb_balance_mean_friction_row(b, a, 1),
-                                                          mhb_balance_mean_friction_row(b, a, 2)});
+  if (b->eval->kind[a] == MHB_PAIR_AT_LIMIT) set_mean_gradient(b, contact, a);
 }
 
 static void evaluate_pairs(mhb_balance *b, const double *x, int derivative) {
@@ -358,6 +430,19 @@ static void subtract_response(const mhb_balance *b, int k) {
   }
 }
 
+/* The same of a ring. Its blocks are made where the Jacobian needs them. */
+static void subtract_ring_response(const mhb_balance *b, int k, int derivative) {
+  const int n = 3 * b->n_pairs;
+  if (derivative) {
+    mhb_receptance_update(b->receptance, k);
+    for (int i = 0; i < n; i++) b->motion_k[i] -= b->receptance->free[k * n + i];
+    mhb_receptance_product_of(b->receptance, k, b->force_k, b->motion_k);
+    return;
+  }
+  mhb_receptance_motion(b->receptance, k, b->force_k, b->response_k);
+  for (int i = 0; i < n; i++) b->motion_k[i] -= b->response_k[i];
+}
+
 /* Harmonic k of r does not depend on the parameter. force_k: its change by the parameter. */
 static int is_independent(const mhb_balance *b, int k, int unloaded) {
   if (b->parameter == MHB_IN_FREQUENCY) return unloaded;
@@ -378,12 +463,9 @@ static void set_slope(mhb_balance *b, int k, int unloaded) {
     for (int i = 0; i < n3; i++) b->motion_k[i] = -b->motion_k[i];
     return;
   }
-  const double complex *R    = b->receptance->R + (size_t)k * (size_t)n3 * (size_t)n3;
   const double complex *unit = b->receptance->free_response_unit + k * n3;
-  for (int i = 0; i < n3; i++, R += n3) {
-    if (b->parameter == MHB_IN_SCALE) b->motion_k[i] = -unit[i];
-    for (int j = 0; j < n3; j++) b->motion_k[i] += R[j] * b->force_k[j];
-  }
+  for (int i = 0; i < n3 && b->parameter == MHB_IN_SCALE; i++) b->motion_k[i] = -unit[i];
+  mhb_receptance_product_of(b->receptance, k, b->force_k, b->motion_k);
 }
 
 /* dp/dparameter of all pairs; the rate is that of the interface's own parameter. */
@@ -448,7 +530,8 @@ static void evaluate(mhb_balance *b, const double *x, double value, int derivati
     get_harmonic(b, b->eval->p, k, b->force_k);
     get_harmonic(b, x, k, b->motion_k);
     int unloaded = is_unloaded(b, k);
-    if (!unloaded) {
+    if (!unloaded && b->receptance->ring) subtract_ring_response(b, k, derivative);
+    if (!unloaded && !b->receptance->ring) {
       mhb_receptance_update(b->receptance, k);
       subtract_response(b, k);
     }
@@ -493,30 +576,25 @@ static double own_preload(const mhb_law *law) {
 }
 
 /* u_0 -= R_0 s0 of the stuck pairs. */
-static void subtract_preload(const mhb_balance *b, const mhb_pair_kind *kind,
-                             const double complex *R, double complex *u) {
-  const int n = 3 * b->n_pairs;
-  for (int i = 0; i < n; i++, R += n)
-    for (int a = 0; a < b->n_pairs; a++)
-      if (kind[a] == MHB_PAIR_STUCK) u[i] -= R[3 * a] * own_preload(&b->law[a]);
+static void subtract_preload(const mhb_balance *b, int stuck, double complex *u) {
+  memset(b->force_k, 0, sizeof *b->force_k * 3 * (size_t)b->n_pairs);
+  for (int a = 0; a < b->n_pairs; a++)
+    if (is_stuck(b, a, stuck)) b->force_k[3 * a] = -own_preload(&b->law[a]);
+  mhb_receptance_product_of(b->receptance, 0, b->force_k, u);
 }
 
-/* Stuck: (I + R_k S) u_k = free_k - R_k s0, with s0 at k = 0 only. The mean friction is zero, the
- * smallest admissible one (contact/static_friction.h). */
-static shb_status linear_harmonic(const mhb_balance *b, int k, int stuck, double complex *u) {
-  int                   n = 3 * b->n_pairs;
-  const double complex *R = b->receptance->R + (size_t)k * (size_t)n * (size_t)n;
-  memcpy(u, b->receptance->free + k * n, sizeof(double complex) * (size_t)n);
-  if (!stuck) return SHB_OK;
+/* u <- (I + R_k S)^-1 u */
+static shb_status solve_stuck(const mhb_balance *b, int k, int stuck, double complex *u) {
+  const int              n    = 3 * b->n_pairs;
   lapack_complex_double *A    = calloc((size_t)n * (size_t)n, sizeof *A);
   lapack_int            *ipiv = calloc((size_t)n, sizeof *ipiv);
   lapack_int             bad  = 1;
   mhb_pair_kind          kind[b->n_pairs];
   for (int a = 0; a < b->n_pairs; a++)
     kind[a] = is_stuck(b, a, stuck) ? MHB_PAIR_STUCK : MHB_PAIR_OPEN;
-  if (k == 0) subtract_preload(b, kind, R, u);
   if (A && ipiv) {
-    mhb_stick_matrix(b->n_pairs, b->law, kind, k, R, A);
+    mhb_stick_matrix(b->n_pairs, b->law, kind, k,
+                     b->receptance->R + (size_t)k * (size_t)n * (size_t)n, A);
     bad = LAPACKE_zgesv(LAPACK_COL_MAJOR, n, 1, A, n, ipiv, u, n);
   }
   free(A);
@@ -525,10 +603,30 @@ static shb_status linear_harmonic(const mhb_balance *b, int k, int stuck, double
   return SHB_OK;
 }
 
+/* The same of a ring. */
+static shb_status solve_stuck_ring(const mhb_balance *b, int k, int stuck, double complex *u) {
+  bool by_pair[b->n_pairs], moves = false;
+  for (int a = 0; a < b->n_pairs; a++) by_pair[a] = is_stuck(b, a, stuck);
+  for (int i = 0; i < 3 * b->n_pairs; i++) moves = moves || creal(u[i]) != 0 || cimag(u[i]) != 0;
+  return moves ? mhb_ring_linear_limit(b->receptance->ring, b->law, k, by_pair, u) : SHB_OK;
+}
+
+/* Stuck: (I + R_k S) u_k = free_k - R_k s0, with s0 at k = 0 only. The mean friction is zero, the
+ * smallest admissible one (contact/static_friction.h). */
+static shb_status linear_harmonic(const mhb_balance *b, int k, int stuck, double complex *u) {
+  const int n = 3 * b->n_pairs;
+  memcpy(u, b->receptance->free + k * n, sizeof(double complex) * (size_t)n);
+  if (!stuck) return SHB_OK;
+  if (k == 0) subtract_preload(b, stuck, u);
+  return b->receptance->ring ? solve_stuck_ring(b, k, stuck, u) : solve_stuck(b, k, stuck, u);
+}
+
 shb_status mhb_balance_linear_limit(mhb_balance *b, double value, int stuck, double *x) {
   mhb_balance_set_value(b, value);
-  mhb_receptance_at(b->receptance, b->eval->at.omega, b->m);
+  mhb_receptance_set_frequency(b->receptance, b->eval->at.omega);
   for (int k = 0; k <= b->m; k++) {
+    const bool rests = b->receptance->ring && k > 0 && !b->receptance->driven[k];
+    if (!rests) mhb_receptance_update(b->receptance, k);
     SHB_TRY(linear_harmonic(b, k, stuck, b->motion_k));
     put_harmonic(b, x, k, b->motion_k);
     for (int i = 0; i < 3 * b->n_pairs; i++) b->force_k[i] = 0;

@@ -22,7 +22,7 @@
 enum { MHB_BY_PRELOAD = 2 };
 
 /* From this many pairs on the receptance is not formed, but multiplied (low_rank). Not in a run-up,
- * where the model changes with the frequency. */
+ * where the model changes with the frequency, nor in a ring, whose blocks are formed. */
 enum { MHB_MANY_PAIRS = 8 };
 
 /* Results of one evaluation. A point of a curve that owns its evaluation can be linearised
@@ -54,6 +54,9 @@ typedef struct {
   int                     n_interfaces;
   int                     n_laws;             /* counts changes of law */
   double complex         *force_k, *motion_k; /* [3 pairs] one harmonic */
+  double complex         *response_k;         /* [3 pairs] of a ring; else NULL */
+  double complex         *lag; /* [blades][m + 1] of a ring; else NULL: exp(-j k b phi/nu), by which
+                                * the tuned wave lags at blade b */
   mhb_evaluation         *eval;               /* in use: evaluations write it */
   mhb_evaluation         *default_evaluation; /* in use after creation; owned */
   shb_arena               arena;

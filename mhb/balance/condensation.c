@@ -76,7 +76,9 @@ shb_status mhb_condensation_create_within(const mhb_balance *balance, int capaci
   s->accuracy = STEP_ACCURACY;
   if (balance->product && s->capacity > MOST_DENSE) s->capacity = MOST_DENSE;
   shb_status status = SHB_OK;
-  if (!allocate(s))
+  if (balance->receptance->ring)
+    status = mhb_ring_system_create(balance, &s->ring);
+  else if (!allocate(s))
     status = shb_fail(SHB_ERR_IO, __FILE__, __LINE__, "out of memory for %d unknowns", balance->n);
   if (status == SHB_OK && balance->product)
     status = mhb_woodbury_create(balance->product, balance->law,
@@ -92,6 +94,7 @@ shb_status mhb_condensation_create_within(const mhb_balance *balance, int capaci
 
 void mhb_condensation_destroy(mhb_condensation *s) {
   if (!s) return;
+  mhb_ring_system_destroy(s->ring);
   mhb_woodbury_destroy(s->low_rank);
   free(s->form);
   free(s->kind);
@@ -482,6 +485,7 @@ static int factor_condensed(mhb_condensation *s, const double *column, const dou
 }
 
 int mhb_condensation_factor(mhb_condensation *s, const double *column, const double *row) {
+  if (s->ring) return mhb_ring_system_factor(s->ring, column, row);
   classify_pairs(s);
   s->bordered    = column != NULL;
   s->by_low_rank = factor_low_rank(s, column, row);
@@ -556,6 +560,7 @@ static int solve_low_rank(mhb_condensation *s, double *rhs) {
 
 int mhb_condensation_solve(mhb_condensation *s, double *rhs) {
   int n = s->balance->n;
+  if (s->ring) return mhb_ring_system_solve(s->ring, rhs);
   if (s->by_low_rank) {
     if (solve_low_rank(s, rhs)) return 1;
     if (!factor_condensed(s, s->low_rank->column, s->low_rank->row)) return 0;
@@ -573,6 +578,7 @@ int mhb_condensation_solve(mhb_condensation *s, double *rhs) {
 
 int mhb_condensation_sign(const mhb_condensation *s) {
   int sign = 1;
+  if (s->ring) return mhb_ring_system_sign(s->ring);
   if (s->by_low_rank) return mhb_woodbury_sign(s->low_rank);
   for (int i = 0; i < s->size; i++) {
     if (dense_row(s, i)[i] < 0) sign = -sign;

@@ -19,12 +19,15 @@
  * a stuck pair with two borders more. Their unknowns are g. Their columns are R_0 of axes u and w,
  * their rows -G, their corner I. Harmonics whose right-hand side is zero cost nothing.
  *
+ * A ring of different blades is not condensed, but factored by blocks (ring_system.h).
+ *
  * Many pairs that move, or many that stick, are left to GMRES on the whole system (low_rank): the
  * condensation is made only where that fails. */
 #ifndef MHB_BALANCE_CONDENSATION_H
 #define MHB_BALANCE_CONDENSATION_H
 
 #include "mhb/balance/balance.h"
+#include "mhb/balance/ring_system.h"
 #include "mhb/low_rank/woodbury.h"
 
 /* Pairs at the friction limit that become borders; further ones are treated as nonlinear. */
@@ -34,6 +37,8 @@ typedef struct {
   const mhb_balance *balance;
   int                m, n_pairs; /* of the balance, when this was created */
   int                capacity;   /* nonlinear unknowns there is room for */
+
+  mhb_ring_system *ring; /* different blades: all that follows is not there; else NULL */
 
   /* many pairs */
   mhb_woodbury *low_rank;    /* NULL: few */

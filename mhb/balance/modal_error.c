@@ -99,11 +99,12 @@ static void solve_by_harmonic(const mhb_balance *b, double complex *A, int *pivo
 
 double mhb_modal_error(const mhb_balance *b, const double *x, mhb_condensation *system) {
   const mhb_receptance *r = b->receptance;
-  const int             n = r->n, all = (b->m + 1) * n;
-  const bool            linear = !system && n <= MOST_SOLVED && mhb_balance_is_linear(b);
-  const double          size   = mhb_balance_vibration(b, x);
-  double                ratio[b->m + 1], sum = 0;
-  int                   pivot[n];
+  if (r->ring) return -1;
+  const int    n = r->n, all = (b->m + 1) * n;
+  const bool   linear = !system && n <= MOST_SOLVED && mhb_balance_is_linear(b);
+  const double size   = mhb_balance_vibration(b, x);
+  double       ratio[b->m + 1], sum = 0;
+  int          pivot[n];
   if (!r->residual_terms->contact[0]) return -1;
   double complex *e = calloc((size_t)all + (linear ? (size_t)(n * n) : 0), sizeof *e);
   if (!e || !(size > 0)) {

@@ -24,8 +24,9 @@ static int most(int a, int b) {
 shb_status mhb_truncation_create(const mhb_balance *balance, mhb_truncation **out) {
   mhb_truncation *t = calloc(1, sizeof *t);
   SHB_CHECK(t, SHB_ERR_IO, "out of memory");
-  int m                 = balance->m;
-  int top               = most(2 * m, least(most(4 * m, MHB_LEAST_LOOKED_AT), MHB_MOST_LOOKED_AT));
+  int m   = balance->m;
+  int top = most(2 * m, least(most(4 * m, MHB_LEAST_LOOKED_AT), MHB_MOST_LOOKED_AT));
+  if (balance->receptance->ring) top = 2 * m;
   t->balance            = balance;
   t->settings           = *balance->settings;
   t->settings.harmonics = 2 * m;
@@ -41,7 +42,8 @@ shb_status mhb_truncation_create(const mhb_balance *balance, mhb_truncation **ou
     t->feedback = shb_arena_take(&t->arena, n, sizeof(double));
     if (t->arena.failed) status = shb_fail(SHB_ERR_IO, __FILE__, __LINE__, "out of memory");
   }
-  if (status == SHB_OK) status = mhb_higher_harmonics_create(t->doubled, t->receptance, &t->higher);
+  if (status == SHB_OK && !balance->receptance->ring)
+    status = mhb_higher_harmonics_create(t->doubled, t->receptance, &t->higher);
   if (status == SHB_OK)
     status = mhb_condensation_create_within(t->doubled, MHB_MOST_DOUBLED, &t->system);
   if (status != SHB_OK) {
@@ -109,7 +111,7 @@ static mhb_truncation_kind set_step(mhb_truncation *t, double size) {
   if (!mhb_condensation_solve(t->system, t->trial)) return MHB_TRUNCATION_FIRST_ORDER;
   memset(t->feedback, 0, bytes);
   double length  = mhb_norm(t->trial, b->n);
-  t->higher_size = mhb_higher_harmonics_estimate(t->higher, b, t->x);
+  t->higher_size = t->higher ? mhb_higher_harmonics_estimate(t->higher, b, t->x) : 0;
   if (t->higher_size > NEGLIGIBLE * length) {
     mhb_higher_harmonics_feedback(t->higher, b, t->x, t->feedback);
     for (int i = 0; i < b->n; i++) t->trial[i] = -t->r[i] - t->feedback[i];
@@ -137,7 +139,8 @@ double mhb_truncation_power(const mhb_truncation *t, int k) {
   const mhb_balance *b = t->doubled;
   if (t->kind == MHB_TRUNCATION_NONE) return 0;
   if (k > b->m)
-    return t->kind == MHB_TRUNCATION_NEWTON ? mhb_higher_harmonics_power(t->higher, k) : 0;
+    return t->kind == MHB_TRUNCATION_NEWTON && t->higher ? mhb_higher_harmonics_power(t->higher, k)
+                                                         : 0;
   double sum = 0;
   for (int row = 0; row < 3 * b->n_pairs; row++) {
     const double *a = t->step + (size_t)row * (size_t)b->nb;

@@ -6,7 +6,8 @@
  * harmonics and is up to fifteen times too small.
  *
  * A harmonic above 2m may be at a resonance. Those harmonics are estimated one by one
- * (higher_harmonics.h). Where they are not small, r is evaluated anew with them before the step. */
+ * (higher_harmonics.h). Where they are not small, r is evaluated anew with them before the step. In
+ * a ring of different blades those above 2m are not looked at. */
 #ifndef MHB_BALANCE_TRUNCATION_ERROR_H
 #define MHB_BALANCE_TRUNCATION_ERROR_H
 
@@ -34,7 +35,7 @@ typedef struct {
   mhb_receptance       *receptance;           /* all harmonics that are estimated */
   mhb_balance          *doubled;              /* with 2m harmonics */
   mhb_condensation     *system;               /* of the doubled balance */
-  mhb_higher_harmonics *higher;               /* above 2m */
+  mhb_higher_harmonics *higher;               /* above 2m; NULL of a ring */
   double               *x;                    /* [doubled->n] the solution, zero above m */
   double               *step;                 /* [doubled->n] delta, -r or 0 of the last estimate */
   double               *r, *trial, *feedback; /* [doubled->n] */

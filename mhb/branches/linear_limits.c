@@ -20,6 +20,11 @@ typedef struct {
   double       *x, *r;
 } sampler;
 
+/* Every probe, then v, u, w of the first two pairs: of a ring too, where each blade has its own. */
+static int all_outputs(const mhb_balance *b) {
+  return b->receptance->model->n_probes + 3 * (b->n_pairs < 2 ? b->n_pairs : 2);
+}
+
 /* Amplitudes of all outputs at a value of the parameter. The balance has the forces there
  * afterwards. */
 static shb_status amplitudes(sampler *s, double value, double *out) {
@@ -183,7 +188,7 @@ shb_status mhb_linear_limits(mhb_balance *balance, mhb_response *response, int b
                .response  = response,
                .branch    = branch,
                .stuck     = response->branch[branch].kind == MHB_BRANCH_STUCK,
-               .n_outputs = mhb_outputs(balance)};
+               .n_outputs = all_outputs(balance)};
   s.x       = calloc((size_t)balance->n, sizeof(double));
   SHB_CHECK(s.x, SHB_ERR_IO, "out of memory");
   shb_status status = sample(&s);

@@ -159,7 +159,7 @@ shb_status mhb_balance_curve_create(mhb_balance *b, double low, double high, mhb
                                       .solve_at_value     = solve_at_value,
                                       .start_of_newton    = start_of_newton,
                                       .is_linear          = is_linear};
-  if (frequency) {
+  if (frequency && !b->receptance->ring) {
     s->base.correct_linear       = correct_linear;
     s->base.resonance_step_limit = resonance_step_limit;
     s->base.resonance_skipped    = resonance_skipped;
@@ -167,8 +167,9 @@ shb_status mhb_balance_curve_create(mhb_balance *b, double low, double high, mhb
   if (b->parameter == MHB_IN_N0) s->base.unit_of_value = unit_of_preload;
   shb_status status = mhb_newton_create(b->n, &s->newton);
   if (status == SHB_OK) status = mhb_newton_bind(s->newton, b);
-  if (status == SHB_OK) status = mhb_linear_corrector_create(b, &s->linear);
-  if (status == SHB_OK) status = mhb_resonances_create(b, low, high, &s->resonances);
+  if (status == SHB_OK && !b->receptance->ring) status = mhb_linear_corrector_create(b, &s->linear);
+  if (status == SHB_OK && !b->receptance->ring)
+    status = mhb_resonances_create(b, low, high, &s->resonances);
   if (status != SHB_OK) {
     destroy(&s->base);
     return status;

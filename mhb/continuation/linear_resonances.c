@@ -309,9 +309,10 @@ static shb_status add_limit(stuck_modes *w, bool stuck, mhb_resonances *s) {
 
 shb_status mhb_resonances_of_limit(const mhb_balance *b, bool stuck, double low, double high,
                                    mhb_resonances *out) {
+  *out = (mhb_resonances){0};
+  if (b->receptance->ring) return SHB_OK;
   if (b->parameter != MHB_IN_FREQUENCY || b->receptance->at)
     return mhb_resonances_create(b, low, high, out);
-  *out = (mhb_resonances){0};
   stuck_modes w;
   shb_status  status = open_work(b, low, high, &w);
   if (status == SHB_OK) status = add_limit(&w, stuck, out);

@@ -2,10 +2,19 @@
 
 #include <math.h>
 
+#include "mhb/structure/ring_receptance.h"
+
 /* Relative slope below which an output counts as flat. */
 static const double FLAT = 1e-9;
 
+/* Places of a blade of a ring whose amplitudes are outputs. */
+static int ring_places(const mhb_balance *b) {
+  const int probes = b->receptance->ring->ring->n_probes;
+  return probes > 0 ? probes : 1;
+}
+
 int mhb_outputs(const mhb_balance *b) {
+  if (b->receptance->ring) return 2 * ring_places(b);
   int pairs = b->n_pairs < 2 ? b->n_pairs : 2;
   return b->receptance->model->n_probes + 3 * pairs;
 }
@@ -51,9 +60,49 @@ void mhb_probe_change(mhb_balance *b, const mhb_curve_point *point, int k, doubl
                               b->parameter == MHB_IN_SCALE ? dvalue : 0, dq);
 }
 
+/* Motion z[3] at a place of a blade, and its change dz along the tangent. Without probes: of the
+ * first pair. */
+static void ring_motion(const mhb_balance *b, const mhb_curve_point *point, int k, int blade,
+                        const double complex *q, const double complex *dq, double complex z[3],
+                        double complex dz[3]) {
+  const mhb_ring_receptance *ring = b->receptance->ring;
+  for (int axis = 0; axis < 3; axis++) {
+    const size_t  at = (size_t)(blade * ring->n + axis) * (size_t)b->nb + (size_t)(2 * k - 1);
+    const double *a = point->x + at, *da = point->tangent + at;
+    z[axis]  = ring->q > 0 ? q[blade * ring->q + axis] : CMPLX(a[0], a[1]);
+    dz[axis] = ring->q > 0 ? dq[blade * ring->q + axis] : CMPLX(da[0], da[1]);
+  }
+}
+
+/* Output o of a ring: on the blade that swings highest, or a times the slope of the mean. */
+static double ring_slope(mhb_balance *b, const mhb_curve_point *point, int k, int o) {
+  const mhb_ring_receptance *ring = b->receptance->ring;
+  const int                  all = ring->blades * ring->q, places = ring_places(b);
+  const int                  place = 3 * (o % places), N = ring->blades;
+  double complex             q[all + 1], dq[all + 1], z[3], dz[3];
+  double                     most = -1, slope = 0, mean = 0, by_mean = 0;
+  if (ring->q > 0) mhb_probe_change(b, point, k, q, dq);
+  for (int blade = 0; blade < N; blade++) {
+    double square = 0, own = 0;
+    ring_motion(b, point, k, blade, q + place, dq + place, z, dz);
+    for (int axis = 0; axis < 3; axis++) {
+      own += 2 * dot(z[axis], dz[axis]);
+      square += dot(z[axis], z[axis]);
+    }
+    if (square > most) {
+      most  = square;
+      slope = own;
+    }
+    mean += sqrt(square) / N;
+    if (square > 0) by_mean += own / (2 * sqrt(square)) / N;
+  }
+  return o < places ? unless_flat(slope, most) : unless_flat(2 * mean * by_mean, mean * mean);
+}
+
 double mhb_output_slope(mhb_balance *b, const mhb_curve_point *point, int o) {
   const mhb_receptance *r      = b->receptance;
   int                   probes = r->model->n_probes, k = r->nu <= b->m ? r->nu : b->m;
+  if (r->ring) return ring_slope(b, point, k, o);
   if (o >= probes) {
     size_t        at = (size_t)(o - probes) * (size_t)b->nb + (size_t)(2 * k - 1);
     const double *a = point->x + at, *da = point->tangent + at;

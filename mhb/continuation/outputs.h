@@ -6,7 +6,9 @@
 
 #include "mhb/continuation/curve.h"
 
-/* Number of outputs: every probe, then v, u, w of the first two pairs. */
+/* Number of outputs: every probe, then v, u, w of the first two pairs. In a ring of different
+ * blades every probe is taken on the blade that swings highest, then as the mean over the blades.
+ * Without probes the contact motion takes their place. */
 int mhb_outputs(const mhb_balance *balance);
 
 /* Motion q[3 probes] of harmonic k at a point, m, and its change dq along the tangent. */

@@ -127,7 +127,8 @@ static void set_motion(mhb_steady_state *o, int k, const double *z0) {
   }
   for (int i = 0; i < m; i++)
     for (int side = 0; side < g->ring.s.sides; side++) {
-      double complex z = mode_harmonic(o, k, side, i, z0); /* blade 1 to the right, its left side */
+      /* blade 1 to the right, its left side; one blade meets itself */
+      double complex z = mode_harmonic(o, k, side % g->blades, i, z0);
       for (int row = 0; row < n3; row++)
         o->result.motion[row * K + k] += g->ring.shape[(side * n3 + row) * m + i] * z;
     }

@@ -98,6 +98,12 @@ typedef struct {
   char                output[MHB_NAME]; /* whose peak: a probe or "contact"; "": the first probe */
   const struct mhb_speed_table
       *run_up; /* NULL: one speed. Else the modal model follows the frequency. */
+  /* NULL: equal blades that move as one wave. Else every blade has its own model, and the modal
+   * model of the balance is that of the whole ring (mhb/mistuning/mistuned_ring.h). */
+  const struct mhb_mistuned_ring *ring;
+  /* Equal groups of consecutive pairs, each a contact with the stiffness and preload of the case.
+   * 0, 1: all pairs are one contact. */
+  int contacts;
   /* The curve in outline, with a fixed number of harmonics: peaks are not located, and the errors
    * of points are unknown (NAN). The linear limits have no points. */
   bool outline;

@@ -3,6 +3,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "mhb/mistuning/mistuned_ring.h"
 #include "mhb/problem/interfaces.h"
 
 /* Interfaces in the order of the case. */
@@ -22,8 +23,10 @@ static shb_status describe_interfaces(mhb_response *response, const modal_model 
 
 shb_status mhb_response_describe(mhb_response *response, const modal_model *model,
                                  const mhb_settings *settings) {
-  size_t m                 = (size_t)model->n_modes;
-  response->n_modes        = model->n_modes;
+  const modal_model *modes = settings->ring ? settings->ring->tuned : model;
+  size_t             m     = (size_t)modes->n_modes;
+  response->n_modes        = modes->n_modes;
+  response->ring           = settings->ring ? settings->ring->blades : 0;
   response->subharmonics   = settings->subharmonics;
   response->engine_order   = settings->engine_order;
   response->blades         = settings->blades;
@@ -33,12 +36,12 @@ shb_status mhb_response_describe(mhb_response *response, const modal_model *mode
   response->mode_frequency = malloc(sizeof(double) * m);
   response->mode_damping   = malloc(sizeof(double) * m);
   SHB_CHECK(response->mode_frequency && response->mode_damping, SHB_ERR_IO, "out of memory");
-  memcpy(response->mode_frequency, model->frequency, sizeof(double) * m);
-  memcpy(response->mode_damping, model->damping_ratio, sizeof(double) * m);
-  if (model->eigen_residual) {
+  memcpy(response->mode_frequency, modes->frequency, sizeof(double) * m);
+  memcpy(response->mode_damping, modes->damping_ratio, sizeof(double) * m);
+  if (modes->eigen_residual) {
     response->eigen_residual = malloc(sizeof(double) * m);
     SHB_CHECK(response->eigen_residual, SHB_ERR_IO, "out of memory");
-    memcpy(response->eigen_residual, model->eigen_residual, sizeof(double) * m);
+    memcpy(response->eigen_residual, modes->eigen_residual, sizeof(double) * m);
   }
   if (settings->n_interfaces > 1) SHB_TRY(describe_interfaces(response, model, settings));
   for (int q = 0; q < model->n_probes; q++) {

@@ -30,6 +30,7 @@ mhb_response *mhb_response_like(const mhb_response *response) {
   like->subharmonics  = response->subharmonics;
   like->parameter     = response->parameter;
   like->n_multipliers = response->n_multipliers;
+  like->ring          = response->ring;
   like->n_interfaces  = response->n_interfaces;
   return like;
 }

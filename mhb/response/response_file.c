@@ -154,6 +154,7 @@ static shb_status write_root(hid_t file, const mhb_response *response) {
   SHB_TRY(h5_write_attribute_int(file, "/", "blades", response->blades));
   SHB_TRY(h5_write_attribute_int(file, "/", "subharmonics", response->subharmonics));
   if (response->run_up) SHB_TRY(h5_write_attribute_int(file, "/", "run_up", 1));
+  if (response->ring) SHB_TRY(h5_write_attribute_int(file, "/", "ring", response->ring));
   if (response->unfinished) SHB_TRY(h5_write_attribute_int(file, "/", "finished", 0));
   SHB_TRY(h5_write_attribute_text(file, "/", "parameter", mhb_parameter_name(response->parameter)));
   SHB_TRY(write_tracking(file, response));
@@ -258,6 +259,55 @@ static shb_status write_lasting(hid_t group, const mhb_branch *branch) {
   return h5_attach_scale(group, "lasting/curve/worst", 0, "lasting/curve/frequency");
 }
 
+typedef struct {
+  const char *name, *unit, *what;
+  size_t      at;
+} amplification_part;
+
+#define PART(name) offsetof(mhb_amplification, name)
+static const amplification_part amplification_parts[] = {
+    {"amplification/factor", "-", "worst blade's peak over that of the tuned ring", PART(factor)},
+    {"amplification/worst", "m", "peak of the output on the blade that swings highest",
+     PART(worst)},
+    {"amplification/worst_frequency", "Hz", "where that is", PART(worst_at)},
+    {"amplification/mean", "m", "peak of the mean of the output over the blades", PART(mean)},
+    {"amplification/mean_frequency", "Hz", "where that is", PART(mean_at)},
+    {"amplification/tuned", "m", "peak of the output with equal blades", PART(tuned)},
+    {"amplification/tuned_frequency", "Hz", "where that is", PART(tuned_at)}};
+enum { N_PARTS = sizeof amplification_parts / sizeof *amplification_parts };
+
+/* Of a ring of different blades. */
+static shb_status write_amplification(hid_t group, const mhb_branch *branch) {
+  const mhb_amplification *a = &branch->amplification;
+  if (!(a->factor > 0)) return SHB_OK;
+  for (int i = 0; i < N_PARTS; i++) {
+    const amplification_part *p     = &amplification_parts[i];
+    const double             *value = (const double *)(const void *)((const char *)a + p->at);
+    SHB_TRY(h5_write_double(group, p->name, (h5_shape){.rank = 0}, value, p->unit, p->what));
+  }
+  return h5_write_int(group, "amplification/blade", (h5_shape){.rank = 0}, &a->blade, "-",
+                      "the blade that swings highest, from 0");
+}
+
+static shb_status read_amplification(hid_t group, mhb_branch *branch) {
+  mhb_amplification *a   = &branch->amplification;
+  const h5_shape     one = {.rank = 0};
+  if (!h5_exists(group, "amplification")) return SHB_OK;
+  for (int i = 0; i < N_PARTS; i++) {
+    double  *value;
+    h5_shape shape = one;
+    SHB_TRY(h5_read_double(group, amplification_parts[i].name, &shape, &value));
+    memcpy((char *)a + amplification_parts[i].at, value, sizeof *value);
+    free(value);
+  }
+  int     *blade;
+  h5_shape shape = one;
+  SHB_TRY(h5_read_int(group, "amplification/blade", &shape, &blade));
+  a->blade = *blade;
+  free(blade);
+  return SHB_OK;
+}
+
 /* The modal amplitudes of the points kept. */
 static shb_status write_modal(hid_t group, const mhb_response *response, const mhb_branch *branch) {
   const mhb_modal_motion *m = &branch->modal;
@@ -302,6 +352,7 @@ static shb_status fill_branch(hid_t group, const mhb_response *response, const m
       SHB_TRY(write_field(group, response, branch, &mhb_fields[i]));
   SHB_TRY(write_searches(group, response, branch));
   SHB_TRY(write_lasting(group, branch));
+  SHB_TRY(write_amplification(group, branch));
   SHB_TRY(write_modal(group, response, branch));
   return write_speed(group, response, branch);
 }
@@ -416,6 +467,12 @@ static shb_status read_root(hid_t file, const char *path, mhb_response **out) {
   SHB_TRY(h5_read_attribute_int(file, "/", "engine_order", 0, &response->engine_order));
   SHB_TRY(h5_read_attribute_int(file, "/", "blades", 0, &response->blades));
   SHB_TRY(h5_read_attribute_int(file, "/", "subharmonics", 1, &response->subharmonics));
+  SHB_TRY(h5_read_attribute_int(file, "/", "ring", 0, &response->ring));
+  SHB_CHECK(
+      response->ring >= 0 && (response->ring == 0 || (response->n_pairs % response->ring == 0 &&
+                                                      response->n_probes % response->ring == 0)),
+      SHB_ERR_INPUT, "%s: ring is %d, but there are %d pairs and %d probes", path, response->ring,
+      response->n_pairs, response->n_probes);
   int run_up = 0, finished = 1;
   SHB_TRY(h5_read_attribute_int(file, "/", "run_up", 0, &run_up));
   SHB_TRY(h5_read_attribute_int(file, "/", "finished", 1, &finished));
@@ -618,6 +675,7 @@ static shb_status fill_from(hid_t group, const char *path, int index, mhb_respon
       SHB_TRY(read_field(group, response, branch, &mhb_fields[i]));
   SHB_TRY(read_searches(group, path, index, branch));
   SHB_TRY(read_lasting(group, branch));
+  SHB_TRY(read_amplification(group, branch));
   SHB_TRY(read_modal(group, path, index, response, branch));
   return check_points(path, index, branch);
 }

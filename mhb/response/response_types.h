@@ -114,6 +114,15 @@ typedef struct {
   bool             verified;     /* a sweep at the optimum has no higher peak */
 } mhb_optimum;
 
+/* Of a main curve of a ring of different blades: peaks of its output and of the tuned ring's. */
+typedef struct {
+  double factor;          /* worst over tuned; 0: not computed */
+  double worst, worst_at; /* m, Hz: the blade that swings highest */
+  int    blade;           /* that blade, from 0 */
+  double mean, mean_at;   /* m, Hz: mean over the blades */
+  double tuned, tuned_at; /* m, Hz: the ring with equal blades */
+} mhb_amplification;
+
 /* One curve. Array layouts:
  *   motion, force  [point][pair][3 (v, u, w)][k = 0..m]
  *   probe          [point][probe][3 (tangential, axial, radial)][k]
@@ -159,6 +168,7 @@ typedef struct {
   char   *lasting;                        /* what was computed, or why not; NULL: not yet */
   mhb_lasting_curve lasting_curve;
   mhb_modal_motion  modal;
+  mhb_amplification amplification;
   /* integration branches only */
   int    *multiple; /* [point] periods of the fundamental until the motion repeats; 0: never */
   int    *periods;  /* [point] periods of the fundamental that were integrated */
@@ -182,6 +192,7 @@ typedef struct {
   int     n_modes;
   double *mode_frequency, *mode_damping, *eigen_residual; /* [m]; eigen_residual may be NULL */
   int     engine_order, blades;
+  int     ring; /* number of different blades: pairs and probes of blade 0 come first; 0: a wave */
   bool    unfinished; /* the run that makes it has more to do */
   bool    run_up; /* the speed follows the frequency on the engine order; modes of the top speed */
   double  psi, phi;       /* rad, mean of the pairs */

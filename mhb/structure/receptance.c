@@ -58,7 +58,7 @@ static shb_status set_axes(mhb_receptance *r, const mhb_settings *s, int interfa
       phi             = -atan2(v[2], hypot(v[0], v[1]));
     }
     shroud_axes(psi, phi, T0[a]);
-    for (int i = 0; i < 3; i++) mean[i] += r->share[a] * T0[a][i][0];
+    for (int i = 0; i < 3; i++) mean[i] += r->share[a] * T0[a][i][0]; /* its length is no matter */
   }
   double psi = atan2(mean[1], mean[0]), phi = -atan2(mean[2], hypot(mean[0], mean[1]));
   double degree = 180 / SHB_PI;
@@ -70,11 +70,13 @@ static shb_status set_axes(mhb_receptance *r, const mhb_settings *s, int interfa
   return check_angle("phi", given.name, given.has_phi, given.phi, phi, degree);
 }
 
-static void set_shares(mhb_receptance *r, int interface) {
+/* Of the pairs between two blades. */
+static void set_shares(mhb_receptance *r, int interface, int contacts) {
   const modal_model *model = r->model;
   double             total = 0;
   for (int a = 0; a < model->n_pairs; a++)
     if (r->interface[a] == interface) total += model->area ? model->area[a] : 1;
+  total /= contacts;
   for (int a = 0; a < model->n_pairs; a++)
     if (r->interface[a] == interface) r->share[a] = (model->area ? model->area[a] : 1) / total;
 }
@@ -82,18 +84,20 @@ static void set_shares(mhb_receptance *r, int interface) {
 static int allocate(mhb_receptance *r) {
   size_t     n = (size_t)r->n, m = (size_t)r->n_modes, K = (size_t)r->n_harmonics + 1;
   shb_arena *a          = &r->arena;
+  const int  matrices   = !r->ring;
   r->T0                 = shb_arena_take(a, 3 * n, sizeof *r->T0);
   r->share              = shb_arena_take(a, n / 3, sizeof *r->share);
   r->interface          = shb_arena_take(a, n / 3, sizeof *r->interface);
   r->phase              = shb_arena_take(a, K, sizeof *r->phase);
   r->updated_at         = shb_arena_take(a, K, sizeof *r->updated_at);
   r->load_at            = shb_arena_take(a, K, sizeof *r->load_at);
-  r->lambda             = shb_arena_take(a, K * m, sizeof *r->lambda);
-  r->R                  = calloc(K * n * n, sizeof *r->R);
   r->free               = shb_arena_take(a, K * n, sizeof *r->free);
   r->free_response_unit = shb_arena_take(a, K * n, sizeof *r->free_response_unit);
-  r->scratch            = shb_arena_take(a, 4 * m, sizeof *r->scratch);
-  r->BL                 = shb_arena_take(a, n * m, sizeof *r->BL);
+  if (!matrices) return !a->failed;
+  r->lambda  = shb_arena_take(a, K * m, sizeof *r->lambda);
+  r->R       = calloc(K * n * n, sizeof *r->R);
+  r->scratch = shb_arena_take(a, 4 * m, sizeof *r->scratch);
+  r->BL      = shb_arena_take(a, n * m, sizeof *r->BL);
   return !a->failed && r->R;
 }
 
@@ -106,14 +110,20 @@ static double phase_step(const mhb_settings *s) {
 static shb_status set_blade(mhb_receptance *r, const mhb_settings *settings) {
   const mhb_relative relative = {r->n, settings->to_ground ? 1 : 2, r->T0};
   const double       step     = settings->to_ground ? 0 : phase_step(settings);
+  const int contacts = r->ring ? r->ring->blades : settings->contacts > 1 ? settings->contacts : 1;
   SHB_TRY(mhb_interfaces_match(r->model, settings, r->interface));
   for (int i = 0; i < mhb_interfaces(settings); i++) {
-    set_shares(r, i);
+    set_shares(r, i, contacts);
     SHB_TRY(set_axes(r, settings, i));
   }
   for (int k = 0; k <= r->n_harmonics; k++) {
     r->updated_at[k] = r->load_at[k] = NAN;
     r->phase[k]                      = cexp(-I * fmod(k * step, SHB_TWO_PI));
+  }
+  if (r->ring) {
+    for (int k = 0; k <= r->n_harmonics; k++) r->phase[k] = 1; /* all blades are there */
+    r->driven = r->ring->blade[0]->driven;
+    return SHB_OK;
   }
   SHB_TRY(mhb_modal_part_create(r->model, relative, r->nu, r->n_harmonics, r->phase, &r->part));
   r->B              = r->part->B;
@@ -125,7 +135,10 @@ static shb_status set_blade(mhb_receptance *r, const mhb_settings *settings) {
 
 static shb_status make(mhb_receptance *r, const modal_model *model, const mhb_settings *settings) {
   r->model = model;
-  if (settings->run_up) {
+  if (settings->ring) {
+    SHB_TRY(mhb_ring_receptance_create(settings, r->n_harmonics, &r->ring));
+    r->model = &settings->ring->whole;
+  } else if (settings->run_up) {
     SHB_TRY(mhb_speed_model_create(settings->run_up, &r->at));
     mhb_speed_model_set(r->at, 0);
     r->model = &r->at->model;
@@ -162,6 +175,7 @@ shb_status mhb_receptance_create(const modal_model *model, const mhb_settings *s
 
 void mhb_receptance_destroy(mhb_receptance *r) {
   if (!r) return;
+  mhb_ring_receptance_destroy(r->ring);
   mhb_speed_derivative_destroy(r->speed_derivative);
   mhb_modal_part_destroy(r->part);
   mhb_speed_model_destroy(r->at);
@@ -213,6 +227,10 @@ void mhb_receptance_residual_terms(const mhb_receptance *r, int k, double w, dou
 }
 
 static void harmonic_at(mhb_receptance *r, int k) {
+  if (r->ring) {
+    mhb_ring_receptance_update(r->ring, k, r->free + k * r->n, r->free_response_unit + k * r->n);
+    return;
+  }
   int             n = r->n, m = r->n_modes;
   double          w = k * r->omega / r->nu, *L = r->scratch, *y = L + 2 * m;
   double complex *R = r->R + (size_t)k * (size_t)n * (size_t)n, *u = r->free_response_unit + k * n;
@@ -239,6 +257,11 @@ static void harmonic_at(mhb_receptance *r, int k) {
 
 /* lambda and free, as harmonic_at makes them, without R. */
 static void load_at(mhb_receptance *r, int k) {
+  if (r->ring) {
+    mhb_ring_receptance_update_load(r->ring, k, r->free + k * r->n,
+                                    r->free_response_unit + k * r->n);
+    return;
+  }
   int             n = r->n, m = r->n_modes;
   double          w = k * r->omega / r->nu, *L = r->scratch, *y = L + 2 * m;
   double complex *u = r->free_response_unit + k * n;
@@ -260,6 +283,7 @@ static void load_at(mhb_receptance *r, int k) {
 
 void mhb_receptance_set_frequency(mhb_receptance *r, double omega) {
   r->omega = omega;
+  if (r->ring) mhb_ring_receptance_set_frequency(r->ring, omega);
   if (!r->at || r->at->omega == omega) return;
   mhb_speed_model_set(r->at, omega);
   mhb_modal_part_update(r->part);
@@ -296,6 +320,7 @@ void mhb_receptance_at(mhb_receptance *r, double omega, int top) {
 
 void mhb_receptance_scale(mhb_receptance *r, double scale) {
   r->scale = scale;
+  if (r->ring) mhb_ring_receptance_scale(r->ring, scale);
   for (int i = 0; i < (r->n_harmonics + 1) * r->n; i++)
     r->free[i] = scale * r->free_response_unit[i];
 }
@@ -365,8 +390,31 @@ MHB_HOT static void modal_sums(const mhb_receptance *r, int k, const double *yr,
   for (int a = 0; a < r->n; a++, re += m, im += m) out[a] = product(m, yr, yi, re, im, 1);
 }
 
+double complex mhb_receptance_diagonal(const mhb_receptance *r, int k, int i) {
+  if (r->ring) {
+    const int n = r->ring->n;
+    return mhb_ring_receptance_block(r->ring, k, i / n, MHB_RING_OWN)[(i % n) * (n + 1)];
+  }
+  return r->R[((size_t)k * (size_t)r->n + (size_t)i) * (size_t)r->n + (size_t)i];
+}
+
+void mhb_receptance_product_of(const mhb_receptance *r, int k, const double complex *p,
+                               double complex *motion) {
+  if (r->ring) {
+    mhb_ring_receptance_product(r->ring, k, p, motion);
+    return;
+  }
+  const double complex *R = r->R + (size_t)k * (size_t)r->n * (size_t)r->n;
+  for (int i = 0; i < r->n; i++, R += r->n)
+    for (int j = 0; j < r->n; j++) motion[i] += R[j] * p[j];
+}
+
 void mhb_receptance_motion(const mhb_receptance *r, int k, const double complex *p,
                            double complex *motion) {
+  if (r->ring) {
+    mhb_ring_receptance_motion(r->ring, k, p, motion);
+    return;
+  }
   double w = k * r->omega / r->nu, yr[r->n_modes], yi[r->n_modes];
   motion_drive(r, k, w, p, yr, yi);
   modal_sums(r, k, yr, yi, motion);
@@ -375,6 +423,10 @@ void mhb_receptance_motion(const mhb_receptance *r, int k, const double complex 
 
 void mhb_receptance_amplitudes(const mhb_receptance *r, int k, const double complex *p,
                                double complex *amplitude) {
+  if (r->ring) {
+    mhb_ring_receptance_amplitudes(r->ring, k, p, amplitude);
+    return;
+  }
   double yr[r->n_modes], yi[r->n_modes];
   motion_drive(r, k, k * r->omega / r->nu, p, yr, yi);
   for (int i = 0; i < r->n_modes; i++) amplitude[i] = CMPLX(yr[i], yi[i]);
@@ -382,6 +434,10 @@ void mhb_receptance_amplitudes(const mhb_receptance *r, int k, const double comp
 
 void mhb_receptance_slope(const mhb_receptance *r, int k, const double complex *p,
                           double complex *slope) {
+  if (r->ring) {
+    mhb_ring_receptance_slope(r->ring, k, p, slope);
+    return;
+  }
   double kk = (double)k / r->nu, dw2 = 2 * kk * kk * r->omega, yr[r->n_modes], yi[r->n_modes];
   slope_drive(r, k, p, yr, yi);
   modal_sums(r, k, yr, yi, slope);
@@ -394,6 +450,10 @@ void mhb_receptance_slope(const mhb_receptance *r, int k, const double complex *
 void mhb_receptance_probe_change(const mhb_receptance *r, int k, const double complex *p,
                                  const double complex *dp, double d_omega, double d_scale,
                                  double complex *change) {
+  if (r->ring) {
+    mhb_ring_receptance_probe_change(r->ring, k, p, dp, d_omega, d_scale, change);
+    return;
+  }
   int    q = 3 * r->model->n_probes, m = r->n_modes;
   double kk = (double)k / r->nu, dw2 = 2 * kk * kk * r->omega * d_omega;
   memset(change, 0, sizeof *change * (size_t)q);
@@ -428,6 +488,10 @@ void mhb_receptance_probe(const mhb_receptance *r, int k, const double complex *
 /* zeta dL/d zeta = -2 j zeta w_i w L^2 */
 void mhb_receptance_by_damping(const mhb_receptance *r, int k, const double complex *p,
                                double complex *motion, double complex *probe) {
+  if (r->ring) {
+    mhb_ring_receptance_by_damping(r->ring, k, p, motion, probe);
+    return;
+  }
   int    m = r->n_modes, q = 3 * r->model->n_probes;
   double w = k * r->omega / r->nu, yr[m], yi[m];
   drive(r, k, p, yr, yi);

@@ -21,23 +21,26 @@
 #include "mesh/base/status.h"
 #include "mhb/problem/settings.h"
 #include "mhb/structure/modal_part.h"
+#include "mhb/structure/ring_receptance.h"
 #include "mhb/structure/speed_derivative.h"
 #include "mhb/structure/speed_model.h"
 
-typedef struct {
-  const modal_model    *model;                       /* in a run-up the one at omega */
-  mhb_speed_model      *at;                          /* run-up: whose model that is; else NULL */
-  mhb_speed_derivative *speed_derivative;            /* run-up: d model/d omega; else NULL */
+typedef struct mhb_receptance {
+  const modal_model    *model;            /* in a run-up the one at omega */
+  mhb_speed_model      *at;               /* run-up: whose model that is; else NULL */
+  mhb_speed_derivative *speed_derivative; /* run-up: d model/d omega; else NULL */
+  mhb_ring_receptance  *ring; /* different blades: pairs, modes and probes are those of the whole
+                               * ring; part, B, F, residual_terms, lambda and R are NULL */
   int                   n, n_modes, n_harmonics, nu; /* n = 3 pairs; harmonics 0..n_harmonics */
   double               *T0;       /* [pair][3][3], columns v, u, w in (tangential, axial, radial) */
   double                psi, phi; /* rad, mean over the pairs (of the leading interface) */
-  double               *share;    /* [pair] area share, sums to 1 over each interface */
-  int                  *interface; /* [pair] in the order of the settings */
-  double complex       *phase;     /* [k] e_k */
-  mhb_modal_part       *part;      /* of model; the next four are its own */
-  const double complex *B;         /* [k][n][modes] */
-  const double complex *F;         /* [k][modes] modal force at scale 1 */
-  const int            *driven;    /* [k] whether the load has this harmonic */
+  double         *share;     /* [pair] area share, sums to 1 over an interface between two blades */
+  int            *interface; /* [pair] in the order of the settings */
+  double complex *phase;     /* [k] e_k */
+  mhb_modal_part *part;      /* of model; the next four are its own */
+  const double complex *B;   /* [k][n][modes] */
+  const double complex *F;   /* [k][modes] modal force at scale 1 */
+  const int            *driven; /* [k] whether the load has this harmonic */
   mhb_residual_terms   *residual_terms;
   double                scale;              /* of the excitation */
   double                omega;              /* rad/s, of mhb_receptance_set_frequency */
@@ -52,7 +55,8 @@ typedef struct {
   shb_arena             arena;
 } mhb_receptance;
 
-/* Load harmonics above n_harmonics are ignored. The model must outlive the receptance. Errors:
+/* Load harmonics above n_harmonics are ignored. The model must outlive the receptance; with
+ * settings->ring it is not looked at. Errors:
  *
  *   SHB_ERR_INPUT  psi or phi differs from the file's normals by more than a degree; neighbour
  *                  without /contact/left; subharmonics that do not close around the ring
@@ -76,6 +80,13 @@ void mhb_receptance_at(mhb_receptance *receptance, double omega, int top);
 
 /* Another scale of the excitation, at the same omega. */
 void mhb_receptance_scale(mhb_receptance *receptance, double scale);
+
+/* Element (i, i) of R_k, which is up to date. */
+double complex mhb_receptance_diagonal(const mhb_receptance *receptance, int k, int i);
+
+/* motion[n] += R_k p; R_k is up to date. */
+void mhb_receptance_product_of(const mhb_receptance *receptance, int k, const double complex *p,
+                               double complex *motion);
 
 /* motion[n] <- harmonic k of free - R p, without making R: the cost is that of one product. */
 void mhb_receptance_motion(const mhb_receptance *receptance, int k, const double complex *p,

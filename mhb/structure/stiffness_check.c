@@ -23,11 +23,11 @@ static shb_status check(const char *key, const char *interface, double stiffness
 
 /* Largest static flexibility along v, u, w of an interface, m/N: a pair's own times its share. */
 static void largest_flexibility(const mhb_receptance *receptance, int interface, double most[3]) {
-  const size_t n = (size_t)receptance->n;
+  const int n = receptance->n;
   memset(most, 0, 3 * sizeof *most);
-  for (size_t i = 0; i < n; i++) {
+  for (int i = 0; i < n; i++) {
     if (receptance->interface[i / 3] != interface) continue;
-    const double R = creal(receptance->R[n * n + i * n + i]);
+    const double R = creal(mhb_receptance_diagonal(receptance, 1, i));
     most[i % 3]    = fmax(most[i % 3], R * receptance->share[i / 3]);
   }
 }

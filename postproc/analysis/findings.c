@@ -4,6 +4,7 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "postproc/analysis/ring_findings.h"
 #include "postproc/analysis/stability_findings.h"
 #include "postproc/analysis/tracked_findings.h"
 #include "postproc/draw/number_format.h"
@@ -441,6 +442,7 @@ static void put_accuracy(const post_analysis *analysis, post_buffer *out) {
 void post_findings(const post_analysis *analysis, post_buffer *out) {
   post_put(out, "<ul class=\"findings\">\n");
   put_incomplete(analysis, out);
+  post_put_ring(analysis, out);
   if (analysis->response->track) {
     post_tracked_findings(analysis, out);
     put_accuracy(analysis, out);

@@ -122,6 +122,7 @@ double post_peak_to_peak(int n, int m, const double complex *a) {
 }
 
 post_output post_output_primary(const mhb_response *response) {
+  if (response->ring) return (post_output){POST_PLACE_WORST, 0, POST_WHOLE};
   return (post_output){response->n_probes > 0 ? POST_PLACE_PROBE : POST_PLACE_CONTACT, 0,
                        POST_WHOLE};
 }
@@ -143,31 +144,79 @@ static const double complex *harmonics_of(const mhb_response *response, const mh
   return all + at * (size_t)(branch->n_harmonics + 1);
 }
 
+/* The first probe of a blade, or its first contact. */
+static post_output on_blade(const mhb_response *response, int blade, int axis) {
+  const bool probe = response->n_probes > 0;
+  const int  each  = (probe ? response->n_probes : response->n_pairs) / response->ring;
+  return (post_output){probe ? POST_PLACE_PROBE : POST_PLACE_CONTACT, blade * each, axis};
+}
+
+int post_worst_blade(const mhb_response *response, const mhb_branch *branch, int point) {
+  const int first = post_first_harmonic(branch);
+  double    most  = -1;
+  int       worst = 0;
+  for (int b = 0; b < response->ring; b++) {
+    const double a =
+        post_amplitude(response, branch, point, on_blade(response, b, POST_WHOLE), first);
+    if (a > most) {
+      most  = a;
+      worst = b;
+    }
+  }
+  return worst;
+}
+
+/* An output of the worst blade as that of this blade. */
+static post_output resolve(const mhb_response *response, const mhb_branch *branch, int point,
+                           post_output output) {
+  if (output.place != POST_PLACE_WORST) return output;
+  return on_blade(response, post_worst_blade(response, branch, point), output.axis);
+}
+
+static double amplitude_of(const mhb_response *response, const mhb_branch *branch, int point,
+                           post_output output, post_quantity quantity, int k) {
+  int                   n, m = branch->n_harmonics;
+  const double complex *a = harmonics_of(response, branch, point, output, &n);
+  if (quantity == POST_QUANTITY_PEAK_TO_PEAK) return post_peak_to_peak(n, m, a);
+  return k > m ? 0 : post_semi_major_axis(n, a + k, m + 1);
+}
+
+/* The amplitude, or its mean over the blades. */
+static double value_of(const mhb_response *response, const mhb_branch *branch, int point,
+                       post_output output, post_quantity quantity, int k) {
+  double mean = 0;
+  if (output.place != POST_PLACE_MEAN)
+    return amplitude_of(response, branch, point, resolve(response, branch, point, output), quantity,
+                        k);
+  for (int b = 0; b < response->ring; b++)
+    mean += amplitude_of(response, branch, point, on_blade(response, b, output.axis), quantity, k) /
+            response->ring;
+  return mean;
+}
+
 double post_amplitude(const mhb_response *response, const mhb_branch *branch, int point,
                       post_output output, int k) {
-  int                   n;
-  const double complex *a = harmonics_of(response, branch, point, output, &n);
-  return k > branch->n_harmonics ? 0 : post_semi_major_axis(n, a + k, branch->n_harmonics + 1);
+  return value_of(response, branch, point, output, POST_QUANTITY_FIRST_HARMONIC, k);
 }
 
 shb_status post_series(const mhb_response *response, const mhb_branch *branch, post_output output,
                        post_quantity quantity, double **values) {
-  int     points = branch->n_points, first = post_first_harmonic(branch), m = branch->n_harmonics;
+  int     points = branch->n_points, first = post_first_harmonic(branch);
   double *out = malloc((size_t)(points > 0 ? points : 1) * sizeof *out);
   SHB_CHECK(out, SHB_ERR_IO, "not enough memory for a curve of %d points", points);
-  for (int p = 0; p < points; p++) {
-    int                   n;
-    const double complex *a = harmonics_of(response, branch, p, output, &n);
-    if (quantity == POST_QUANTITY_PEAK_TO_PEAK)
-      out[p] = post_peak_to_peak(n, m, a);
-    else
-      out[p] = post_semi_major_axis(n, a + first, m + 1);
-  }
+  for (int p = 0; p < points; p++) out[p] = value_of(response, branch, p, output, quantity, first);
   *values = out;
   return SHB_OK;
 }
 
 void post_place_name(const mhb_response *response, post_output output, char out[128]) {
+  if (output.place == POST_PLACE_WORST || output.place == POST_PLACE_MEAN) {
+    const char *name = response->n_probes > 0 ? response->probe_name[0] : "contact";
+    const char *dot  = response->n_probes > 0 ? strrchr(name, '.') : NULL; /* "tip.0" */
+    snprintf(out, 128, "%.*s, %s", dot ? (int)(dot - name) : (int)strlen(name), name,
+             output.place == POST_PLACE_WORST ? "worst blade" : "mean of the blades");
+    return;
+  }
   if (output.place == POST_PLACE_PROBE)
     snprintf(out, 128, "%s", response->probe_name[output.index]);
   else

@@ -6,7 +6,9 @@
 
 #include "mhb/response/response.h"
 
-typedef enum { POST_PLACE_PROBE, POST_PLACE_CONTACT } post_place;
+/* Of a ring of different blades also: the blade that swings highest at a point, and the mean over
+ * the blades. Their place is the first probe of a blade, or its first contact without probes. */
+typedef enum { POST_PLACE_PROBE, POST_PLACE_CONTACT, POST_PLACE_WORST, POST_PLACE_MEAN } post_place;
 typedef enum { POST_QUANTITY_FIRST_HARMONIC, POST_QUANTITY_PEAK_TO_PEAK } post_quantity;
 
 enum { POST_WHOLE = -1 }; /* axis: the displacement vector */
@@ -32,7 +34,8 @@ double post_semi_major_axis(int n, const double complex *a, int stride);
  * instants to rounding. NAN if out of memory. */
 double post_peak_to_peak(int n, int m, const double complex *a);
 
-/* Default output of a response: the first probe, else the first contact. */
+/* Default output of a response: the first probe, else the first contact; of a ring of different
+ * blades on the one that swings highest. */
 post_output post_output_primary(const mhb_response *response);
 /* Harmonic index of the excitation's first harmonic: the order of the branch. */
 int post_first_harmonic(const mhb_branch *branch);
@@ -45,6 +48,9 @@ double post_amplitude(const mhb_response *response, const mhb_branch *branch, in
  * memory. */
 shb_status post_series(const mhb_response *response, const mhb_branch *branch, post_output output,
                        post_quantity quantity, double **values);
+
+/* Blade that swings highest at a point of a ring, from 0. */
+int post_worst_blade(const mhb_response *response, const mhb_branch *branch, int point);
 
 /* Names "tip", "contact 2" (plain text; a probe may have any name) and "tangential", "u, sliding",
  * "motion". */

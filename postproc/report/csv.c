@@ -44,6 +44,7 @@ static void put_header(const mhb_response *response, post_buffer *out) {
   for (int i = 0; i < response->n_interfaces; i++)
     put_name(out, "n0_", response->interface_name[i], "_N");
   if (followed(response)) post_put(out, ",%s", followed(response));
+  if (response->ring) post_put(out, ",worst_blade,worst_amplitude_m,mean_amplitude_m");
   for (int q = 0; q < response->n_probes; q++) place_names(out, response->probe_name[q], probe);
   for (int p = 0; p < response->n_pairs; p++) {
     char place[128];
@@ -124,6 +125,17 @@ static void put_quality(const mhb_response *response, const mhb_branch *branch, 
   post_put(out, "\r\n");
 }
 
+/* Of a ring of different blades: the one that swings highest, and the mean. */
+static void put_ring(const mhb_response *response, const mhb_branch *branch, int point,
+                     post_buffer *out) {
+  const int first = post_first_harmonic(branch);
+  for (post_place place = POST_PLACE_WORST; place <= POST_PLACE_MEAN; place++) {
+    const post_output output = {place, 0, POST_WHOLE};
+    if (place == POST_PLACE_WORST) post_put(out, ",%d", post_worst_blade(response, branch, point));
+    put_number(out, post_amplitude(response, branch, point, output, first));
+  }
+}
+
 static void put_point(const mhb_response *response, int b, int point, post_buffer *out) {
   const mhb_branch *branch = &response->branch[b];
   size_t            m1 = (size_t)branch->n_harmonics + 1, i = (size_t)point;
@@ -136,6 +148,7 @@ static void put_point(const mhb_response *response, int b, int point, post_buffe
   for (size_t k = 0; k < (size_t)response->n_interfaces; k++)
     put_number(out, branch->interface_n0[i * (size_t)response->n_interfaces + k]);
   if (followed(response)) put_number(out, branch->value[point]);
+  if (response->ring) put_ring(response, branch, point, out);
   for (size_t q = 0; q < probes; q++)
     put_place(branch, branch->probe + (i * probes + q) * 3 * m1, out);
   for (size_t p = 0; p < pairs; p++) {

@@ -72,6 +72,10 @@ static plan make_plan(const mhb_response *response, int n_points) {
   if (harmonics > MAX_HARMONICS) harmonics = MAX_HARMONICS;
   plan p = {.rows = FIXED_ROWS};
   for (int pass = 0; pass < 3; pass++) {
+    if (response->ring) {
+      propose_place(&p, rows, POST_PLACE_WORST, 0, pass, harmonics);
+      propose_place(&p, rows, POST_PLACE_MEAN, 0, pass, harmonics);
+    }
     for (int q = 0; q < response->n_probes; q++) {
       if (q < MAX_PLACES)
         propose_place(&p, rows, POST_PLACE_PROBE, q, pass, harmonics);

@@ -80,6 +80,24 @@ static int highest(const post_analysis *analysis, int group, const post_peak **p
   return best;
 }
 
+/* Peaks of a main curve of a ring of different blades. */
+static void put_amplification(const work *w, int branch) {
+  const mhb_response *r    = w->analysis->response;
+  const int           main = r->branch[branch].main;
+  if (main < 0 || main >= r->n_branches || !(r->branch[main].amplification.factor > 0)) return;
+  const mhb_amplification *a = &r->branch[main].amplification;
+  post_json_object(w->json, "amplification");
+  post_json_number(w->json, "factor", a->factor);
+  post_json_number(w->json, "worst", a->worst);
+  post_json_number(w->json, "worst_frequency", a->worst_at);
+  post_json_integer(w->json, "blade", a->blade);
+  post_json_number(w->json, "mean", a->mean);
+  post_json_number(w->json, "mean_frequency", a->mean_at);
+  post_json_number(w->json, "tuned", a->tuned);
+  post_json_number(w->json, "tuned_frequency", a->tuned_at);
+  post_json_end(w->json);
+}
+
 static shb_status put_curve(const work *w, int group) {
   const post_analysis *analysis = w->analysis;
   const post_group    *g        = &analysis->group[group];
@@ -104,6 +122,7 @@ static shb_status put_curve(const work *w, int group) {
     SHB_TRY(put_peak(w, branch, peak));
   else
     post_json_null(w->json, "peak");
+  if (branch >= 0) put_amplification(w, branch);
   post_json_integer(w->json, "folds", folds);
   post_json_integer(w->json, "points", points);
   post_json_end(w->json);
@@ -155,6 +174,7 @@ shb_status post_response_put(const post_analysis *analysis, const post_stress_so
   post_json_bool(json, "complete", complete);
   post_json_integer(json, "engine_order", r->engine_order);
   post_json_integer(json, "blades", r->blades);
+  if (r->ring) post_json_integer(json, "ring", r->ring);
   post_json_text(json, "output", place);
   post_json_text(json, "parameter", mhb_parameter_name(r->parameter));
   post_json_list(json, "curves");

@@ -1,0 +1,178 @@
+/* The balance of a ring of different blades: the travelling wave where they are equal, and the
+ * system by blocks against a dense one. */
+#include <lapacke.h>
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include <cmocka.h>
+
+#include "mesh/base/constants.h"
+#include "mhb/balance/newton.h"
+#include "mhb/mistuning/mistuned_ring.h"
+#include "tests/support/check.h"
+#include "tests/support/random_model.h"
+#include "tests/support/solution.h"
+
+enum { N = 5, P = 2, M = 3, NB = 2 * M + 1, OWN = 3 * P * NB, ALL = N * OWN };
+
+typedef struct {
+  modal_model        blade;
+  mhb_settings       settings, of_ring;
+  mhb_mistuned_ring *ring;
+  mhb_balance       *balance;
+} problem;
+
+static void make(problem *g, const double *deviation) {
+  random_model(P, WITH_LEFT | WITH_RESIDUAL | WITH_AREAS, 3, &g->blade);
+  g->settings              = random_settings(M);
+  g->settings.blades       = N;
+  g->settings.engine_order = 2;
+  g->of_ring               = g->settings;
+  assert_ok(mhb_mistuned_ring_create(&g->blade, &g->settings, deviation, 1, &g->ring));
+  g->of_ring.ring = g->ring;
+  assert_ok(mhb_balance_create(&g->ring->whole, &g->of_ring, &g->balance));
+  mhb_balance_set_preload(g->balance, g->settings.n0[0]);
+}
+
+static void drop(problem *g) {
+  mhb_balance_destroy(g->balance);
+  mhb_mistuned_ring_destroy(g->ring);
+  modal_model_free(&g->blade);
+}
+
+/* all[ALL] <- the wave x[OWN] in every contact, harmonic k of contact b times exp(-j k b phase). */
+static void spread(const double *x, double phase, double *all) {
+  for (int b = 0; b < N; b++)
+    for (int row = 0; row < 3 * P; row++) {
+      const double *a  = x + row * NB;
+      double       *to = all + b * OWN + row * NB;
+      to[0]            = a[0];
+      for (int k = 1; k <= M; k++) {
+        const double complex u = CMPLX(a[2 * k - 1], a[2 * k]) * cexp(-I * k * b * phase);
+        to[2 * k - 1]          = creal(u);
+        to[2 * k]              = cimag(u);
+      }
+    }
+}
+
+static double norm(int n, const double *x) {
+  double sum = 0;
+  for (int i = 0; i < n; i++) sum += x[i] * x[i];
+  return sqrt(sum);
+}
+
+static void equal_blades_move_as_a_wave(void **state) {
+  const double zero[N] = {0}, phase = SHB_TWO_PI * 2 / N;
+  problem      g = {0};
+  double       x[OWN], all[ALL], start[ALL], r[ALL];
+  int          iterations;
+  mhb_newton  *newton;
+  (void)state;
+  make(&g, zero);
+  for (double omega = 0.9; omega < 1.8; omega += 0.31) {
+    cold_solution(&g.blade, &g.settings, omega, 1e-12, x);
+    spread(x, phase, all);
+    mhb_balance_evaluate(g.balance, all, omega, r, NULL, NULL);
+    assert_below(norm(ALL, r), 1e-10 * norm(ALL, all));
+    /* Newton's method comes back to it from a disturbed ring */
+    unsigned long long seed = 4;
+    for (int i = 0; i < ALL; i++) start[i] = all[i] * (1 + 1e-3 * random_unit(&seed));
+    assert_ok(mhb_newton_create(ALL, &newton));
+    assert_int_equal(mhb_newton_solve(newton, g.balance, omega, 1e-12, start, &iterations),
+                     MHB_CONVERGED);
+    for (int i = 0; i < ALL; i++) start[i] -= all[i];
+    assert_below(norm(ALL, start), 1e-10 * norm(ALL, all));
+    mhb_newton_destroy(newton);
+  }
+  drop(&g);
+}
+
+/* x[n] <- the solution of the dense bordered system; returns the sign of the determinant. */
+static int solve_dense(const double *J, const double *column, const double *row, double *x) {
+  const size_t n     = ALL + 1;
+  int         *pivot = calloc(n, sizeof *pivot), sign = 1;
+  double      *A = calloc(n * n, sizeof *A);
+  for (size_t j = 0; j < ALL; j++) {
+    memcpy(A + j * n, J + j * ALL, sizeof(double) * ALL);
+    A[j * n + ALL] = row[j];
+  }
+  memcpy(A + ALL * n, column, sizeof(double) * n);
+  assert_int_equal(LAPACKE_dgesv(LAPACK_COL_MAJOR, ALL + 1, 1, A, ALL + 1, pivot, x, ALL + 1), 0);
+  for (size_t i = 0; i < n; i++) {
+    if (A[i * n + i] < 0) sign = -sign;
+    if (pivot[i] != (int)i + 1) sign = -sign;
+  }
+  free(A);
+  free(pivot);
+  return sign;
+}
+
+/* Slipping, stuck and open contacts side by side. */
+static void blocks_are_the_jacobian(void **state) {
+  const double       delta[N] = {0.05, -0.02, 0, 0.03, -0.06};
+  problem            g        = {0};
+  unsigned long long seed     = 9;
+  double            *J        = calloc(ALL * ALL, sizeof *J), x[ALL], r[ALL], slope[ALL];
+  double             column[ALL + 1], row[ALL + 1], y[ALL + 1], z[ALL + 1], near[ALL], moved[ALL];
+  mhb_condensation  *system;
+  (void)state;
+  make(&g, delta);
+  for (int i = 0; i < ALL; i++) x[i] = 0.4 * random_unit(&seed) * (i / OWN == 3 ? 1e-3 : 1);
+  for (int a = 0; a < 3 * P; a++) x[OWN + a * NB] = a % 3 ? 0 : -9; /* contact 1 is open */
+  for (int i = 0; i <= ALL; i++) {
+    column[i] = random_unit(&seed);
+    row[i]    = random_unit(&seed);
+    y[i] = z[i] = random_unit(&seed);
+  }
+  row[ALL] = column[ALL] = 0.3;
+  mhb_balance_evaluate(g.balance, x, 1.2, r, J, slope);
+  assert_int_equal(g.balance->eval->kind[P], MHB_PAIR_OPEN);
+  assert_int_equal(g.balance->eval->kind[0], MHB_PAIR_NONLINEAR);
+  assert_ok(mhb_condensation_create(g.balance, &system));
+  assert_true(mhb_condensation_factor(system, column, row));
+  assert_true(mhb_condensation_solve(system, y));
+  assert_int_equal(mhb_condensation_sign(system), solve_dense(J, column, row, z));
+  for (int i = 0; i <= ALL; i++) assert_near(y[i], z[i], 1e-9);
+  /* J and the slope by differences */
+  const double h = 1e-6;
+  for (int i = 0; i < ALL; i++) near[i] = x[i] + h * row[i];
+  mhb_balance_evaluate(g.balance, near, 1.2 + h, moved, NULL, NULL);
+  double away = 0, size = 0;
+  for (int i = 0; i < ALL; i++) {
+    double change = slope[i];
+    for (int j = 0; j < ALL; j++) change += J[j * ALL + i] * row[j];
+    away += pow((moved[i] - r[i]) / h - change, 2);
+    size += change * change;
+  }
+  assert_below(sqrt(away / size), 1e-4);
+  mhb_condensation_destroy(system);
+  drop(&g);
+  free(J);
+}
+
+/* The stuck limit solves the balance where the preload holds every contact. */
+static void stuck_limit_solves_it(void **state) {
+  const double delta[N] = {0.05, -0.02, 0, 0.03, -0.06};
+  problem      g        = {0};
+  double       x[ALL], r[ALL];
+  (void)state;
+  make(&g, delta);
+  mhb_balance_set_preload(g.balance, 50);
+  assert_ok(mhb_balance_linear_limit(g.balance, 1.3, 1, x));
+  mhb_balance_evaluate(g.balance, x, 1.3, r, NULL, NULL);
+  assert_true(mhb_balance_is_linear(g.balance));
+  assert_below(norm(ALL, r), 1e-12 * norm(ALL, x));
+  drop(&g);
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {cmocka_unit_test(equal_blades_move_as_a_wave),
+                                     cmocka_unit_test(blocks_are_the_jacobian),
+                                     cmocka_unit_test(stuck_limit_solves_it)};
+  return cmocka_run_group_tests(tests, NULL, NULL);
+}

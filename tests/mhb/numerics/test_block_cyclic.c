@@ -1,0 +1,107 @@
+/* The block-cyclic solver against a dense one, with and without a border. */
+#include <lapacke.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include <cmocka.h>
+
+#include "mhb/numerics/block_cyclic.h"
+#include "mhb/numerics/random.h"
+#include "tests/support/check.h"
+
+enum { MOST = 7 * 4 + 1 };
+
+/* Random blocks; the dense matrix A[n][n] column-major of the same system. */
+static void fill(mhb_block_cyclic *f, int borders, unsigned long long seed, double *A) {
+  const int N = f->blocks, s = f->size, n = N * s + borders;
+  memset(A, 0, sizeof *A * (size_t)(n * n));
+  mhb_block_cyclic_clear(f);
+  for (int b = 0; b < N; b++) {
+    double   *part[]   = {f->before, f->own, f->after};
+    const int column[] = {(b + N - 1) % N, b, (b + 1) % N};
+    for (int which = 0; which < 3; which++)
+      for (int j = 0; j < s; j++)
+        for (int i = 0; i < s; i++) {
+          const double x = mhb_random(&seed) + (which == 1 && i == j ? 2 : 0);
+          mhb_block_cyclic_at(f, part[which], b)[j * s + i] = x;
+          A[(column[which] * s + j) * n + b * s + i] += x;
+        }
+  }
+  for (int i = 0; i < N * s && borders; i++) {
+    f->column[i] = A[(n - 1) * n + i] = mhb_random(&seed);
+    f->row[i] = A[i * n + n - 1] = mhb_random(&seed);
+  }
+  if (borders) f->corner = A[n * n - 1] = 0.3;
+}
+
+/* x[n] <- the dense solution; returns the sign of the determinant. */
+static int solve_dense(int n, double *A, double *x) {
+  int pivot[MOST], sign = 1;
+  assert_int_equal(LAPACKE_dgesv(LAPACK_COL_MAJOR, n, 1, A, n, pivot, x, n), 0);
+  for (int i = 0; i < n; i++) {
+    if (A[i * n + i] < 0) sign = -sign;
+    if (pivot[i] != i + 1) sign = -sign;
+  }
+  return sign;
+}
+
+static void compare(int N, int s, int borders, unsigned long long seed) {
+  mhb_block_cyclic *f;
+  double            A[MOST * MOST], x[MOST], y[MOST];
+  const int         n = N * s + borders;
+  assert_ok(mhb_block_cyclic_create(N, s, &f));
+  fill(f, borders, seed, A);
+  for (int i = 0; i < n; i++) x[i] = y[i] = mhb_random(&seed);
+  assert_true(mhb_block_cyclic_factor(f, borders));
+  mhb_block_cyclic_solve(f, x);
+  assert_int_equal(f->sign, solve_dense(n, A, y));
+  for (int i = 0; i < n; i++) assert_near(x[i], y[i], 1e-11);
+  mhb_block_cyclic_destroy(f);
+}
+
+static void is_the_dense_solution(void **state) {
+  (void)state;
+  for (unsigned long long seed = 1; seed <= 5; seed++)
+    for (int borders = 0; borders < 2; borders++) {
+      compare(2, 3, borders, seed);
+      compare(3, 4, borders, 31 * seed);
+      compare(7, 4, borders, 57 * seed);
+      compare(7, 1, borders, 91 * seed);
+    }
+}
+
+/* Every row of blocks sums to 0: constant vectors solve it, as at a fold. */
+static void border_makes_it_regular(void **state) {
+  enum { N = 6, S = 2 };
+  mhb_block_cyclic *f;
+  double            x[N * S + 1];
+  (void)state;
+  assert_ok(mhb_block_cyclic_create(N, S, &f));
+  for (int b = 0; b < N; b++)
+    for (int i = 0; i < S; i++) {
+      mhb_block_cyclic_at(f, f->own, b)[i * (S + 1)]    = 2;
+      mhb_block_cyclic_at(f, f->before, b)[i * (S + 1)] = -1;
+      mhb_block_cyclic_at(f, f->after, b)[i * (S + 1)]  = i ? -0.5 : -1;
+    }
+  for (int b = 0; b < N; b++) f->column[b * S] = f->row[b * S] = 1;
+  memset(x, 0, sizeof x);
+  x[N * S] = 3; /* the sum of the singular part */
+  assert_true(mhb_block_cyclic_factor(f, 1));
+  mhb_block_cyclic_solve(f, x);
+  for (int b = 0; b < N; b++) {
+    assert_near(x[b * S], 0.5, 1e-14);
+    assert_near(x[b * S + 1], 0, 1e-14);
+  }
+  assert_near(x[N * S], 0, 1e-14);
+  mhb_block_cyclic_destroy(f);
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {cmocka_unit_test(is_the_dense_solution),
+                                     cmocka_unit_test(border_makes_it_regular)};
+  return cmocka_run_group_tests(tests, NULL, NULL);
+}
