@@ -1,8 +1,8 @@
 /* A ring of different blades in contact with their neighbours.
  *
- * Contact b is between blades b and b + 1, the last one between the last blade and blade 0. The load
- * of blade b lags by b times the inter-blade phase 2 pi E/N. Pairs, probes and modes of blade 0
- * come first. Those of blade 1 follow. */
+ * Contact b is between blades b and b + 1, the last one between the last blade and blade 0. The
+ * load of blade b lags by b times the inter-blade phase 2 pi E/N. Pairs, probes and modes of blade
+ * 0 come first. Those of blade 1 follow. */
 #ifndef MHB_MISTUNING_MISTUNED_RING_H
 #define MHB_MISTUNING_MISTUNED_RING_H
 

@@ -5,8 +5,8 @@
  *   (r_b, -l_b) = free_b - H_b (p_b, p_{b-1}),   H_b [2n][2n], split rr rl / lr ll
  * and the relative motion of contact b is u_b = r_b - l_{b+1}. Hence u = free - R p, where R is
  * block-cyclic: R_{b,b} = H_b,rr + H_{b+1},ll; R_{b,b-1} = H_b,rl; R_{b,b+1} = H_{b+1},lr.
- * Cost and memory are linear in the number of blades. The source is blade_receptances.c: blades have
- * receptances of their own, and that of the ring is one of those (receptance.h). */
+ * Cost and memory are linear in the number of blades. The source is blade_receptances.c. Each blade
+ * has a receptance of its own (receptance.h). */
 #ifndef MHB_STRUCTURE_RING_RECEPTANCE_H
 #define MHB_STRUCTURE_RING_RECEPTANCE_H
 

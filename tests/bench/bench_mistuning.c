@@ -4,12 +4,12 @@
  *   bench_mistuning           a blade of 20 random modes
  *   bench_mistuning --quick   the same, small rings
  *
- * Every row is one curve of a ring of N blades, with 7 harmonics at one preload. Deviations are 1 %.
- * Engine order N/8 keeps the inter-blade phase. A row has points and ms of processor time a point,
- * in all and a blade; then that over the first row's, and the wave's own. The residual follows.
- * The last figure is the distance of the ring without deviations from the travelling wave, relative.
- * Baseline: the wave. Goals: 20 ms a point at 40 blades; a cost linear in N; distance below 1e-10.
- * The exit code depends on the distance alone. */
+ * Every row is one curve of a ring of N blades with 7 harmonics at one preload. Deviations are 1 %.
+ * Engine order N/8 keeps the inter-blade phase. The columns: points; ms of processor time a point;
+ * the same a blade, and over that of the first row; the wave's own. Then come the residual and an
+ * error. It is the distance of the ring without deviations from the travelling wave, relative.
+ * Baseline: the wave. Goals: 20 ms a point at 40 blades; a cost linear in N; error below 1e-10. The
+ * exit code depends on the error alone. */
 #include <cblas.h>
 #include <math.h>
 #include <stdio.h>

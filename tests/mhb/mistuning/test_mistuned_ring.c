@@ -17,19 +17,22 @@
 
 enum { N = 4, MODES = 6 };
 
+static void check_mode(const modal_model *blade, const modal_model *w, int b, int i, double delta,
+                       int engine_order) {
+  assert_near(w->frequency[b * MODES + i], (1 + delta) * blade->frequency[i], 1e-15);
+  for (int k = 0; k <= blade->n_load; k++) {
+    const double         lag    = SHB_TWO_PI * engine_order / N * k * b;
+    const double complex wanted = blade->modal_force[k * MODES + i] * cexp(-I * lag);
+    assert_small(cabs(w->modal_force[(k * N + b) * MODES + i] - wanted), 1e-14);
+  }
+}
+
 static void check_blade(const modal_model *blade, const modal_model *w, int b, double delta,
                         int engine_order) {
   char last[8];
   snprintf(last, sizeof last, ".%d", b);
   assert_has(w->probe_name[b * blade->n_probes], last);
-  for (int i = 0; i < MODES; i++) {
-    assert_near(w->frequency[b * MODES + i], (1 + delta) * blade->frequency[i], 1e-15);
-    for (int k = 0; k <= blade->n_load; k++) {
-      const double         lag    = SHB_TWO_PI * engine_order / N * k * b;
-      const double complex wanted = blade->modal_force[k * MODES + i] * cexp(-I * lag);
-      assert_small(cabs(w->modal_force[(k * N + b) * MODES + i] - wanted), 1e-14);
-    }
-  }
+  for (int i = 0; i < MODES; i++) check_mode(blade, w, b, i, delta, engine_order);
   assert_near(w->area[2 * b + 1], blade->area[1], 0);
 }
 

@@ -10,7 +10,7 @@
 #include <cmocka.h>
 
 #include "mhb/mistuning/dense_ring.h"
-#include "mhb/structure/ring_receptance.h"
+#include "mhb/structure/receptance.h"
 #include "tests/support/check.h"
 #include "tests/support/random_model.h"
 
