@@ -231,7 +231,9 @@ static shb_status make_periodic(mesh_solid *solid, mesh_fe *mesh, int right_set,
   }
   patch_free(&right);
   patch_free(&left);
-  if (!periodic) shb_progress_note(solid->progress, "the contact faces cannot be meshed alike");
+  if (!periodic)
+    shb_progress_note(solid->progress, "%s and %s cannot be meshed alike",
+                      mesh_fe_set_name(mesh, right_set), mesh_fe_set_name(mesh, left_set));
   *again = *again || periodic;
   return status;
 }
@@ -240,6 +242,7 @@ shb_status mesh_solid_make_periodic(mesh_solid *solid, mesh_fe *mesh, bool *agai
   const mesh_source *source = solid->source;
   *again                    = false;
   if (source->blades == 0) return SHB_OK;
+  SHB_TRY(make_periodic(solid, mesh, MESH_CYCLIC_RIGHT, MESH_CYCLIC_LEFT, again));
   if (source->n_contacts == 0)
     return make_periodic(solid, mesh, MESH_CONTACT_RIGHT, MESH_CONTACT_LEFT, again);
   for (int i = 0; i < source->n_contacts; i++) {

@@ -15,6 +15,7 @@
 #include <cmocka.h>
 
 #include "mesh/base/constants.h"
+#include "mesh/core/cyclic_sides.h"
 #include "mesh/core/face_match.h"
 #include "mesh/core/jacobian.h"
 #include "mesh/gmsh/session.h"
@@ -328,6 +329,44 @@ static void sides_are_made_to_match(void **state) {
   }
 }
 
+/* A disc with a blade, in mm: of a script and of a STEP file the cyclic sides match by rule. */
+static void cyclic_sides_of_solids_match(void **state) {
+  (void)state;
+  const double angle = SHB_TWO_PI / BLADES, r = .32;
+  int          ierr = 0;
+  mesh_session session;
+  put(scratch("disc.geo"),
+      "SetFactory(\"OpenCASCADE\");\nRectangle(1) = {0, 300, 0, 50, 40};\n"
+      "Extrude {{1, 0, 0}, {0, 0, 0}, 2*Pi/23} { Surface{1}; }\n"
+      "Box(2) = {10, 330, 40, 30, 60, 10};\nBooleanUnion{ Volume{1}; Delete; }{ Volume{2}; Delete; "
+      "}\n");
+  assert_ok(mesh_session_open(&session));
+  gmshOpen(scratch("disc.geo"), &ierr);
+  gmshWrite(scratch("disc.step"), &ierr);
+  assert_int_equal(ierr, 0);
+  mesh_session_close(&session);
+  for (int step = 0; step < 2; step++) {
+    mesh_fe           mesh;
+    mesh_cyclic_sides sides;
+    mesh_source       source = {.path   = scratch(step ? "disc.step" : "disc.geo"),
+                                .unit   = 1e-3,
+                                .size   = .014,
+                                .axis   = MESH_AXIS_X,
+                                .blades = BLADES};
+    source.rules.usual[MESH_ROOT] =
+        (mesh_rule){.kind = MESH_RULE_RADIUS, .radius = .3, .tolerance = 1e-6};
+    source.rules.usual[MESH_CYCLIC_LEFT] =
+        (mesh_rule){.kind = MESH_RULE_NEAREST, .at = {.02, r, 0}};
+    source.rules.usual[MESH_CYCLIC_RIGHT] =
+        (mesh_rule){.kind = MESH_RULE_NEAREST, .at = {.02, r * cos(angle), r * sin(angle)}};
+    assert_ok(mesh_source_read(&source, NULL, &mesh));
+    assert_ok(mesh_cyclic_pair(&mesh, source.axis, BLADES, &sides));
+    print_message("%s: %d pairs, gap %.1e m\n", step ? "STEP" : ".geo", sides.n, sides.gap);
+    assert_true(sides.n > 20 && sides.gap < 1e-9);
+    mesh_fe_free(&mesh);
+  }
+}
+
 static const char block_text[] = /* 40 x 10 x 100 mm of gmsh's own geometry */
     "Point(1)={0,0,100,%g};Point(2)={40,0,100,%g};Point(3)={40,10,100,%g};Point(4)={0,10,100,%g};\n"
     "Line(1)={1,2};Line(2)={2,3};Line(3)={3,4};Line(4)={4,1};\n"
@@ -397,8 +436,9 @@ int main(void) {
       cmocka_unit_test(every_msh_format_is_read),    cmocka_unit_test(what_is_written_comes_back),
       cmocka_unit_test(rules_find_the_faces),        cmocka_unit_test(curved_faces_are_found),
       cmocka_unit_test(groups_may_have_other_names), cmocka_unit_test(solids_are_meshed),
-      cmocka_unit_test(sides_are_made_to_match),     cmocka_unit_test(bad_solids_are_refused),
-      cmocka_unit_test(groups_that_cannot_be_right), cmocka_unit_test(nodes_are_foreseen),
+      cmocka_unit_test(sides_are_made_to_match),     cmocka_unit_test(cyclic_sides_of_solids_match),
+      cmocka_unit_test(bad_solids_are_refused),      cmocka_unit_test(groups_that_cannot_be_right),
+      cmocka_unit_test(nodes_are_foreseen),
   };
   return cmocka_run_group_tests_name("mesh.source", tests, scratch_make, scratch_remove);
 }
