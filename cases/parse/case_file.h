@@ -95,6 +95,7 @@ typedef struct {
   int         mesh_unit; /* place in the words of mesh.unit */
   mesh_source source;    /* mesh.file and the keys that belong to it */
   mesh_blade  blade;
+  bool        has_disc; /* mesh.blade.disc is given */
 
   fem_orthotropic constants;           /* material.E, nu, G, axes */
   double          endurance, ultimate; /* material.fatigue, Pa; 0: not given */

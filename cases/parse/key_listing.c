@@ -69,6 +69,7 @@ void case_print_keys(FILE *out) {
 static const char *applies_text(const case_key *key) {
   static const char *const text[] = {
       [CASE_IF_BLADE]      = "parametric blade",
+      [CASE_IF_DISC]       = "with `mesh.blade.disc`",
       [CASE_IF_MESH_FILE]  = "with `mesh.file`",
       [CASE_IF_SIZE]       = "`mesh.file` is a solid",
       [CASE_IF_OWN_MODES]  = "without `modal.file`",

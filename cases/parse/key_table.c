@@ -45,6 +45,15 @@ static const case_key table[] = {
     {"mesh.blade.root.height", CASE_NUMBER, "m", 0, 100, true, .required = true,
      AT(blade.root_height), .stages = CASE_MESH, .when = CASE_IF_BLADE,
      .help = "root block, radial, below the first section"},
+    {"mesh.blade.disc.bore", CASE_NUMBER, "m", 0, 100, true, .required = true, AT(blade.disc_bore),
+     .stages = CASE_MESH, .when = CASE_IF_DISC,
+     .help = "a disc below the root block, with tet10: radius of its bore, which is clamped"},
+    {"mesh.blade.disc.web", CASE_NUMBER, "m", 0, 100, true, .required = true, AT(blade.disc_web),
+     .stages = CASE_MESH, .when = CASE_IF_DISC,
+     .help = "axial thickness of the web"},
+    {"mesh.blade.disc.rim", CASE_NUMBER, "m", 0, 100, true, .required = true, AT(blade.disc_rim),
+     .stages = CASE_MESH, .when = CASE_IF_DISC,
+     .help = "radial height of the rim, which is as long as the root block"},
     {"mesh.blade.sections", CASE_LIST, "", 2, MESH_MAX_SECTIONS, .required = true,
      LIST(blade.section, blade.n_sections), .stages = CASE_MESH, .when = CASE_IF_BLADE,
      .help = "airfoil sections, 2 to 16, radius increasing: a list of {radius, chord, thickness, "
@@ -456,6 +465,8 @@ bool case_key_applies(const case_key *key, const case_file *file) {
   switch (key->when) {
     case CASE_IF_BLADE:
       return blade;
+    case CASE_IF_DISC:
+      return blade && file->has_disc;
     case CASE_IF_MESH_FILE:
       return own && file->mesh_file;
     case CASE_IF_SIZE:

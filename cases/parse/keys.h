@@ -49,6 +49,7 @@ typedef enum {
 typedef enum {
   CASE_ALWAYS,
   CASE_IF_BLADE,      /* parametric blade: neither mesh.file nor modal.file */
+  CASE_IF_DISC,       /* the same, with mesh.blade.disc */
   CASE_IF_MESH_FILE,  /* mesh.file, and no modal.file */
   CASE_IF_SIZE,       /* mesh.file is a solid */
   CASE_IF_OWN_MODES,  /* no modal.file */

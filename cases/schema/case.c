@@ -67,6 +67,7 @@ static void share(case_reader *r) {
     one->material.E    = one->constants.E[0];
     one->material.nu   = one->constants.nu[0];
   }
+  file->has_disc    = case_reader_has_block(r, "mesh.blade.disc");
   file->has_contact = case_reader_has_block(r, "contact");
   file->only_modes  = !file->modal_file && !file->has_contact && !case_reader_has_block(r, "mhb");
   file->load.field  = file->field_file;

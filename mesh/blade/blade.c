@@ -8,10 +8,12 @@
 #include "mesh/base/constants.h"
 #include "mesh/base/vec3.h"
 #include "mesh/blade/airfoil.h"
+#include "mesh/blade/disc.h"
 #include "mesh/blade/face_groups.h"
 #include "mesh/blade/frame.h"
 #include "mesh/blade/hex_sweep.h"
 #include "mesh/blade/shroud.h"
+#include "mesh/core/cyclic_sides.h"
 #include "mesh/core/face_match.h"
 #include "mesh/core/fe_mesh.h"
 #include "mesh/core/jacobian.h"
@@ -72,7 +74,8 @@ static shb_status check_size(const mesh_blade *blade) {
             "mesh.blade.shroud_size: %g mm; it must be positive (0: as mesh.blade.size)",
             1e3 * blade->shroud_size);
   /* 12 nodes in a cube of the element size: about 8.5 tetrahedra with 1.4 nodes each */
-  double volume = blade->root_length * blade->root_width * blade->root_height;
+  double volume =
+      blade->root_length * blade->root_width * blade->root_height + mesh_disc_volume(blade);
   for (int i = 1; i < blade->n_sections; i++) {
     const mesh_section *a = &blade->section[i - 1], *b = &blade->section[i];
     volume += 0.7 * (b->radius - a->radius) * a->chord * a->thickness;
@@ -95,6 +98,7 @@ static shb_status check(const mesh_blade *blade) {
   SHB_TRY(mesh_shroud_check(blade));
   SHB_TRY(check_root(blade));
   SHB_TRY(check_foot(blade));
+  SHB_TRY(mesh_disc_check(blade));
   return check_size(blade);
 }
 
@@ -111,16 +115,20 @@ static shb_status build_root(const mesh_blade *blade, const mesh_frame *frame, i
   return SHB_OK;
 }
 
-/* Fuse airfoil, root and the legs of the shroud into one volume. */
-static shb_status fuse(int airfoil, int root, const int shroud[MESH_SHROUD_LEGS], int *volume) {
-  int    object[2] = {3, airfoil}, tools[2 * MESH_SHROUD_LEGS + 2] = {3, root};
+/* Fuse airfoil, root, the legs of the shroud and the disc (0: none) into one volume. */
+static shb_status fuse(int airfoil, int root, const int shroud[MESH_SHROUD_LEGS], int disc,
+                       int *volume) {
+  enum { MOST = 2 * MESH_SHROUD_LEGS + 4 };
+  int    object[2] = {3, airfoil}, tools[MOST] = {3, root};
   int   *made = NULL, **map = NULL;
   size_t n_made = 0, *n_map = NULL, nn_map = 0;
   for (int i = 0; i < MESH_SHROUD_LEGS; i++) {
     tools[2 * i + 2] = 3;
     tools[2 * i + 3] = shroud[i];
   }
-  GMSH_TRY(case_key, gmshModelOccFuse(object, 2, tools, 2 * MESH_SHROUD_LEGS + 2, &made, &n_made,
+  tools[MOST - 2] = 3;
+  tools[MOST - 1] = disc;
+  GMSH_TRY(case_key, gmshModelOccFuse(object, 2, tools, disc ? MOST : MOST - 2, &made, &n_made,
                                       &map, &n_map, &nn_map, -1, 1, 1, &ierr));
   int solids = 0;
   for (size_t i = 0; i + 1 < n_made; i += 2) {
@@ -151,11 +159,12 @@ static shb_status prune(void) {
 }
 
 static shb_status build(const mesh_blade *blade, const mesh_frame *frame) {
-  int airfoil = 0, root = 0, shroud[MESH_SHROUD_LEGS], volume = 0;
+  int airfoil = 0, root = 0, shroud[MESH_SHROUD_LEGS], disc = 0, volume = 0;
   SHB_TRY(mesh_airfoil_build(blade, frame, &airfoil));
   SHB_TRY(build_root(blade, frame, &root));
   SHB_TRY(mesh_shroud_build(blade, frame, shroud));
-  SHB_TRY(fuse(airfoil, root, shroud, &volume));
+  if (mesh_disc_wanted(blade)) SHB_TRY(mesh_disc_build(blade, frame, &disc));
+  SHB_TRY(fuse(airfoil, root, shroud, disc, &volume));
   GMSH_TRY(case_key, gmshModelOccSynchronize(&ierr));
   SHB_TRY(prune());
   return mesh_face_groups_set(blade, frame, volume);
@@ -315,8 +324,10 @@ static void note_worst_corner(const mesh_fe *mesh, shb_progress *progress) {
 
 /* Check the mesh as it will be read: no element inverted, contact faces match. */
 static shb_status verify(const mesh_blade *blade, mesh_fe *mesh, shb_progress *progress) {
-  int pairs = 0, *right = NULL, *left = NULL;
+  int               pairs = 0, *right = NULL, *left = NULL;
+  mesh_cyclic_sides sides;
   SHB_TRY(straighten(blade, mesh, progress));
+  SHB_TRY(mesh_cyclic_pair(mesh, blade->axis, blade->blades, &sides));
   SHB_TRY(mesh_fe_match(mesh, blade->axis, blade->blades, &pairs, &right, &left));
   free(right);
   free(left);

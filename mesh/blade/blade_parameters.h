@@ -28,7 +28,9 @@ typedef struct {
   mesh_axis    axis;     /* engine axis */
   double       psi, phi; /* orientation of the contact plane, rad (Chen, Yang, Menq 1999, eq. 2) */
   double       root_length, root_width, root_height; /* axial, tangential, radial, m */
-  int          n_sections;                           /* at least 2, in order of radius */
+  double       disc_bore;          /* radius of the clamped bore of a disc, m; 0: no disc */
+  double       disc_web, disc_rim; /* axial thickness of the web, radial height of the rim, m */
+  int          n_sections;         /* at least 2, in order of radius */
   mesh_section section[MESH_MAX_SECTIONS];
   double       shroud_length;    /* axial, m */
   double       shroud_thickness; /* radial, m; begins at the last section */

@@ -7,6 +7,7 @@
 #include "mesh/base/constants.h"
 #include "mesh/base/vec3.h"
 #include "mesh/blade/airfoil.h"
+#include "mesh/blade/disc.h"
 #include "mesh/blade/shroud.h"
 #include "mesh/core/fe_mesh.h"
 #include "mesh/gmsh/session.h"
@@ -114,20 +115,37 @@ shb_status mesh_face_groups_name(int dimension, int entity, const char *name) {
   return SHB_OK;
 }
 
-static shb_status make_periodic(const mesh_blade *blade, const mesh_frame *frame, int *right,
-                                int *left) {
+static shb_status make_periodic(const mesh_blade *blade, const mesh_frame *frame, const char *key,
+                                size_t n, int *right, int *left) {
   double matrix[16];
   mesh_axis_matrix(frame->axis, SHB_TWO_PI / blade->blades, matrix);
-  GMSH_TRY("mesh.blade.shroud", gmshModelMeshSetPeriodic(2, right, MESH_SHROUD_LEGS, left,
-                                                         MESH_SHROUD_LEGS, matrix, 16, &ierr));
+  GMSH_TRY(key, gmshModelMeshSetPeriodic(2, right, n, left, n, matrix, 16, &ierr));
   return SHB_OK;
+}
+
+/* Name the sides of the disc. */
+static shb_status set_disc(const mesh_blade *blade, const mesh_frame *frame, const face *faces,
+                           int n) {
+  int side[2];
+  if (!mesh_disc_wanted(blade)) return SHB_OK;
+  for (int right = 0; right < 2; right++) {
+    double centre[3];
+    mesh_disc_side_centre(blade, right, centre);
+    SHB_TRY(find_centre(faces, n, centre, "a side of the disc", &side[right]));
+  }
+  SHB_TRY(mesh_face_groups_name(2, side[1], mesh_set_name(MESH_CYCLIC_RIGHT)));
+  SHB_TRY(mesh_face_groups_name(2, side[0], mesh_set_name(MESH_CYCLIC_LEFT)));
+  return make_periodic(blade, frame, "mesh.blade.disc", 1, &side[1], &side[0]);
 }
 
 static shb_status set_all(const mesh_blade *blade, const mesh_frame *frame, const face *faces,
                           int n) {
   int    root = 0, load = 0, side[2][MESH_SHROUD_LEGS];
   double bottom[3] = {0, 0, blade->section[0].radius - blade->root_height};
-  SHB_TRY(find_centre(faces, n, bottom, "the bottom of the root block", &root));
+  if (mesh_disc_wanted(blade)) mesh_disc_bore_centre(blade, bottom);
+  SHB_TRY(find_centre(
+      faces, n, bottom,
+      mesh_disc_wanted(blade) ? "the bore of the disc" : "the bottom of the root block", &root));
   SHB_TRY(find_pressure(blade, frame, faces, n, &load));
   for (int right = 0; right < 2; right++)
     for (int leg = 0; leg < MESH_SHROUD_LEGS; leg++) {
@@ -140,7 +158,8 @@ static shb_status set_all(const mesh_blade *blade, const mesh_frame *frame, cons
       mesh_face_groups_name(2, side[1][MESH_SHROUD_CONTACT], mesh_set_name(MESH_CONTACT_RIGHT)));
   SHB_TRY(mesh_face_groups_name(2, side[0][MESH_SHROUD_CONTACT], mesh_set_name(MESH_CONTACT_LEFT)));
   SHB_TRY(mesh_face_groups_name(2, load, mesh_set_name(MESH_LOAD)));
-  return make_periodic(blade, frame, side[1], side[0]);
+  SHB_TRY(set_disc(blade, frame, faces, n));
+  return make_periodic(blade, frame, "mesh.blade.shroud", MESH_SHROUD_LEGS, side[1], side[0]);
 }
 
 shb_status mesh_face_groups_set(const mesh_blade *blade, const mesh_frame *frame, int volume) {

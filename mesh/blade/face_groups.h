@@ -7,9 +7,9 @@
 #include "mesh/blade/frame.h"
 
 /* Name the physical groups root, contact_right, contact_left, load and body on gmsh's current
- * model. Each leg of the shroud's right side becomes a periodic copy of the left one.
- * Errors: SHB_ERR_INPUT if a face is not found exactly once: the parts of the blade cut into each
- * other. */
+ * model, with a disc also cyclic_right and cyclic_left, and make these periodic. Each leg of the
+ * shroud's right side becomes a periodic copy of the left one. Errors: SHB_ERR_INPUT if a face is
+ * not found exactly once: the parts of the blade cut into each other. */
 shb_status mesh_face_groups_set(const mesh_blade *blade, const mesh_frame *frame, int volume);
 
 /* Make a physical group of one entity. */

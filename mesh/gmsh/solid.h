@@ -24,9 +24,10 @@ void       mesh_solid_close(mesh_solid *solid);
  * nodes. */
 shb_status mesh_solid_mesh(mesh_solid *solid, mesh_fe *mesh);
 
-/* Prepare matching contact faces and cyclic sides for the next mesh. Nothing is done if the faces to
- * the neighbour match node for node. Otherwise the mesh of the right face becomes a copy of that of
- * the left one, rotated by the sector angle. Swaps the two groups if they are the wrong way round.
+/* Prepare matching contact faces and cyclic sides for the next mesh. Nothing is done if the faces
+ * to the neighbour match node for node. Otherwise the mesh of the right face becomes a copy of that
+ * of the left one, rotated by the sector angle. Swaps the two groups if they are the wrong way
+ * round.
  *   mesh   in/out  coordinates in m
  *   again  out     true: mesh again. False also if the faces of the two sides do not correspond. */
 shb_status mesh_solid_make_periodic(mesh_solid *solid, mesh_fe *mesh, bool *again);

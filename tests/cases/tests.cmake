@@ -9,7 +9,7 @@ if(SHROUDHB_PYTHON)
   set_tests_properties(cases.schema.key_schema PROPERTIES SKIP_RETURN_CODE 77)
 endif()
 
-foreach(noun case faults stage_settings motion)
+foreach(noun case faults stage_settings motion nodal_diameters)
   shb_test(cases/schema ${noun} shb_case)
 endforeach()
 
