@@ -26,6 +26,7 @@ static const shb_provenance origin = {"case.yaml", "name: case\n", "mesh.blade\n
 static mesh_blade on_a_disc(void) {
   mesh_blade blade = odd_blade();
   blade.elements   = MESH_TET10;
+  blade.axis       = MESH_AXIS_MZ;
   blade.root_width = 0.0315;
   blade.disc_bore  = 0.143;
   blade.disc_web   = 0.0117;
@@ -54,37 +55,37 @@ static double area_of(const mesh_fe *mesh, mesh_set_id id) {
   return sum;
 }
 
-/* The clamp is the bore; the sides have the area of the profile and match, about several axes. */
+/* All nodes of the clamp lie on the bore. */
+static void check_bore(const mesh_blade *blade, const mesh_fe *mesh) {
+  double axial[3], across[3], worst = 0;
+  mesh_axis_vector(blade->axis, axial);
+  assert_true(mesh->set[MESH_ROOT].n > 0);
+  for (int k = 0; k < 6 * mesh->set[MESH_ROOT].n; k++) {
+    vec3_cross(axial, mesh->coordinates + 3 * mesh->set[MESH_ROOT].nodes[k], across);
+    worst = fmax(worst, fabs(vec3_norm(across) - blade->disc_bore));
+  }
+  assert_near(worst, 0, 1e-9);
+}
+
+/* The clamp is the bore; the sides have the area of the profile and match. */
 static void groups_of_a_disc(void **state) {
   (void)state;
-  const mesh_axis axes[] = {MESH_AXIS_X, MESH_AXIS_MZ};
-  for (int i = 0; i < 2; i++) {
-    mesh_blade        blade = on_a_disc();
-    mesh_cyclic_sides sides;
-    double            axial[3];
-    blade.axis   = axes[i];
-    mesh_fe mesh = make(&blade);
-    mesh_axis_vector(axes[i], axial);
-    assert_true(mesh.set[MESH_ROOT].n > 0);
-    for (int k = 0; k < 6 * mesh.set[MESH_ROOT].n; k++) {
-      const double *x = mesh.coordinates + 3 * mesh.set[MESH_ROOT].nodes[k];
-      double        across[3];
-      vec3_cross(axial, x, across);
-      assert_near(vec3_norm(across), blade.disc_bore, 1e-9);
-    }
-    /* the top of the rim is half way from the corners of the block to its top */
-    const double corner = hypot(0.25 - 0.017, 0.0315 / 2), top = (corner + 0.25) / 2;
-    const double foot = top - blade.disc_rim;
-    const double area = blade.disc_rim * blade.root_length + (foot - 0.143) * blade.disc_web;
-    assert_near(area_of(&mesh, MESH_CYCLIC_RIGHT), area, 1e-12);
-    assert_near(area_of(&mesh, MESH_CYCLIC_LEFT), area, 1e-12);
-    const mesh_face_set right = mesh.set[MESH_CYCLIC_RIGHT];
-    assert_ok(mesh_cyclic_pair(&mesh, axes[i], blade.blades, &sides));
-    assert_ptr_equal(mesh.set[MESH_CYCLIC_RIGHT].nodes, right.nodes); /* not swapped */
-    print_message("%d pairs, gap %.1e m\n", sides.n, sides.gap);
-    assert_true(sides.n > 50 && sides.gap < 1e-9);
-    mesh_fe_free(&mesh);
-  }
+  mesh_blade          blade = on_a_disc();
+  mesh_cyclic_sides   sides;
+  mesh_fe             mesh  = make(&blade);
+  const mesh_face_set right = mesh.set[MESH_CYCLIC_RIGHT];
+  /* the top of the rim is half way from the corners of the block to its top */
+  const double corner = hypot(0.25 - 0.017, 0.0315 / 2), top = (corner + 0.25) / 2;
+  const double foot = top - blade.disc_rim;
+  const double area = blade.disc_rim * blade.root_length + (foot - 0.143) * blade.disc_web;
+  check_bore(&blade, &mesh);
+  assert_near(area_of(&mesh, MESH_CYCLIC_RIGHT), area, 1e-12);
+  assert_near(area_of(&mesh, MESH_CYCLIC_LEFT), area, 1e-12);
+  assert_ok(mesh_cyclic_pair(&mesh, blade.axis, blade.blades, &sides));
+  assert_ptr_equal(mesh.set[MESH_CYCLIC_RIGHT].nodes, right.nodes); /* not swapped */
+  print_message("%d pairs, gap %.1e m\n", sides.n, sides.gap);
+  assert_true(sides.n > 50 && sides.gap < 1e-9);
+  mesh_fe_free(&mesh);
 }
 
 /* The volume by Pappus is that of a ring of rectangles. */
