@@ -103,13 +103,31 @@ shb_status case_model_read(const case_file *file, const char *path, int modes, b
   SHB_TRY(modal_model_read(path, &m->model));
   SHB_TRY(check_use(path, &m->model));
   if (modes > 0) SHB_TRY(modal_model_reduce(&m->model, modes, residuals));
-  return file->mistuning.kind == CASE_TUNED ? SHB_OK : make_ring(file, m);
+  if (file->mistuning.kind != CASE_TUNED) return make_ring(file, m);
+  if (file->points >= 0 || file->modal_file) return SHB_OK;
+  SHB_TRY(contact_points_choose(&m->model, &m->settings, file->points_tolerance, &m->points));
+  if (m->points) m->settings.other_pairs = &m->points->pairs;
+  return SHB_OK;
+}
+
+shb_status case_model_join(case_model *m, int patches) {
+  SHB_TRY(contact_points_join(&m->model, patches, &m->points));
+  if (m->points) m->settings.other_pairs = &m->points->pairs;
+  return SHB_OK;
+}
+
+shb_status case_model_judge_points(case_model *m) {
+  if (m->points || m->run_up || m->ring) return SHB_OK;
+  SHB_TRY(contact_points_halve(&m->model, &m->points));
+  if (m->points) m->settings.other_pairs = &m->points->pairs;
+  return SHB_OK;
 }
 
 void case_model_free(case_model *m) {
   if (!m->run_up && !m->ring) modal_model_free(&m->model);
   mhb_mistuned_ring_destroy(m->ring);
   modal_model_free(&m->tuned);
+  contact_points_free(m->points);
   mhb_speed_model_destroy(m->top);
   mhb_speed_table_destroy(m->run_up);
   *m = (case_model){0};

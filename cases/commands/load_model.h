@@ -2,6 +2,7 @@
 #ifndef CASES_COMMANDS_LOAD_MODEL_H
 #define CASES_COMMANDS_LOAD_MODEL_H
 
+#include "cases/commands/contact_points.h"
 #include "cases/parse/case_file.h"
 #include "mhb/mistuning/mistuned_ring.h"
 #include "mhb/structure/speed_model.h"
@@ -14,6 +15,7 @@ typedef struct {
   mhb_mistuned_ring *ring;   /* NULL: equal blades */
   mhb_speed_table   *run_up; /* NULL: one speed */
   mhb_speed_model   *top;    /* owner of the model in a run-up */
+  contact_points    *points; /* the model's finer or coarser one; NULL: none */
 } case_model;
 
 /* Read the modal file at path, with all speeds in a run-up.
@@ -21,9 +23,19 @@ typedef struct {
  *   modes      in  number of modes kept; 0: all
  *   residuals  in  true: modes left out respond quasi-statically; false: not at all
  *
- * Errors: as modal_speeds_read, mhb_speed_table_create. To be freed in any case. */
+ * With contact.points: auto the pairs of the file are joined to as many as the case needs.
+ *
+ * Errors: as modal_speeds_read, contact_points_choose, mhb_speed_table_create. To be freed in any
+ * case. */
 shb_status case_model_read(const case_file *file, const char *path, int modes, bool residuals,
                            case_model *model);
-void       case_model_free(case_model *model);
+
+/* Join the pairs of a model, which has all pairs of its file, to patches. */
+shb_status case_model_join(case_model *model, int patches);
+
+/* Estimate the spatial error from half as many pairs, where no finer model does. */
+shb_status case_model_judge_points(case_model *model);
+
+void case_model_free(case_model *model);
 
 #endif

@@ -6,9 +6,9 @@
 #include <string.h>
 
 #include "cases/commands/command.h"
-#include "cases/commands/contact_command.h"
 #include "cases/commands/load_model.h"
 #include "cases/commands/up_to_date.h"
+#include "cases/contact/contact_command.h"
 #include "cases/schema/case.h"
 #include "cases/schema/case_paths.h"
 #include "mesh/base/progress.h"
@@ -80,6 +80,18 @@ static void note_run_up(shb_progress *progress, const case_model *model) {
                       r->n_dropped);
 }
 
+/* How many contact points contact.points: auto has chosen. */
+static void note_points(shb_progress *progress, const case_file *file, const case_model *model) {
+  if (model->points)
+    shb_progress_note(progress,
+                      "contact.points auto: %d of %d, estimated spatial error %.2g (tolerance %g)",
+                      model->model.n_pairs, model->points->other.n_pairs, model->points->estimate,
+                      file->points_tolerance);
+  else
+    shb_progress_note(progress, "contact.points auto: all %d, fewer do not keep the tolerance %g",
+                      model->model.n_pairs, file->points_tolerance);
+}
+
 static shb_status solve(const case_file *file, const char *modal, char *settings,
                         const char *output, shb_progress *progress) {
   case_model     model;
@@ -87,6 +99,8 @@ static shb_status solve(const case_file *file, const char *modal, char *settings
   shb_provenance provenance = command_provenance(file, settings, "shroudhb-mhb");
   shb_status     status     = case_model_read(file, modal, 0, true, &model);
   if (status == SHB_OK && model.run_up) note_run_up(progress, &model);
+  if (status == SHB_OK && file->points < 0) note_points(progress, file, &model);
+  if (status == SHB_OK && !file->modal_file) status = case_model_judge_points(&model);
   if (status == SHB_OK && model.settings.track != MHB_TRACK_NOTHING)
     status = mhb_tracked_response(&model.model, &model.settings, output, &provenance, progress,
                                   &response);

@@ -132,7 +132,7 @@ static modal_settings stage_settings(const case_file *file, modal_probe probe[CA
       .n_probes         = file->n_probes,
       .probe            = probe,
       .to_ground        = mhb->to_ground,
-      .points           = file->points,
+      .points           = file->points > 0 ? file->points : 0,
       .psi              = mhb->has_psi ? &mhb->psi : NULL,
       .phi              = mhb->has_phi ? &mhb->phi : NULL,
       .may_be_free      = !file->has_contact,

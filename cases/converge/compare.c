@@ -2,6 +2,7 @@
 
 #include <math.h>
 #include <stdlib.h>
+#include <string.h>
 
 #include "cases/converge/matched_point.h"
 #include "mesh/base/progress.h"
@@ -143,10 +144,36 @@ static int main_branches(const mhb_response *response) {
   return n;
 }
 
-static shb_status compare_all(comparison *c, const char *stem, const char *reference) {
+/* The motion of all curves becomes that of the patches: the mean over their pairs. */
+static shb_status join_motion(const modal_joining *j, mhb_response *response) {
+  for (int i = 0; i < response->n_branches; i++) {
+    mhb_branch     *b = &response->branch[i];
+    const size_t    K = (size_t)b->n_harmonics + 1, from = 3 * (size_t)j->n_pairs * K;
+    const size_t    to   = 3 * (size_t)j->n_patches * K;
+    double complex *mean = calloc(to + 1, sizeof *mean);
+    SHB_CHECK(mean, SHB_ERR_IO, "out of memory");
+    for (size_t p = 0; p < (size_t)b->n_points; p++) { /* in place: patches are fewer */
+      const double complex *x = b->motion + p * from;
+      memset(mean, 0, to * sizeof *mean);
+      for (size_t row = 0; row < 3 * (size_t)j->n_pairs; row++) {
+        double complex *at = mean + (3 * (size_t)j->patch[row / 3] + row % 3) * K;
+        for (size_t k = 0; k < K; k++) at[k] += j->weight[row / 3] * x[row * K + k];
+      }
+      memcpy(b->motion + p * to, mean, to * sizeof *mean);
+    }
+    free(mean);
+  }
+  response->n_pairs = j->n_patches;
+  return SHB_OK;
+}
+
+static shb_status compare_all(comparison *c, const modal_joining *joining, const char *stem,
+                              const char *reference) {
   SHB_TRY(load_curves(stem, &c->rung));
   SHB_TRY(load_curves(reference, &c->reference));
   const mhb_response *rung = c->rung.response, *finer = c->reference.response;
+  if (joining && rung->n_pairs == joining->n_patches && finer->n_pairs == joining->n_pairs)
+    SHB_TRY(join_motion(joining, c->reference.response));
   SHB_CHECK(main_branches(rung) == main_branches(finer), SHB_ERR_INPUT,
             "%s and %s hold different preloads", stem, reference);
   for (int b = 0; b < finer->n_branches; b++) {
@@ -222,11 +249,13 @@ static void end(comparison *c) {
   }
 }
 
-shb_status compare_rungs(const modal_model *model, const mhb_settings *settings, post_output output,
-                         const char *stem, const char *reference, rung_error *error) {
-  *error            = (rung_error){0};
-  comparison c      = {.model = model, .settings = settings, .output = output, .error = error};
-  shb_status status = compare_all(&c, stem, reference);
+shb_status compare_rungs(const case_model *source, post_output output, const char *stem,
+                         const char *reference, rung_error *error) {
+  *error       = (rung_error){0};
+  comparison c = {
+      .model = &source->model, .settings = &source->settings, .output = output, .error = error};
+  const modal_joining *joining = source->points ? &source->points->joining : NULL;
+  shb_status           status  = compare_all(&c, joining, stem, reference);
   end(&c);
   return status;
 }

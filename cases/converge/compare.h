@@ -2,6 +2,7 @@
 #ifndef CASES_CONVERGE_COMPARE_H
 #define CASES_CONVERGE_COMPARE_H
 
+#include "cases/commands/load_model.h"
 #include "cases/converge/rung.h"
 #include "modal/model/model.h"
 
@@ -20,11 +21,12 @@
  * A secondary branch that only one of them has counts with its distance from the nearest branch of
  * the same preload in the other file.
  *
- *   model, settings  in  of the rung
+ *   source  in  model and settings of the rung. Where the rung's pairs are those of the reference
+ *               joined to patches, the motion of the reference becomes the mean over each patch.
  *
  * Errors: SHB_ERR_INPUT the files do not hold the same preloads; SHB_ERR_IO; SHB_INTERRUPTED. */
-shb_status compare_rungs(const modal_model *model, const mhb_settings *settings, post_output output,
-                         const char *stem, const char *reference, rung_error *error);
+shb_status compare_rungs(const case_model *source, post_output output, const char *stem,
+                         const char *reference, rung_error *error);
 
 /* The same against points of time integration in the file at path. For each periodic point the
  * rung's balance is solved at its frequency and preload, starting from its motion. Points of other

@@ -65,6 +65,19 @@ static char *current_points(const case_file *file) {
   return NULL;
 }
 
+/* With contact.points: auto all ladders but that of the points have as many as the case needs. */
+static shb_status choose_points(convergence_study *s, const case_file *own) {
+  s->n_pairs = s->model.n_pairs;
+  if (s->file->points >= 0 || s->file->modal_file) return SHB_OK;
+  mhb_settings settings = s->file->mhb;
+  settings.n_preloads   = own->mhb.n_preloads;
+  for (int i = 0; i < own->mhb.n_preloads; i++) settings.n0[i] = own->mhb.n0[i];
+  shb_progress_show(&s->progress, -1, "contact.points: auto");
+  SHB_TRY(contact_points_choose(&s->model, &settings, s->file->points_tolerance, &s->joined));
+  if (s->joined) s->base.patches = s->model.n_pairs;
+  return SHB_OK;
+}
+
 static shb_status prepare(convergence_study *s) {
   case_file   copy = *s->file;
   post_output output;
@@ -82,6 +95,7 @@ static shb_status prepare(convergence_study *s) {
   for (int i = 0; s->options->force && i < s->n_variants; i++)
     forget(s->variant[i].folder ? s->variant[i].folder : s->folder);
   SHB_TRY(modal_model_read(s->variant[0].modal, &s->model));
+  SHB_TRY(choose_points(s, &copy));
   s->base.modes = s->model.n_modes;
   SHB_TRY(rung_output(s->file, s->model.n_probes, s->model.probe_name, &output));
   s->points            = current_points(s->file);
@@ -179,6 +193,7 @@ shb_status converge_case(case_file *file, const command_options *options) {
   post_convergence_free(&s.result);
   post_buffer_free(&s.note);
   modal_model_free(&s.model);
+  contact_points_free(s.joined);
   free(s.row);
   if (s.folder) rmdir(s.folder); /* remains unless it is empty */
   free(s.folder);

@@ -296,6 +296,24 @@ static shb_status mesh_ladder(convergence_study *s) {
   return run_ladder(s, first);
 }
 
+/* The pairs of the modal file joined to 1, 2, 4, ... patches; the reference has them all. */
+static shb_status points_ladder(convergence_study *s) {
+  const int all = s->n_pairs, first = s->result.n,
+            own        = s->base.patches > 0 ? s->base.patches : all;
+  const int interfaces = s->model.n_interfaces > 1 ? s->model.n_interfaces : 1;
+  if (modal_joinable(&s->model) < 1 || all <= interfaces) return SHB_OK;
+  for (int patches = interfaces; first == s->result.n || patches < 2 * all; patches *= 2) {
+    char         name[16];
+    rung_setting setting = s->base;
+    const int    points  = patches < all ? patches : all;
+    setting.patches      = points < all ? points : 0;
+    snprintf(name, sizeof name, "%d", points);
+    SHB_TRY(add(s, POST_LADDER_POINTS, &setting, 0, name));
+    s->result.rung[s->result.n - 1].of_case = points == own;
+  }
+  return run_ladder(s, first);
+}
+
 /* ---------------------------------------------------------------- settings combined */
 
 static double error_at(const convergence_study *s, int i) {
@@ -388,5 +406,6 @@ shb_status ladders_run(convergence_study *s) {
   SHB_TRY(modes_ladder(s, true));
   SHB_TRY(modes_ladder(s, false));
   if (s->n_variants > 1) SHB_TRY(mesh_ladder(s));
+  SHB_TRY(points_ladder(s));
   return together(s);
 }

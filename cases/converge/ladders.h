@@ -3,6 +3,7 @@
 #define CASES_CONVERGE_LADDERS_H
 
 #include "cases/commands/command.h"
+#include "cases/commands/contact_points.h"
 #include "cases/converge/mesh_variant.h"
 #include "cases/converge/rung.h"
 #include "cases/parse/case_file.h"
@@ -27,7 +28,9 @@ typedef struct {
   char                  *folder; /* NAME.converge */
   mesh_variant           variant[STUDY_VARIANTS];
   int                    n_variants;
-  modal_model            model; /* of the first mesh */
+  modal_model            model;   /* of the first mesh, joined as base says */
+  int                    n_pairs; /* of its modal file */
+  contact_points        *joined;  /* contact.points: auto; else NULL */
   /* NAME.integration.h5 if it belongs to the present case, else NULL */
   char            *points;
   rung_setting     base; /* base setting of the ladders: everything at its finest */

@@ -14,6 +14,7 @@ void rung_words(const rung_setting *s, char words[RUNG_SETTING_WORDS][RUNG_WORD]
   snprintf(words[2], RUNG_WORD, "%.17g", s->accuracy);
   snprintf(words[3], RUNG_WORD, "%d", s->modes);
   snprintf(words[4], RUNG_WORD, "%d", s->residuals);
+  snprintf(words[5], RUNG_WORD, "%d", s->patches);
 }
 
 bool rung_from_words(char *const words[RUNG_SETTING_WORDS], rung_setting *s) {
@@ -23,7 +24,8 @@ bool rung_from_words(char *const words[RUNG_SETTING_WORDS], rung_setting *s) {
     value[i] = strtod(words[i], &end);
     if (end == words[i] || *end || !(value[i] >= 0 && value[i] < 1e6)) return false;
   }
-  *s = (rung_setting){(int)value[0], value[1], value[2], (int)value[3], value[4] != 0};
+  *s = (rung_setting){(int)value[0], value[1],      value[2],
+                      (int)value[3], value[4] != 0, (int)value[5]};
   return s->accuracy > 0 && s->modes > 0 && (s->harmonics > 0) != (s->tolerance > 0);
 }
 
@@ -31,8 +33,9 @@ void rung_name(const rung_setting *s, char name[RUNG_WORD]) {
   char harmonics[24];
   snprintf(harmonics, sizeof harmonics, s->harmonics > 0 ? "%g" : "auto%g",
            s->harmonics > 0 ? s->harmonics : s->tolerance);
-  snprintf(name, RUNG_WORD, "h%s_a%g_m%d%s", harmonics, s->accuracy, s->modes,
-           s->residuals ? "" : "_bare");
+  int n = snprintf(name, RUNG_WORD, "h%s_a%g_m%d%s", harmonics, s->accuracy, s->modes,
+                   s->residuals ? "" : "_bare");
+  if (s->patches > 0) snprintf(name + n, (size_t)(RUNG_WORD - n), "_p%d", s->patches);
 }
 
 /* Moves a preload, and those of the other interfaces that belong to it, to another index. */
@@ -47,12 +50,13 @@ shb_status rung_apply(const rung_setting *s, case_file *file) {
   mhb->harmonics        = s->harmonics;
   mhb->motion_tolerance = s->tolerance;
   mhb->tolerance        = s->accuracy;
-  mhb->stability        = MHB_STABILITY_NEVER;
-  mhb->search.starts    = 0;
-  mhb->resume           = false;
-  mhb->flips            = false;
-  mhb->search.starts    = 0;
-  int kept              = 0;
+  if (file->points < 0) file->points = 0; /* the setting says how many */
+  mhb->stability     = MHB_STABILITY_NEVER;
+  mhb->search.starts = 0;
+  mhb->resume        = false;
+  mhb->flips         = false;
+  mhb->search.starts = 0;
+  int kept           = 0;
   for (int i = 0; i < mhb->n_preloads; i++)
     if (mhb->n0[i] >= file->converge_n0[0] && mhb->n0[i] <= file->converge_n0[1])
       keep_preload(mhb, kept++, i);

@@ -20,6 +20,7 @@ typedef struct {
   double accuracy;  /* of the contact law */
   int    modes;     /* kept of the modal file */
   bool   residuals; /* with residual flexibility and inertia */
+  int    patches;   /* that the pairs of the modal file are joined to; 0: not joined */
 } rung_setting;
 
 typedef struct {
@@ -51,11 +52,11 @@ typedef struct {
 enum { RUNG_WORDS = 16, RUNG_WORD = 64 };
 
 /* Convert a setting to words for a command line and back. True if the words are a setting. */
-enum { RUNG_SETTING_WORDS = 5 };
+enum { RUNG_SETTING_WORDS = 6 };
 void rung_words(const rung_setting *setting, char words[RUNG_SETTING_WORDS][RUNG_WORD]);
 bool rung_from_words(char *const words[RUNG_SETTING_WORDS], rung_setting *setting);
 
-/* Name of a setting in file names, e.g. "h7_a1e-08_m20". */
+/* Name of a setting in file names, e.g. "h7_a1e-08_m20" or "h7_a1e-08_m20_p4". */
 void rung_name(const rung_setting *setting, char name[RUNG_WORD]);
 
 /* Change the case to that of a rung: main curves only, no stability, preloads outside converge.n0

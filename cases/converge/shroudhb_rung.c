@@ -23,14 +23,14 @@
 
 static const char usage[] =
     "usage: shroudhb-rung CASE.yaml MODAL.h5 STEM HARMONICS TOLERANCE ACCURACY MODES RESIDUALS "
-    "[REFERENCE|- [POINTS.h5]]\n"
+    "PATCHES [REFERENCE|- [POINTS.h5]]\n"
     "\n"
     "One sweep with other settings than the case has, and its distance from another one: works "
     "for\n"
     "`shroudhb converge`, which see. Writes STEM.response.h5 and STEM.cost, "
     "STEM.REFERENCE.error.\n";
 
-enum { MAX_RUNS = 5, FIRST_WORD = 4, LEAST_WORDS = 9 };
+enum { MAX_RUNS = 5, FIRST_WORD = 4, LEAST_WORDS = 10 };
 static const double ENOUGH = .3; /* s; after this total no further run is made */
 
 typedef struct {
@@ -166,9 +166,10 @@ static shb_status settings_of(const job *j, char **text) {
   size_t size = strlen(keys) + 256;
   *text       = malloc(size);
   if (*text)
-    snprintf(*text, size, "%smodes = %d\nresiduals = %d\noutput = %d %d\nrevision = %s\n", keys,
-             j->setting.modes, j->setting.residuals, j->output.place, j->output.index,
-             shb_revision());
+    snprintf(*text, size,
+             "%smodes = %d\nresiduals = %d\npatches = %d\noutput = %d %d\nrevision = %s\n", keys,
+             j->setting.modes, j->setting.residuals, j->setting.patches, j->output.place,
+             j->output.index, shb_revision());
   free(keys);
   SHB_CHECK(*text, SHB_ERR_IO, "out of memory");
   return SHB_OK;
@@ -194,8 +195,7 @@ static shb_status against_rung(job *j) {
   const char *name   = rung_leaf(j->reference);
   shb_status  status = SHB_OK;
   if (rung_error_read(j->stem, name, path, &error) != SHB_OK) {
-    status = compare_rungs(&j->source.model, &j->source.settings, j->output, j->stem, j->reference,
-                           &error);
+    status = compare_rungs(&j->source, j->output, j->stem, j->reference, &error);
     if (status == SHB_OK) status = rung_error_write(&error, j->stem, name, path);
   }
   free(path);
@@ -228,6 +228,9 @@ static shb_status work(job *j) {
 static shb_status prepare(job *j) {
   SHB_TRY(rung_apply(&j->setting, &j->file));
   SHB_TRY(case_model_read(&j->file, j->modal, j->setting.modes, j->setting.residuals, &j->source));
+  const int patches = j->setting.patches; /* a coarser mesh may have fewer pairs */
+  if (patches > 0 && patches < j->source.model.n_pairs)
+    SHB_TRY(case_model_join(&j->source, patches));
   return rung_output(&j->file, j->source.model.n_probes, j->source.model.probe_name, &j->output);
 }
 

@@ -131,8 +131,9 @@ typedef struct {
   int        n_gauges;
   case_gauge gauge[CASE_MAX_PROBES];
 
-  bool           has_contact; /* block contact present */
-  int            points;      /* contact patches; 0 = all */
+  bool           has_contact;      /* block contact present */
+  int            points;           /* contact patches; 0 = all, -1 = auto */
+  double         points_tolerance; /* of auto, relative to the motion */
   bool           has_interfaces;
   int            n_interfaces; /* with contact.interfaces */
   case_interface interfaces[MHB_MAX_INTERFACES];

@@ -80,6 +80,7 @@ static const char *applies_text(const case_key *key) {
       [CASE_IF_CRYSTAL]    = "with `material.G`",
       [CASE_IF_INTERFACE]  = "one interface",
       [CASE_IF_POINTS]     = "one interface, without `modal.file`",
+      [CASE_IF_PATCHES]    = "`contact.points: auto`",
       [CASE_IF_INTERFACES] = "several interfaces",
       [CASE_IF_VARIED]     = "several interfaces, with `mhb.vary`",
       [CASE_IF_ORDER]      = "contact to the neighbour, or a run-up",

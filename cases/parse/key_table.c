@@ -278,9 +278,13 @@ static const case_key table[] = {
      .stages = CASE_MESH | CASE_MODAL | CASE_MHB, .when = CASE_IF_PHI,
      .help = "inclination: turns that normal towards the engine axis; default: from the faces "
              "(parametric blade: 0)"},
-    {"contact.points", CASE_COUNT, "", 1, 100000, .fallback = "1", AT(points), .stages = CASE_MODAL,
-     .when = CASE_IF_POINTS,
-     .help = "patches of the contact face, or all: one a node"},
+    {"contact.points", CASE_COUNT, "", 1, 100000, .words = "auto", .fallback = "1", AT(points),
+     .stages = CASE_MODAL, .when = CASE_IF_POINTS,
+     .help = "patches of the contact face, or all: one a node; auto: as few as contact.tolerance "
+             "allows"},
+    {"contact.tolerance", CASE_NUMBER, "", 1e-6, 0.5, .fallback = "1e-3", AT(points_tolerance),
+     .stages = CASE_MHB | CASE_INTEGRATE, .when = CASE_IF_PATCHES,
+     .help = "spatial error that contact.points: auto allows, relative to the motion"},
     {"contact.mu", CASE_NUMBER, "", 0, 1e6, .required = true, AT(mhb.mu), .stages = CASE_MHB,
      .when = CASE_IF_INTERFACE,
      .help = "friction coefficient"},
@@ -485,6 +489,8 @@ bool case_key_applies(const case_key *key, const case_file *file) {
       return !file->modal_file && file->modes == 0;
     case CASE_IF_POINTS:
       return own && !file->has_interfaces;
+    case CASE_IF_PATCHES:
+      return own && !file->has_interfaces && file->points < 0;
     case CASE_IF_INTERFACE:
       return !file->has_interfaces;
     case CASE_IF_INTERFACES:

@@ -12,7 +12,7 @@
 typedef enum {
   CASE_NUMBER,    /* number with a unit: double */
   CASE_INTEGER,   /* int */
-  CASE_COUNT,     /* integer or "all": int, 0 for all */
+  CASE_COUNT,     /* integer or "all": int, 0 for all; or the word, least - 2 */
   CASE_AUTO,      /* integer or "auto": int, for auto one less than the least */
   CASE_CHOICE,    /* one of words: enum of int size, the place in words */
   CASE_SWITCH,    /* one of two words: bool, true for the second */
@@ -60,6 +60,7 @@ typedef enum {
   CASE_IF_CRYSTAL,    /* material.G given */
   CASE_IF_INTERFACE,  /* one contact interface */
   CASE_IF_POINTS,     /* the same, and no modal.file */
+  CASE_IF_PATCHES,    /* contact.points: auto */
   CASE_IF_INTERFACES, /* several by name */
   CASE_IF_VARIED,     /* several, and mhb.vary follows a parameter of one of them */
   CASE_IF_ORDER,      /* contact.to: neighbour, or mhb.run_up: yes */

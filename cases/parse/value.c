@@ -25,6 +25,11 @@ static bool read_count(const case_value_context *c, const case_node *node, void 
   bool automatic = c->key->type == CASE_AUTO;
   bool is_word   = node->kind == CASE_SCALAR && strcmp(node->text, automatic ? "auto" : "all") == 0;
   if (is_word) *(int *)slot = automatic ? (int)c->key->least - 1 : 0;
+  if (!is_word && !automatic && c->key->words && node->kind == CASE_SCALAR &&
+      strcmp(node->text, c->key->words) == 0) {
+    *(int *)slot = (int)c->key->least - 2;
+    return true;
+  }
   return is_word || case_value_integer(c, node, slot);
 }
 

@@ -40,7 +40,11 @@ void case_value_expected(const case_key *key, char *text, size_t size) {
   case_append(text, size, "%s", shapes[key->type]);
   for (const char *word = key->words; word && *word;) {
     size_t n = strcspn(word, " ");
-    case_append(text, size, "%s%.*s", word == key->words ? " " : ", ", (int)n, word);
+    case_append(text, size, "%s%.*s",
+                key->type == CASE_COUNT ? " or "
+                : word == key->words    ? " "
+                                        : ", ",
+                (int)n, word);
     word += n + (word[n] == ' ');
   }
   if (key->unit[0]) case_append(text, size, " in %s", key->unit);

@@ -127,6 +127,9 @@ static void check_followed(case_reader *r) {
     case_reader_issue(r, "mhb.frequency",
                       "is one number; with mhb.track give [from, to], where peaks are looked for");
   if (tracked && r->file->run_up) case_reader_issue(r, "mhb.track", "does not go with mhb.run_up");
+  if (tracked && r->file->points < 0)
+    case_reader_issue(r, "mhb.track",
+                      "does not go with contact.points: auto; give the number of points");
   if (tracked && r->file->n_interfaces > 1)
     case_reader_issue(r, "mhb.track", "does not go with several contact interfaces");
   if (given > 0 && !single && !tracked)
@@ -199,6 +202,9 @@ static void check_run_up_speeds(case_reader *r) {
 static void check_run_up(case_reader *r) {
   const case_file *file = r->file;
   if (!file->run_up) return;
+  if (file->points < 0)
+    case_reader_issue(r, "contact.points",
+                      "is auto, which does not go with mhb.run_up; give the number of points");
   if (case_reader_good(r, "excitation.engine_order") && file->engine_order < 1) {
     case_reader_issue(r, "mhb.run_up", "needs excitation.engine_order of 1 or more");
     return;
@@ -304,6 +310,8 @@ static void check_mistuning(case_reader *r, int stages) {
   if (file->run_up) case_reader_issue(r, path, "does not go with mhb.run_up");
   if (file->mhb.track != MHB_TRACK_NOTHING)
     case_reader_issue(r, path, "does not go with mhb.track");
+  if (file->points < 0)
+    case_reader_issue(r, path, "does not go with contact.points: auto; give the number of points");
   if (case_reader_given(r, "mhb.stability") && file->mhb.stability != MHB_STABILITY_NEVER)
     case_reader_issue(
         r, "mhb.stability",

@@ -116,6 +116,7 @@ static void print_alternative(const case_key *key, FILE *out) {
   switch (key->type) {
     case CASE_COUNT:
       fputs(", {\"const\": \"all\"}", out);
+      if (key->words) fprintf(out, ", {\"const\": \"%s\"}", key->words);
       break;
     case CASE_AUTO:
       fputs(", {\"const\": \"auto\"}", out);

@@ -164,6 +164,9 @@ static shb_status load(modal_store *s, const double *value, const case_file *fil
   char      *path   = NULL;
   shb_status status = SHB_OK;
   clear(s, at);
+  SHB_CHECK(file->points >= 0, SHB_ERR_INPUT,
+            "contact.points: auto chooses the points of one case; a study compares designs with "
+            "the same ones: give their number, or all");
   if (file->modal_file) path = case_modal_path(file);
   if (!file->modal_file) path = find_file(s, digest);
   if (!path) status = make_file(s, value, digest, &path);

@@ -351,7 +351,9 @@ static shb_status resume(sweep *s) {
   taken_part part = what_to_take(s, file);
   h5_close(file);
   if (part == TAKE_NOTHING || mhb_response_read(path, &old) != SHB_OK) return SHB_OK;
-  bool fits = old->n_multipliers == s->response->n_multipliers;
+  /* other preloads may have led to other contact points (contact.points: auto) */
+  bool fits =
+      old->n_multipliers == s->response->n_multipliers && old->n_pairs == s->response->n_pairs;
   for (int i = 2; fits && i < old->n_branches && status == SHB_OK; i++) {
     preload_curves *p = wanted_for(s, old, i, part);
     if (!p) continue;

@@ -50,6 +50,7 @@ int mhb_harmonic_levels_ladder(const modal_model *model, const mhb_settings *s,
 static void level_destroy(mhb_harmonic_level *level) {
   if (!level) return;
   mhb_truncation_destroy(level->truncation);
+  mhb_spatial_error_destroy(level->spatial);
   mhb_events_destroy(&level->events);
   mhb_arclength_destroy(level->curve);
   if (level->owns_balance) mhb_balance_destroy(level->balance);
@@ -72,6 +73,8 @@ static shb_status level_create(const mhb_harmonic_levels *h, int m, mhb_balance 
     mhb_balance_set_parameter(level->balance, h->parameter);
   }
   if (status == SHB_OK) status = mhb_truncation_create(level->balance, &level->truncation);
+  if (status == SHB_OK && h->settings->other_pairs && !h->settings->outline)
+    status = mhb_spatial_error_create(level->balance, &level->spatial);
   if (status == SHB_OK)
     status = mhb_balance_curve_create(level->balance, h->low, h->high, &level->curve);
   if (status != SHB_OK) {
@@ -186,6 +189,13 @@ void mhb_harmonic_levels_errors(mhb_harmonic_levels *h, mhb_curve_point *point) 
   mhb_condensation *system =
       point->truncation_kind == MHB_TRUNCATION_NEWTON ? level->truncation->system : NULL;
   point->modal = mhb_modal_error(level->balance, point->x, system);
+}
+
+double mhb_harmonic_levels_spatial(const mhb_harmonic_levels *h, const mhb_curve_point *point) {
+  const mhb_harmonic_level *level = mhb_harmonic_levels_current(h);
+  if (!level->spatial) return -1;
+  mhb_balance_use(level->balance, point->evaluation);
+  return mhb_spatial_error_at(level->spatial, point->x);
 }
 
 void mhb_harmonic_levels_estimate(mhb_harmonic_levels *h, mhb_curve_point *point) {

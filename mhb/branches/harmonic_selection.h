@@ -13,6 +13,7 @@
 #define MHB_BRANCHES_HARMONIC_SELECTION_H
 
 #include "mhb/balance/modal_error.h"
+#include "mhb/balance/spatial_error.h"
 #include "mhb/balance/truncation_error.h"
 #include "mhb/continuation/balance_curve.h"
 #include "mhb/continuation/events.h"
@@ -20,12 +21,13 @@
 enum { MHB_MAX_LEVELS = 9, MHB_MOST_HARMONICS = 31 };
 
 typedef struct {
-  mhb_settings    settings;
-  mhb_balance    *balance;
-  bool            owns_balance;
-  mhb_arclength  *curve;
-  mhb_truncation *truncation;
-  mhb_events      events; /* of a step of the curve */
+  mhb_settings       settings;
+  mhb_balance       *balance;
+  bool               owns_balance;
+  mhb_arclength     *curve;
+  mhb_truncation    *truncation;
+  mhb_spatial_error *spatial; /* NULL: not estimated */
+  mhb_events         events;  /* of a step of the curve */
 } mhb_harmonic_level;
 
 typedef struct {
@@ -70,9 +72,13 @@ int mhb_harmonic_levels_most_unknowns(const mhb_harmonic_levels *levels);
 /* Fill truncation and modal error of a point of the level in use, linearised there. */
 void mhb_harmonic_levels_errors(mhb_harmonic_levels *levels, mhb_curve_point *point);
 
-/* The same, and note the level they ask for. Seven harmonics are the least where contacts begin to
- * slip or open, and while they do so for less than a quarter of the period. A curve of fewer
- * harmonics may go on smoothly there where that of many turns back. */
+/* Spatial error of a point of the level in use (mhb_spatial_error_at), which is linearised there;
+ * -1 without another model of the faces. */
+double mhb_harmonic_levels_spatial(const mhb_harmonic_levels *levels, const mhb_curve_point *point);
+
+/* Truncation and modal error, and note the level they ask for. Seven harmonics are the least where
+ * contacts begin to slip or open, and while they do so for less than a quarter of the period. A
+ * curve of fewer harmonics may go on smoothly there where that of many turns back. */
 void mhb_harmonic_levels_estimate(mhb_harmonic_levels *levels, mhb_curve_point *point);
 
 /* The level above the one in use that the last estimate asks for; -1: the one in use suffices. */

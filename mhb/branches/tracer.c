@@ -151,8 +151,9 @@ static shb_status record(mhb_segment_host *host, mhb_curve_point *point, int spe
   mhb_tracer *t   = of(host);
   double      now = shb_seconds();
   SHB_TRY(mhb_record(t->store, t->segment, mhb_tracer_balance(t), point, special, now - t->clock));
+  const mhb_branch *branch                    = &t->store->branch[t->segment];
+  branch->error_spatial[branch->n_points - 1] = mhb_harmonic_levels_spatial(t->levels, point);
   if (special == MHB_ORDINARY) t->farthest = fmax(t->farthest, point->value);
-  const mhb_branch *branch = &t->store->branch[t->segment];
   *go_on = t->monitor->point(t->monitor, t->store, t->segment, branch->n_points - 1);
   if (t->publish) SHB_TRY(t->publish(t->context));
   t->clock = shb_seconds();

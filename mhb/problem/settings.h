@@ -66,6 +66,9 @@ typedef struct {
   double        frequency[MHB_MAX_SAVED]; /* Hz */
 } mhb_save_settings;
 
+/* Another model of the same contact faces (mhb/problem/other_pairs.h). */
+typedef struct mhb_other_pairs mhb_other_pairs;
+
 typedef struct {
   bool                to_ground;
   int                 engine_order, blades; /* inter-blade phase 2 pi E/N, eq. 16 */
@@ -103,7 +106,8 @@ typedef struct {
   const struct mhb_mistuned_ring *ring;
   /* Equal groups of consecutive pairs, each a contact with the stiffness and preload of the case.
    * 0, 1: all pairs are one contact. */
-  int contacts;
+  int                    contacts;
+  const mhb_other_pairs *other_pairs; /* by which the spatial error is estimated; NULL: it is not */
   /* The curve in outline, with a fixed number of harmonics: peaks are not located, and the errors
    * of points are unknown (NAN). The linear limits have no points. */
   bool outline;

@@ -2,8 +2,10 @@
 
 #include <math.h>
 #include <stdlib.h>
+#include <string.h>
 
 #include "mesh/base/constants.h"
+#include "mhb/problem/other_pairs.h"
 #include "mhb/structure/receptance.h"
 
 /* A curve passes a frequency of the list between point i - 1 and point i, or ends on it. */
@@ -55,19 +57,31 @@ static void contact_force(const mhb_receptance *r, int k, const double complex *
     }
 }
 
+/* to[n] <- force on the pairs of the modal file, which the pairs of the response may join. */
+static void put_force(const mhb_other_pairs *pairs, int sides, const double complex *own, int n,
+                      double complex *to) {
+  if (pairs && pairs->finer)
+    modal_joining_spread(pairs->joining, sides, own, to);
+  else
+    memcpy(to, own, (size_t)n * sizeof *to);
+}
+
 /* The amplitudes and forces of one point. */
-static void fill_point(const mhb_response *response, mhb_branch *b, int at, mhb_receptance *r) {
-  const int             point = b->modal.point[at];
+static void fill_point(const mhb_response *response, const mhb_other_pairs *pairs, mhb_branch *b,
+                       int at, mhb_receptance *r) {
+  const int             point = b->modal.point[at], sides = r->part->relative.sides;
   const size_t          K = (size_t)b->n_harmonics + 1, n = (size_t)r->n;
   const double complex *force = b->force + (size_t)point * n * K;
-  double complex        p[n];
+  double complex        p[n], own[(size_t)sides * n];
   mhb_receptance_set_frequency(r, SHB_TWO_PI * b->frequency[point]);
   if (response->parameter == MHB_IN_SCALE) mhb_receptance_scale(r, b->value[point]);
   for (size_t k = 0; k < K; k++) {
     for (size_t row = 0; row < n; row++) p[row] = force[row * K + k];
     const size_t row = (size_t)at * K + k;
     mhb_receptance_amplitudes(r, (int)k, p, b->modal.amplitude + row * (size_t)response->n_modes);
-    contact_force(r, (int)k, p, b->modal.force + row * (size_t)b->modal.n_contact);
+    contact_force(r, (int)k, p, own);
+    put_force(pairs, sides, own, b->modal.n_contact,
+              b->modal.force + row * (size_t)b->modal.n_contact);
   }
   b->modal.scale[at] = r->scale;
 }
@@ -85,17 +99,19 @@ static shb_status renew(const modal_model *model, const mhb_settings *settings, 
 
 static shb_status keep(const modal_model *model, const mhb_settings *settings,
                        const mhb_response *response, mhb_branch *b, mhb_receptance **r) {
-  const int sides = settings->to_ground ? 1 : 2;
+  const mhb_other_pairs *other = settings->other_pairs;
+  const int              sides = settings->to_ground ? 1 : 2;
+  const int              pairs = other && other->finer ? other->model->n_pairs : response->n_pairs;
   if (b->n_points == 0) return mhb_response_modal(response, b, 0, 0);
   bool *wanted = calloc((size_t)b->n_points, sizeof *wanted);
   SHB_CHECK(wanted, SHB_ERR_IO, "no memory for %d points", b->n_points);
   int        n = choose(response, b, &settings->save, wanted), at = 0;
-  shb_status status = mhb_response_modal(response, b, n, 3 * response->n_pairs * sides);
+  shb_status status = mhb_response_modal(response, b, n, 3 * pairs * sides);
   if (status == SHB_OK && n > 0) status = renew(model, settings, b, r);
   for (int i = 0; status == SHB_OK && n > 0 && i < b->n_points; i++) {
     if (!wanted[i]) continue;
     b->modal.point[at] = i;
-    fill_point(response, b, at++, *r);
+    fill_point(response, settings->other_pairs, b, at++, *r);
   }
   free(wanted);
   return status;

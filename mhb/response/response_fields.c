@@ -41,6 +41,9 @@ const mhb_field mhb_fields[] = {
      "how error/truncation was estimated: 0 nothing is left out (open or stuck throughout), 1 "
      "first "
      "order: can be several times too small, 2 a Newton step of twice the harmonics"},
+    {"error/spatial", "", MHB_DOUBLE, AT(error_spatial), "-",
+     "estimated error from the number of contact pairs, at the same frequency, relative to the "
+     "vibration; -1: not judged"},
     {"judged", "", MHB_INT, AT(judged), "-",
      "what stable rests on: 0 nothing, not judged; 1 the Floquet multipliers; 2 the same, the "
      "largest at 1 within its error; 3 they could not be computed; 4 judged points on both sides; "
@@ -75,7 +78,7 @@ const mhb_field mhb_fields[] = {
      "lines of the contact motion where it does not repeat, largest first; 0: none"},
     {"spectrum/amplitude", "l", MHB_DOUBLE, AT(line_amplitude), "m", "amplitude of the line"},
 };
-enum { N_LATER = 12, N_INTEGRATION = 5 };
+enum { N_LATER = 13, N_INTEGRATION = 5 };
 _Static_assert(sizeof mhb_fields / sizeof *mhb_fields == MHB_N_FIELDS, "MHB_N_FIELDS counts them");
 
 size_t mhb_field_bytes(mhb_number kind) {

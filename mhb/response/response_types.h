@@ -159,6 +159,7 @@ typedef struct {
   double complex *multipliers; /* [point][n_multipliers] the largest, by falling modulus; 0: none */
   int            *harmonics;   /* [point] of the balance, at most n_harmonics; 0: not known */
   int            *truncation_kind; /* [point] mhb_truncation_kind */
+  double         *error_spatial;   /* [point] by the number of contact pairs; -1: not judged */
   /* motion that lasts; 0: not computed */
   double *lasting_mean, *lasting_worst;   /* [point] a period's peak over the wave's */
   double *lasting_error;                  /* [point] standard error of the mean */

@@ -8,15 +8,9 @@
 #include "mesh/base/constants.h"
 #include "mhb/numerics/simd.h"
 #include "mhb/problem/interfaces.h"
+#include "modal/model/joined_pairs.h"
 
 static const double NUDGE = 1e-8;
-
-/* Columns v, u, w of eq. 2. */
-static void shroud_axes(double psi, double phi, double T0[3][3]) {
-  double cs = cos(psi), ss = sin(psi), cf = cos(phi), sf = sin(phi);
-  double T[3][3] = {{cs * cf, -ss, cs * sf}, {ss * cf, cs, ss * sf}, {-sf, 0, cf}};
-  memcpy(T0, T, sizeof T);
-}
 
 /* Angles of an interface in the case; 0 if not given. */
 typedef struct {
@@ -52,12 +46,8 @@ static shb_status set_axes(mhb_receptance *r, const mhb_settings *s, int interfa
   for (int a = 0; a < model->n_pairs; a++) {
     if (r->interface[a] != interface) continue;
     double psi = given.psi, phi = given.phi;
-    if (model->normal) {
-      const double *v = model->normal + 3 * a;
-      psi             = atan2(v[1], v[0]);
-      phi             = -atan2(v[2], hypot(v[0], v[1]));
-    }
-    shroud_axes(psi, phi, T0[a]);
+    if (model->normal) modal_normal_angles(model->normal + 3 * a, &psi, &phi);
+    modal_shroud_axes(psi, phi, T0[a]);
     for (int i = 0; i < 3; i++) mean[i] += r->share[a] * T0[a][i][0]; /* its length is no matter */
   }
   double psi = atan2(mean[1], mean[0]), phi = -atan2(mean[2], hypot(mean[0], mean[1]));

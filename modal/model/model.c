@@ -416,6 +416,13 @@ static shb_status check_patches(const char *path, const modal_model *model) {
   return SHB_OK;
 }
 
+/* /contact/coordinates holds both sides; the right one is kept. */
+static shb_status read_positions(hid_t at, modal_model *model) {
+  const hsize_t sides = model->has_left ? 2 : 1;
+  h5_shape      shape = H5_SHAPE(sides, (hsize_t)model->n_pairs, 3);
+  return read_optional(at, "contact/coordinates", shape, &model->position, NULL);
+}
+
 static shb_status read_contact(hid_t at, const char *path, modal_model *model, modal_model *im) {
   h5_shape shape = H5_SHAPE(0, 3, (hsize_t)model->n_modes);
   if (!h5_exists(at, "contact")) return SHB_OK; /* a body that touches nothing */
@@ -438,6 +445,7 @@ static shb_status read_contact(hid_t at, const char *path, modal_model *model, m
   h5_shape normals = H5_SHAPE(shape.dim[0], 3), areas = H5_SHAPE(shape.dim[0]);
   SHB_TRY(read_optional(at, "contact/normal", normals, &model->normal, NULL));
   SHB_TRY(read_optional(at, "contact/area", areas, &model->area, NULL));
+  SHB_TRY(read_positions(at, model));
   SHB_TRY(check_flexibility(path, model, im));
   return check_patches(path, model);
 }
@@ -706,6 +714,7 @@ void modal_model_free(modal_model *model) {
                   model->probe_load_inertia,
                   model->normal,
                   model->area,
+                  model->position,
                   model->eigen_residual};
   for (size_t i = 0; i < sizeof part / sizeof *part; i++) free(part[i]);
   *model = (modal_model){0};

@@ -55,6 +55,7 @@ typedef struct {
   double complex *probe_load_fourth;      /* [K+1][3 q] m s4, or NULL */
   double         *normal;         /* [pair][3] v axis in the pair's cylindrical axes, or NULL */
   double         *area;           /* [pair] m2, or NULL */
+  double         *position;       /* [pair][3] m, of the right side, mesh axes, or NULL */
   double         *eigen_residual; /* [m] relative eigen residual, or NULL */
 } modal_model;
 

@@ -7,7 +7,7 @@
 
 const char *post_ladder_name(post_ladder ladder) {
   static const char *const name[POST_N_LADDERS] = {
-      "harmonics", "auto", "accuracy", "modes", "modes, no residual", "mesh", "together"};
+      "harmonics", "auto", "accuracy", "modes", "modes, no residual", "mesh", "together", "points"};
   return name[ladder];
 }
 
@@ -202,7 +202,8 @@ static void conclude_integration(const post_convergence *s, post_buffer *out) {
 }
 
 void post_convergence_conclusion(const post_convergence *s, post_buffer *out) {
-  for (int l = 0; l < POST_LADDER_TOGETHER; l++) conclude_ladder(s, (post_ladder)l, out);
+  for (int l = 0; l < POST_N_LADDERS; l++)
+    if (l != POST_LADDER_TOGETHER) conclude_ladder(s, (post_ladder)l, out);
   conclude_integration(s, out);
   int best = cheapest_of_all(s), finest = post_reference(s, POST_LADDER_HARMONICS);
   if (finest < 0) return;

@@ -18,6 +18,7 @@ typedef enum {
   POST_LADDER_BARE, /* modes without residual flexibility */
   POST_LADDER_MESH,
   POST_LADDER_TOGETHER,
+  POST_LADDER_POINTS, /* contact points; files hold these numbers, so it is the last */
   POST_N_LADDERS
 } post_ladder;
 

@@ -37,7 +37,8 @@ static const struct {
   int         most;
 } codes[N_CODES] = {
     {"/ladder",
-     "0 harmonics, 1 auto, 2 accuracy, 3 modes, 4 modes without residual, 5 mesh, 6 together",
+     "0 harmonics, 1 auto, 2 accuracy, 3 modes, 4 modes without residual, 5 mesh, 6 together, "
+     "7 contact points",
      POST_N_LADDERS - 1},
     {"/state", "0 not run, 1 complete, 2 a curve has a gap, 3 failed", POST_RUNG_FAILED},
     {"/reference", "1: the finest of its ladder", 1},

@@ -7,10 +7,15 @@
 
 #include "postproc/draw/number_format.h"
 
+double post_spatial_error(const mhb_branch *branch, int point) {
+  const double *error = branch->kind == MHB_BRANCH_NONLINEAR ? branch->error_spatial : NULL;
+  return error && error[point] >= 0 ? error[point] : NAN;
+}
+
 double post_error(const mhb_branch *branch, int point) {
   const double *part[] = {branch->error_newton, branch->error_truncation, branch->error_sampling,
                           branch->error_modal};
-  double        worst  = NAN;
+  double        worst  = post_spatial_error(branch, point);
   for (int i = 0; i < 4; i++)
     if (isfinite(part[i][point])) worst = fmax(worst, part[i][point]); /* fmax ignores a NAN */
   return worst;

@@ -98,6 +98,9 @@ void       post_tracking_free(post_tracking *tracking);
 /* Largest finite error estimate of a point; NAN if there is none. */
 double post_error(const mhb_branch *branch, int point);
 
+/* Spatial error of a point; NAN where it was not judged. */
+double post_spatial_error(const mhb_branch *branch, int point);
+
 /* Share of the period in a state (0 stuck, 1 slipping, 2 open), mean over the pairs; energy of all
  * pairs, J per cycle. */
 double post_state(const mhb_response *response, const mhb_branch *branch, int point, int state);

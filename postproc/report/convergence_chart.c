@@ -14,17 +14,17 @@ static const double LEAST = 1e-10; /* errors below are drawn there */
 
 /* Class of a ladder's line. */
 static const char *const classes[POST_N_LADDERS] = {"l-h",    "l-auto", "l-acc", "l-modes",
-                                                    "l-bare", "l-mesh", "l-all"};
+                                                    "l-bare", "l-mesh", "l-all", "l-points"};
 
 const char post_convergence_css[] =
     ".l-h{color:#0b6e75}.l-auto{color:#6a4aa5}.l-acc{color:#a3540f}.l-modes{color:#2f6f2f}"
-    ".l-bare{color:#8a8f2a}.l-mesh{color:#a83250}.l-all{color:#1b2530}"
+    ".l-bare{color:#8a8f2a}.l-mesh{color:#a83250}.l-all{color:#1b2530}.l-points{color:#1f5fa8}"
     ".line.l-bare{stroke-dasharray:6 4}.goal{stroke:#8c959f;stroke-width:1.2;fill:none;"
     "stroke-dasharray:3 4}.hollow{fill:none;stroke:currentColor;stroke-width:1.5}"
     ".plot .name{fill:currentColor}"
     "@media screen and (prefers-color-scheme:dark){.l-h{color:#4cc3cb}.l-auto{color:#b8a1ea}"
     ".l-acc{color:#e2a15c}.l-modes{color:#86c586}.l-bare{color:#c9cd6a}.l-mesh{color:#f08aa4}"
-    ".l-all{color:#e6eaee}}";
+    ".l-all{color:#e6eaee}.l-points{color:#8ab8f0}}";
 
 /* True if a rung was compared and timed. */
 static bool is_drawn(const post_rung *r) {

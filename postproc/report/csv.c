@@ -6,6 +6,7 @@
 
 #include "mesh/base/constants.h"
 #include "postproc/analysis/outputs.h"
+#include "postproc/analysis/response_analysis.h"
 
 static void put_number(post_buffer *out, double value) {
   post_put(out, isfinite(value) ? ",%.12g" : ",", value);
@@ -55,11 +56,12 @@ static void put_header(const mhb_response *response, post_buffer *out) {
     put_name(out, place, "_open", "");
     put_name(out, place, "_dissipation_J", "");
   }
-  post_put(out,
-           ",stable,special,judged,loss,largest_multiplier,iterations,seconds,error_newton,error_"
-           "truncation,error_sampling,"
-           "error_modal,origin,order,lasting_mean,lasting_worst,lasting_kind,lasting_side,"
-           "lasting_offset\r\n");
+  post_put(
+      out,
+      ",stable,special,judged,loss,largest_multiplier,iterations,seconds,error_newton,error_"
+      "truncation,error_sampling,"
+      "error_modal,error_spatial,origin,order,lasting_mean,lasting_worst,lasting_kind,lasting_side,"
+      "lasting_offset\r\n");
 }
 
 /* The columns of one place from its harmonics, [3][m + 1]. */
@@ -120,6 +122,7 @@ static void put_quality(const mhb_response *response, const mhb_branch *branch, 
   put_number(out, branch->error_truncation[point]);
   put_number(out, branch->error_sampling[point]);
   put_number(out, branch->error_modal[point]);
+  put_number(out, post_spatial_error(branch, point));
   post_put(out, ",%s,%d", origin[branch->origin], branch->order);
   put_lasting(branch, point, out);
   post_put(out, "\r\n");

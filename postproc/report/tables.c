@@ -127,7 +127,8 @@ static int sum_of(int n, const int *x) {
 static void put_quality_row(const post_analysis *analysis, int b, post_buffer *out) {
   const mhb_branch *branch = &analysis->response->branch[b];
   const double *part[] = {branch->error_newton, branch->error_truncation, branch->error_sampling,
-                          branch->error_modal};
+                          branch->error_modal,
+                          branch->kind == MHB_BRANCH_NONLINEAR ? branch->error_spatial : NULL};
   char          number[POST_NUMBER];
   int           n = branch->n_points, iterations = 0;
   double        seconds = 0, worst = NAN;
@@ -139,8 +140,8 @@ static void put_quality_row(const post_analysis *analysis, int b, post_buffer *o
   if (branch->kind == MHB_BRANCH_INTEGRATION) iterations = sum_of(n, branch->periods);
   post_put(out, "<td>%d</td><td>%d</td><td>%s</td>", n, iterations,
            post_number(number, seconds, 2));
-  for (int e = 0; e < 4; e++) {
-    double most = largest(n, part[e]);
+  for (int e = 0; e < 5; e++) {
+    double most = part[e] ? largest(n, part[e]) : NAN;
     worst       = fmax(worst, most);
     put_cell(out, most > 1 ? "no bound" : post_number(number, most, 2));
   }
@@ -156,14 +157,15 @@ void post_table_quality(const post_analysis *analysis, post_buffer *out) {
       "the "
       "motion. Time integration: periods for iterations, the return map for Newton, steps for "
       "sampling. Fine: all at most 0.1&nbsp;%%; usable: at most 1&nbsp;%%; coarse: above (more "
-      "harmonics or "
-      "modes are needed); no bound: above 100&nbsp;%%, as beside a fold; &ldquo;–&rdquo;: not "
+      "harmonics, modes or contact points "
+      "are needed); no bound: above 100&nbsp;%%, as beside a fold; &ldquo;–&rdquo;: not "
       "estimated.</caption>\n<thead><tr><th "
       "scope=\"col\">Curve</th>"
       "<th scope=\"col\">Points</th><th scope=\"col\">Iterations</th><th scope=\"col\">Time, s</th>"
       "<th scope=\"col\">Newton</th><th scope=\"col\">Truncation</th><th "
       "scope=\"col\">Sampling</th>"
-      "<th scope=\"col\">Modal</th><th scope=\"col\">Verdict</th><th "
+      "<th scope=\"col\">Modal</th><th scope=\"col\">Contact points</th><th "
+      "scope=\"col\">Verdict</th><th "
       "scope=\"col\" class=\"words\">Ended</th></tr></thead>"
       "\n<tbody>\n");
   for (int g = 0; g < analysis->n_groups; g++)

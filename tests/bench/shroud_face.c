@@ -8,12 +8,24 @@
 
 static const double STIFFNESS = 2e5;
 
+static double edges(double y) {
+  return .3 + pow(y, 8) + .02 * y;
+}
+
+static double smooth(double y) {
+  return .6 + .5 * y + .3 * y * y;
+}
+
+static double place_of(int n, int a) {
+  return n > 1 ? 2. * a / (n - 1) - 1 : 0;
+}
+
 /* Motion of patch a and axis c by mode i, from that of the tip. */
-static void spread_shapes(int n, modal_model *model) {
+static void spread_shapes(int n, double (*field)(double), modal_model *model) {
   int     m    = model->n_modes;
   double *face = calloc(3 * (size_t)n * (size_t)m, sizeof(double));
   for (int a = 0; a < n; a++) {
-    double y = n > 1 ? 2. * a / (n - 1) - 1 : 0, rocking = .3 + pow(y, 8) + .02 * y;
+    double rocking = field(place_of(n, a));
     for (int c = 0; c < 3; c++)
       for (int i = 0; i < m; i++) face[(3 * a + c) * m + i] = rocking * model->right[c * m + i];
   }
@@ -32,13 +44,23 @@ static double *local_matrix(int n, double size) {
   return matrix;
 }
 
-void shroud_face_model(int n, double force, modal_model *model) {
+static void face_model(int n, double force, double (*field)(double), modal_model *model) {
   tip_contact_beam_model(force, model);
-  spread_shapes(n, model);
+  spread_shapes(n, field, model);
   model->n_pairs              = n;
   double local                = .2 * n / STIFFNESS;
   model->residual_flexibility = local_matrix(n, local);
   model->residual_inertia     = local_matrix(n, local / pow(2e5, 2));
+}
+
+void shroud_face_model(int n, double force, modal_model *model) {
+  face_model(n, force, edges, model);
+}
+
+void smooth_face_model(int n, double force, modal_model *model) {
+  face_model(n, force, smooth, model);
+  model->position = calloc(3 * (size_t)n, sizeof *model->position);
+  for (int a = 0; a < n; a++) model->position[3 * a + 1] = place_of(n, a);
 }
 
 mhb_settings shroud_face_settings(int harmonics) {

@@ -12,6 +12,10 @@
  * a third of that to the force on its neighbour (residual flexibility and inertia). */
 void shroud_face_model(int n_patches, double force, modal_model *model);
 
+/* The same with positions of the patches, and a face that moves as 0.6 + 0.5 y + 0.3 y^2. The field
+ * is smooth, so that patches may be joined. At least two patches. */
+void smooth_face_model(int n_patches, double force, modal_model *model);
+
 /* kv = ku = 2e5 N/m, mu .3, n0 400 N, for the interface. */
 mhb_settings shroud_face_settings(int harmonics);
 

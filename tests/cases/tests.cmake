@@ -13,9 +13,10 @@ foreach(noun case faults stage_settings motion nodal_diameters)
   shb_test(cases/schema ${noun} shb_case)
 endforeach()
 
-foreach(noun hysteresis_picture up_to_date)
-  shb_test(cases/commands ${noun} shb_cases_commands)
-endforeach()
+shb_test(cases/contact hysteresis_picture shb_cases_contact)
+shb_test(cases/commands up_to_date shb_cases_commands)
+shb_test(cases/commands contact_points shb_cases_commands tests_models)
+target_sources(test_cases_commands_contact_points PRIVATE bench/shroud_face.c)
 add_test(NAME cases.commands.commands
   COMMAND sh ${CMAKE_CURRENT_SOURCE_DIR}/cases/commands/test_commands.sh $<TARGET_FILE:shroudhb>)
 if(NOT SHROUDHB_SANITIZE AND NOT SHROUDHB_FUZZ) # sanitizers reserve more than any limit
@@ -63,6 +64,11 @@ shb_test(cases/converge converge shb_post tests_models)
 target_compile_definitions(test_cases_converge_converge PRIVATE
   SHROUDHB="$<TARGET_FILE:shroudhb>")
 add_dependencies(test_cases_converge_converge programs)
+shb_test(cases/converge points_ladder shb_post tests_models)
+target_sources(test_cases_converge_points_ladder PRIVATE bench/shroud_face.c)
+target_compile_definitions(test_cases_converge_points_ladder PRIVATE
+  SHROUDHB="$<TARGET_FILE:shroudhb>")
+add_dependencies(test_cases_converge_points_ladder programs)
 shb_test(cases/converge resized_case shb_cases_converge)
 shb_test(cases/converge compare shb_cases_converge tests_models)
 

@@ -60,7 +60,8 @@ static void add_secondary(fixture *f, double factor) {
 static rung_error compare(const fixture *f) {
   rung_error  error;
   post_output output = {POST_PLACE_PROBE, 0, POST_WHOLE};
-  assert_ok(compare_rungs(&f->model, &f->settings, output, f->stem[0], f->stem[1], &error));
+  case_model  source = {.model = f->model, .settings = f->settings};
+  assert_ok(compare_rungs(&source, output, f->stem[0], f->stem[1], &error));
   return error;
 }
 

@@ -1,6 +1,6 @@
 /* One period of a prescribed motion and of the contact forces, sampled for a picture. */
-#ifndef CASES_COMMANDS_SAMPLED_PERIOD_H
-#define CASES_COMMANDS_SAMPLED_PERIOD_H
+#ifndef CASES_CONTACT_SAMPLED_PERIOD_H
+#define CASES_CONTACT_SAMPLED_PERIOD_H
 
 #include <stdbool.h>
 

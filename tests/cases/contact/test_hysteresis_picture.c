@@ -11,7 +11,7 @@
 
 #include <cmocka.h>
 
-#include "cases/commands/hysteresis_picture.h"
+#include "cases/contact/hysteresis_picture.h"
 #include "mesh/base/constants.h"
 #include "mhb/numerics/fourier.h"
 

@@ -1,9 +1,9 @@
 /* Picture of a contact over one period: hysteresis loops, friction path and its limit, states in
  * time. */
-#ifndef CASES_COMMANDS_HYSTERESIS_PICTURE_H
-#define CASES_COMMANDS_HYSTERESIS_PICTURE_H
+#ifndef CASES_CONTACT_HYSTERESIS_PICTURE_H
+#define CASES_CONTACT_HYSTERESIS_PICTURE_H
 
-#include "cases/commands/sampled_period.h"
+#include "cases/contact/sampled_period.h"
 #include "postproc/draw/text_buffer.h"
 
 typedef struct {

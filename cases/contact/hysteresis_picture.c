@@ -1,4 +1,4 @@
-#include "cases/commands/hysteresis_picture.h"
+#include "cases/contact/hysteresis_picture.h"
 
 #include <float.h>
 #include <math.h>

@@ -1,4 +1,4 @@
-#include "cases/commands/contact_command.h"
+#include "cases/contact/contact_command.h"
 
 #include <math.h>
 #include <stdbool.h>
@@ -6,8 +6,8 @@
 #include <string.h>
 #include <sys/stat.h>
 
-#include "cases/commands/hysteresis_picture.h"
-#include "cases/commands/sampled_period.h"
+#include "cases/contact/hysteresis_picture.h"
+#include "cases/contact/sampled_period.h"
 #include "cases/schema/motion.h"
 #include "mesh/base/constants.h"
 #include "mhb/contact/contact.h"

@@ -1,4 +1,4 @@
-#include "cases/commands/sampled_period.h"
+#include "cases/contact/sampled_period.h"
 
 #include <math.h>
 #include <stdlib.h>

@@ -1,6 +1,6 @@
 /* `shroudhb contact`: the contact law for a prescribed motion, as YAML and as a picture. */
-#ifndef CASES_COMMANDS_CONTACT_COMMAND_H
-#define CASES_COMMANDS_CONTACT_COMMAND_H
+#ifndef CASES_CONTACT_CONTACT_COMMAND_H
+#define CASES_CONTACT_CONTACT_COMMAND_H
 
 #include <stdio.h>
 

@@ -1,0 +1,397 @@
+#include "modal/model/joined_pairs.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+void modal_shroud_axes(double psi, double phi, double T0[3][3]) {
+  double cs = cos(psi), ss = sin(psi), cf = cos(phi), sf = sin(phi);
+  double T[3][3] = {{cs * cf, -ss, cs * sf}, {ss * cf, cs, ss * sf}, {-sf, 0, cf}};
+  memcpy(T0, T, sizeof T);
+}
+
+void modal_normal_angles(const double normal[3], double *psi, double *phi) {
+  *psi = atan2(normal[1], normal[0]);
+  *phi = -atan2(normal[2], hypot(normal[0], normal[1]));
+}
+
+int modal_joinable(const modal_model *model) {
+  return model->position ? model->n_pairs : 0;
+}
+
+/* ---------------------------------------------------------------- patches */
+
+typedef struct {
+  double key; /* position along the cut, m */
+  int    pair;
+} site;
+
+static int compare(const void *a, const void *b) {
+  const site *x = a, *y = b;
+  if (x->key != y->key) return x->key < y->key ? -1 : 1;
+  return x->pair - y->pair;
+}
+
+static double area_of(const modal_model *model, int pair) {
+  return model->area ? model->area[pair] : 1;
+}
+
+/* Unit vector along which the sites spread most, by power iteration on their covariance. */
+static void longest_extent(const modal_model *model, const site *sites, int n, double axis[3]) {
+  double centre[3] = {0}, C[3][3] = {{0}}, total = 0;
+  for (int i = 0; i < n; i++) {
+    double area = area_of(model, sites[i].pair);
+    total += area;
+    for (int d = 0; d < 3; d++) centre[d] += area * model->position[3 * sites[i].pair + d];
+  }
+  for (int i = 0; i < n; i++)
+    for (int d = 0; d < 3; d++)
+      for (int e = 0; e < 3; e++)
+        C[d][e] += area_of(model, sites[i].pair) *
+                   (model->position[3 * sites[i].pair + d] - centre[d] / total) *
+                   (model->position[3 * sites[i].pair + e] - centre[e] / total);
+  double v[3] = {0.62, 0.51, 0.59}; /* not along an axis of a mesh */
+  for (int sweep = 0; sweep < 60; sweep++) {
+    double w[3], length = 0;
+    for (int d = 0; d < 3; d++) {
+      w[d] = C[d][0] * v[0] + C[d][1] * v[1] + C[d][2] * v[2];
+      length += w[d] * w[d];
+    }
+    if (!(length > 0)) break;
+    for (int d = 0; d < 3; d++) v[d] = w[d] / sqrt(length);
+  }
+  memcpy(axis, v, sizeof v);
+}
+
+/* Cut sites into two parts by area, each with a site for every patch at least. */
+static void bisect(const modal_model *model, site *sites, int n, int first, int patches,
+                   modal_joining *j) {
+  if (patches == 1) {
+    for (int i = 0; i < n; i++) j->patch[sites[i].pair] = first;
+    return;
+  }
+  double axis[3], total = 0, sum = 0;
+  int    lower = patches / 2, cut = 0;
+  longest_extent(model, sites, n, axis);
+  for (int i = 0; i < n; i++) {
+    const double *x = model->position + 3 * sites[i].pair;
+    sites[i].key    = axis[0] * x[0] + axis[1] * x[1] + axis[2] * x[2];
+    total += area_of(model, sites[i].pair);
+  }
+  qsort(sites, (size_t)n, sizeof *sites, compare);
+  while (cut < n && sum + area_of(model, sites[cut].pair) / 2 <= total * lower / patches)
+    sum += area_of(model, sites[cut++].pair);
+  if (cut < lower) cut = lower;
+  if (n - cut < patches - lower) cut = n - (patches - lower);
+  bisect(model, sites, cut, first, lower, j);
+  bisect(model, sites + cut, n - cut, first + lower, patches - lower, j);
+}
+
+static int interface_of(const modal_model *model, int pair) {
+  return model->interface ? model->interface[pair] : 0;
+}
+
+/* Patches of an interface: in proportion to its pairs, one at least, as many as are left at most.
+ */
+static int part_of(const modal_model *model, int patches, int left, int n, int interfaces_left) {
+  int part = (int)lround((double)patches * n / model->n_pairs);
+  if (interfaces_left == 1) part = left;
+  if (part < 1) part = 1;
+  if (part > n) part = n;
+  return part > left - (interfaces_left - 1) ? left - (interfaces_left - 1) : part;
+}
+
+static void axes_of(const modal_model *model, int pair, double T0[3][3]) {
+  double psi, phi;
+  modal_normal_angles(model->normal + 3 * pair, &psi, &phi);
+  modal_shroud_axes(psi, phi, T0);
+}
+
+/* Unit mean of the normals of each patch by area: normal[patch][3]. */
+static void mean_normals(const modal_model *model, const modal_joining *j, double *normal) {
+  memset(normal, 0, 3 * (size_t)j->n_patches * sizeof *normal);
+  for (int i = 0; i < j->n_pairs; i++)
+    for (int d = 0; d < 3; d++)
+      normal[3 * j->patch[i] + d] += j->weight[i] * model->normal[3 * i + d];
+  for (int a = 0; a < j->n_patches; a++) {
+    double *v = normal + 3 * a, length = sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]);
+    for (int d = 0; d < 3 && length > 0; d++) v[d] /= length;
+  }
+}
+
+/* turn = T0_patch T0_pair^T; the identity without normals, where all pairs have the same axes. */
+static shb_status set_turns(const modal_model *model, modal_joining *j) {
+  for (int i = 0; i < j->n_pairs; i++)
+    for (int d = 0; d < 3; d++) j->turn[9 * i + 4 * d] = 1;
+  if (!model->normal) return SHB_OK;
+  double *normal = malloc(3 * (size_t)j->n_patches * sizeof *normal);
+  SHB_CHECK(normal, SHB_ERR_IO, "out of memory for %d patches", j->n_patches);
+  mean_normals(model, j, normal);
+  for (int i = 0; i < j->n_pairs; i++) {
+    double to[3][3], from[3][3], psi, phi;
+    modal_normal_angles(normal + 3 * j->patch[i], &psi, &phi);
+    modal_shroud_axes(psi, phi, to);
+    axes_of(model, i, from);
+    for (int d = 0; d < 3; d++)
+      for (int e = 0; e < 3; e++)
+        j->turn[9 * i + 3 * d + e] =
+            to[d][0] * from[e][0] + to[d][1] * from[e][1] + to[d][2] * from[e][2];
+  }
+  free(normal);
+  return SHB_OK;
+}
+
+static shb_status set_weights(const modal_model *model, modal_joining *j) {
+  double *total = calloc((size_t)j->n_patches, sizeof *total);
+  SHB_CHECK(total, SHB_ERR_IO, "out of memory for %d patches", j->n_patches);
+  for (int i = 0; i < j->n_pairs; i++) total[j->patch[i]] += area_of(model, i);
+  for (int i = 0; i < j->n_pairs; i++) j->weight[i] = area_of(model, i) / total[j->patch[i]];
+  free(total);
+  return SHB_OK;
+}
+
+shb_status modal_joining_create(const modal_model *model, int patches, modal_joining *j) {
+  const size_t n          = (size_t)model->n_pairs;
+  const int    interfaces = model->n_interfaces > 1 ? model->n_interfaces : 1;
+  *j                      = (modal_joining){.n_pairs = model->n_pairs, .n_patches = patches};
+  SHB_CHECK(model->position, SHB_ERR_INPUT,
+            "the modal file has no /contact/coordinates, by which contact pairs are joined to "
+            "patches; give contact.points as a number");
+  SHB_CHECK(patches >= interfaces && patches <= model->n_pairs, SHB_ERR_INPUT,
+            "%d patches asked of %d contact pairs on %d faces", patches, model->n_pairs,
+            interfaces);
+  site *sites       = malloc(n * sizeof *sites);
+  j->patch          = malloc(n * sizeof *j->patch);
+  j->weight         = malloc(n * sizeof *j->weight);
+  j->turn           = calloc(9 * n, sizeof *j->turn);
+  shb_status status = SHB_OK;
+  if (!sites || !j->patch || !j->weight || !j->turn)
+    status = shb_fail(SHB_ERR_IO, __FILE__, __LINE__, "out of memory for %d pairs", j->n_pairs);
+  for (int f = 0, first = 0; f < interfaces && status == SHB_OK; f++) {
+    int found = 0;
+    for (int i = 0; i < j->n_pairs; i++)
+      if (interface_of(model, i) == f) sites[found++] = (site){0, i};
+    int part = part_of(model, patches, patches - first, found, interfaces - f);
+    bisect(model, sites, found, first, part, j);
+    first += part;
+  }
+  if (status == SHB_OK) status = set_weights(model, j);
+  if (status == SHB_OK) status = set_turns(model, j);
+  free(sites);
+  if (status != SHB_OK) modal_joining_free(j);
+  return status;
+}
+
+void modal_joining_free(modal_joining *j) {
+  free(j->patch);
+  free(j->weight);
+  free(j->turn);
+  *j = (modal_joining){0};
+}
+
+/* ---------------------------------------------------------------- model */
+
+/* to[rows of patches][n] += the mean of from[rows of pairs][n], three rows each, on every side. A
+ * complex number counts as two. */
+static double *mean_rows(const modal_joining *j, int sides, const double *from, size_t n) {
+  const size_t pairs = 3 * (size_t)j->n_pairs, patches = 3 * (size_t)j->n_patches;
+  if (!from) return NULL;
+  double *to = calloc((size_t)sides * patches * n + 1, sizeof *to);
+  for (size_t row = 0; to && row < (size_t)sides * pairs; row++) {
+    size_t side = row / pairs, pair = row % pairs / 3, axis = row % 3;
+    for (size_t d = 0; d < 3; d++) {
+      double  part = j->weight[pair] * j->turn[9 * pair + 3 * d + axis];
+      double *out  = to + (side * patches + 3 * (size_t)j->patch[pair] + d) * n;
+      for (size_t i = 0; i < n && part != 0; i++) out[i] += part * from[row * n + i];
+    }
+  }
+  return to;
+}
+
+/* [rows][columns] -> [columns][rows], numbers of so many doubles. */
+static double *transposed(const double *from, size_t rows, size_t columns, size_t size) {
+  double *to = from ? malloc(rows * columns * size * sizeof *to + 1) : NULL;
+  for (size_t i = 0; to && i < rows; i++)
+    for (size_t k = 0; k < columns; k++)
+      memcpy(to + (k * rows + i) * size, from + (i * columns + k) * size, size * sizeof *to);
+  return to;
+}
+
+/* The mean over the columns of from[rows][contact]. */
+static double *mean_columns(const modal_joining *j, int sides, const double *from, size_t rows,
+                            size_t size) {
+  const size_t pairs = 3 * (size_t)(sides * j->n_pairs), n = 3 * (size_t)(sides * j->n_patches);
+  double      *turned = transposed(from, rows, pairs, size);
+  double      *mean   = mean_rows(j, sides, turned, rows * size);
+  double      *out    = transposed(mean, n, rows, size);
+  free(turned);
+  free(mean);
+  return out;
+}
+
+/* The mean over rows and columns, made symmetric: round-off of the two sums differs. */
+static double *mean_both(const modal_joining *j, int sides, const double *from) {
+  const size_t n    = 3 * (size_t)(sides * j->n_patches);
+  double      *rows = mean_rows(j, sides, from, 3 * (size_t)(sides * j->n_pairs));
+  double      *out  = mean_columns(j, sides, rows, n, 1);
+  for (size_t i = 0; out && i < n; i++)
+    for (size_t k = 0; k < i; k++)
+      out[i * n + k] = out[k * n + i] = (out[i * n + k] + out[k * n + i]) / 2;
+  free(rows);
+  return out;
+}
+
+/* A mean of motions has a tail of at most the squared mean of the roots of their tails. */
+static double *bound_tails(const modal_joining *j, int sides, const double *from) {
+  const size_t pairs = 3 * (size_t)j->n_pairs, patches = 3 * (size_t)j->n_patches;
+  if (!from) return NULL;
+  double *to = calloc(2 * (size_t)sides * patches + 1, sizeof *to);
+  for (size_t row = 0; to && row < (size_t)sides * pairs; row++) {
+    size_t side = row / pairs, pair = row % pairs / 3, axis = row % 3;
+    for (size_t d = 0; d < 3; d++)
+      for (size_t t = 0; t < 2; t++)
+        to[2 * (side * patches + 3 * (size_t)j->patch[pair] + d) + t] +=
+            j->weight[pair] * fabs(j->turn[9 * pair + 3 * d + axis]) * sqrt(from[2 * row + t]);
+  }
+  for (size_t i = 0; to && i < 2 * (size_t)sides * patches; i++) to[i] *= to[i];
+  return to;
+}
+
+static void *copy(const void *from, size_t bytes) {
+  void *to = from ? malloc(bytes + 1) : NULL;
+  if (to) memcpy(to, from, bytes);
+  return to;
+}
+
+static char **copy_names(char *const *name, int n) {
+  char **to = name ? calloc((size_t)n + 1, sizeof *to) : NULL;
+  for (int i = 0; to && i < n; i++) to[i] = strdup(name[i]);
+  return to;
+}
+
+/* What knows nothing of the contact. */
+static void copy_rest(const modal_model *a, modal_model *b) {
+  const size_t m = (size_t)a->n_modes, q = 3 * (size_t)a->n_probes, K = (size_t)a->n_load + 1;
+  const size_t r = (size_t)a->n_residual, real = sizeof(double), both = sizeof(double complex);
+  b->frequency           = copy(a->frequency, m * real);
+  b->damping_ratio       = copy(a->damping_ratio, m * real);
+  b->eigen_residual      = copy(a->eigen_residual, m * real);
+  b->residual_frequency  = copy(a->residual_frequency, r * real);
+  b->residual_force      = copy(a->residual_force, K * r * both);
+  b->residual_probe      = copy(a->residual_probe, q * r * real);
+  b->load_tail           = copy(a->load_tail, 2 * K * real);
+  b->modal_force         = copy(a->modal_force, K * m * both);
+  b->probe               = copy(a->probe, q * m * real);
+  b->probe_load_residual = copy(a->probe_load_residual, K * q * both);
+  b->probe_load_inertia  = copy(a->probe_load_inertia, K * q * both);
+  b->probe_load_fourth   = copy(a->probe_load_fourth, K * q * both);
+  b->probe_name          = copy_names(a->probe_name, a->n_probes);
+  b->interface_name      = copy_names(a->interface_name, a->n_interfaces);
+}
+
+/* Area, position and interface of the patches. */
+static void describe_patches(const modal_model *a, const modal_joining *j, modal_model *b) {
+  const size_t n = (size_t)j->n_patches;
+  b->position    = calloc(3 * n, sizeof *b->position);
+  b->area        = a->area ? calloc(n, sizeof *b->area) : NULL;
+  b->interface   = a->interface ? calloc(n, sizeof *b->interface) : NULL;
+  b->normal      = a->normal ? calloc(3 * n, sizeof *b->normal) : NULL;
+  for (int i = 0; i < j->n_pairs; i++) {
+    int at = j->patch[i];
+    if (b->area) b->area[at] += a->area[i];
+    if (b->interface) b->interface[at] = a->interface[i];
+    for (int d = 0; b->position && a->position && d < 3; d++)
+      b->position[3 * at + d] += j->weight[i] * a->position[3 * i + d];
+  }
+  if (b->normal) mean_normals(a, j, b->normal);
+}
+
+/* True if every part that the one has is in the other. */
+static bool is_whole(const modal_model *a, const modal_model *b) {
+  const void *const from[] = {a->right,
+                              a->left,
+                              a->residual_flexibility,
+                              a->residual_inertia,
+                              a->residual_fourth,
+                              a->residual_shape,
+                              a->contact_tail,
+                              a->load_residual,
+                              a->load_inertia,
+                              a->load_fourth,
+                              a->probe_contact_residual,
+                              a->probe_contact_inertia,
+                              a->probe_contact_fourth,
+                              a->frequency,
+                              a->damping_ratio,
+                              a->modal_force,
+                              a->probe,
+                              a->residual_force,
+                              a->area,
+                              a->normal};
+  const void *const to[]   = {b->right,
+                              b->left,
+                              b->residual_flexibility,
+                              b->residual_inertia,
+                              b->residual_fourth,
+                              b->residual_shape,
+                              b->contact_tail,
+                              b->load_residual,
+                              b->load_inertia,
+                              b->load_fourth,
+                              b->probe_contact_residual,
+                              b->probe_contact_inertia,
+                              b->probe_contact_fourth,
+                              b->frequency,
+                              b->damping_ratio,
+                              b->modal_force,
+                              b->probe,
+                              b->residual_force,
+                              b->area,
+                              b->normal};
+  for (size_t i = 0; i < sizeof from / sizeof *from; i++)
+    if (from[i] && !to[i]) return false;
+  return b->position;
+}
+
+shb_status modal_join(const modal_model *a, const modal_joining *j, modal_model *b) {
+  const size_t m = (size_t)a->n_modes, q = 3 * (size_t)a->n_probes, K = (size_t)a->n_load + 1;
+  const int    sides = a->has_left ? 2 : 1;
+  *b                 = (modal_model){.n_modes      = a->n_modes,
+                                     .n_pairs      = j->n_patches,
+                                     .n_probes     = a->n_probes,
+                                     .n_load       = a->n_load,
+                                     .n_interfaces = a->n_interfaces,
+                                     .has_left     = a->has_left,
+                                     .n_residual   = a->n_residual,
+                                     .tail_order   = a->tail_order};
+  copy_rest(a, b);
+  describe_patches(a, j, b);
+  b->right                = mean_rows(j, 1, a->right, m);
+  b->left                 = mean_rows(j, 1, a->left, m);
+  b->residual_flexibility = mean_both(j, sides, a->residual_flexibility);
+  b->residual_inertia     = mean_both(j, sides, a->residual_inertia);
+  b->residual_fourth      = mean_both(j, sides, a->residual_fourth);
+  b->residual_shape       = mean_rows(j, sides, a->residual_shape, (size_t)a->n_residual);
+  b->contact_tail         = bound_tails(j, sides, a->contact_tail);
+  b->load_residual = (double complex *)mean_columns(j, sides, (double *)a->load_residual, K, 2);
+  b->load_inertia  = (double complex *)mean_columns(j, sides, (double *)a->load_inertia, K, 2);
+  b->load_fourth   = (double complex *)mean_columns(j, sides, (double *)a->load_fourth, K, 2);
+  b->probe_contact_residual = mean_columns(j, sides, a->probe_contact_residual, q, 1);
+  b->probe_contact_inertia  = mean_columns(j, sides, a->probe_contact_inertia, q, 1);
+  b->probe_contact_fourth   = mean_columns(j, sides, a->probe_contact_fourth, q, 1);
+  if (is_whole(a, b)) return SHB_OK;
+  modal_model_free(b);
+  return shb_fail(SHB_ERR_IO, __FILE__, __LINE__, "out of memory for %d patches", j->n_patches);
+}
+
+void modal_joining_spread(const modal_joining *j, int sides, const double complex *force,
+                          double complex *out) {
+  for (int side = 0; side < sides; side++)
+    for (int i = 0; i < j->n_pairs; i++) {
+      const double complex *from = force + 3 * (side * j->n_patches + j->patch[i]);
+      double complex       *to   = out + 3 * (side * j->n_pairs + i);
+      const double         *turn = j->turn + 9 * i;
+      for (int d = 0; d < 3; d++)
+        to[d] = j->weight[i] * (turn[d] * from[0] + turn[3 + d] * from[1] + turn[6 + d] * from[2]);
+    }
+}

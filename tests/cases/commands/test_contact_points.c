@@ -1,0 +1,115 @@
+/* contact.points: auto takes the fewest patches that keep the tolerance. */
+#include "cases/commands/contact_points.h"
+
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdlib.h>
+
+#include <cmocka.h>
+
+#include "mhb/branches/forced_response.h"
+#include "tests/bench/shroud_face.h"
+#include "tests/support/check.h"
+
+enum { PAIRS = 16 };
+
+static mhb_settings settings_of(void) {
+  mhb_settings s = shroud_face_settings(3);
+  s.frequency[1] = 245;
+  return s;
+}
+
+/* Number of pairs at a tolerance. */
+static int chosen_at(double tolerance, double *estimate) {
+  modal_model     model;
+  contact_points *points;
+  mhb_settings    s = settings_of();
+  smooth_face_model(PAIRS, 150, &model);
+  assert_int_equal(contact_points_choose(&model, &s, tolerance, &points), SHB_OK);
+  const int n = model.n_pairs;
+  *estimate   = points ? points->estimate : 0;
+  if (points) {
+    assert_int_equal(points->other.n_pairs, PAIRS);
+    assert_int_equal(points->joining.n_patches, n);
+    assert_true(points->pairs.finer && points->pairs.model == &points->other);
+  } else {
+    assert_int_equal(n, PAIRS);
+  }
+  contact_points_free(points);
+  modal_model_free(&model);
+  return n;
+}
+
+static void fewest_that_keep_the_tolerance(void **state) {
+  (void)state;
+  static const double tolerance[] = {.5, .1, .02, 1e-6};
+  int                 n[4];
+  for (int i = 0; i < 4; i++) {
+    double estimate;
+    n[i] = chosen_at(tolerance[i], &estimate);
+    print_message("tolerance %g: %d of %d, estimate %.2g\n", tolerance[i], n[i], PAIRS, estimate);
+    assert_below(estimate, tolerance[i]);
+    if (i > 0) assert_true(n[i] >= n[i - 1]);
+  }
+  assert_true(n[0] < PAIRS && n[3] == PAIRS && n[0] < n[2]);
+}
+
+/* Every point of a response carries the estimate that the choice rests on. */
+static void points_carry_the_error(void **state) {
+  (void)state;
+  modal_model     model;
+  contact_points *points;
+  mhb_response   *response;
+  mhb_settings    s      = settings_of();
+  int             judged = 0, beyond = 0, moving = 0;
+  s.stability = MHB_STABILITY_NEVER;
+  smooth_face_model(PAIRS, 150, &model);
+  assert_int_equal(contact_points_choose(&model, &s, .1, &points), SHB_OK);
+  assert_non_null(points);
+  s.other_pairs = &points->pairs;
+  assert_int_equal(mhb_forced_response(&model, &s, NULL, NULL, NULL, &response), SHB_OK);
+  const mhb_branch *b = &response->branch[2];
+  for (int i = 0; i < b->n_points; i++) {
+    const double *state_of = b->state + 3 * (size_t)(i * response->n_pairs);
+    bool          moves    = false;
+    for (int a = 0; a < response->n_pairs; a++)
+      moves = moves || (state_of[3 * a] < 1 && state_of[3 * a + 2] < 1);
+    judged += b->error_spatial[i] >= 0;
+    moving += moves;
+    beyond += moves && b->error_spatial[i] > .1;
+  }
+  print_message("%d of %d points judged; %d of %d moving ones beyond the tolerance\n", judged,
+                b->n_points, beyond, moving);
+  assert_true(moving > 5 && judged > .9 * b->n_points && beyond <= .2 * moving);
+  mhb_response_destroy(response);
+  contact_points_free(points);
+  modal_model_free(&model);
+}
+
+static void half_as_many_judge_a_fixed_number(void **state) {
+  (void)state;
+  modal_model     model;
+  contact_points *points;
+  smooth_face_model(PAIRS, 150, &model);
+  assert_int_equal(contact_points_halve(&model, &points), SHB_OK);
+  assert_int_equal(model.n_pairs, PAIRS);
+  assert_int_equal(points->other.n_pairs, PAIRS / 2);
+  assert_false(points->pairs.finer);
+  contact_points_free(points);
+  free(model.position);
+  model.position = NULL;
+  assert_int_equal(contact_points_halve(&model, &points), SHB_OK);
+  assert_null(points); /* without positions nothing is judged */
+  modal_model_free(&model);
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(fewest_that_keep_the_tolerance),
+      cmocka_unit_test(points_carry_the_error),
+      cmocka_unit_test(half_as_many_judge_a_fixed_number),
+  };
+  return cmocka_run_group_tests(tests, NULL, NULL);
+}
