@@ -10,6 +10,8 @@ static const char *needed(case_condition when) {
     case CASE_IF_MESH_FILE:
     case CASE_IF_SIZE:
       return "only says something with mesh.file";
+    case CASE_IF_AUTO_POINTS:
+      return "only says something with contact.points: auto";
     case CASE_IF_STABILITY:
       return "only says something with mhb.stability: auto or always";
     case CASE_IF_SEARCH:

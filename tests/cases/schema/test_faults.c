@@ -467,6 +467,15 @@ static void run_ups(void **state) {
     free(said);
     free(text);
   }
+  char *said, *text = scratch_case("speed: 2900 rpm", "speed: [900 rpm, 600 rpm, 1100 rpm]");
+  text = change(text, "points: 4", "points: auto");
+  text = change(text, "  max_points: 777", "  run_up: yes");
+  assert_int_equal(judge(text, strlen(text), &said), SHB_ERR_INPUT);
+  assert_non_null(strstr(said,
+                         "c.yaml:23:11: error: contact.points: is auto, which does not go "
+                         "with mhb.run_up; give the number of points\n"));
+  free(said);
+  free(text);
 }
 
 static void nothing_is_ignored(void **state) {
@@ -478,6 +487,8 @@ static void nothing_is_ignored(void **state) {
        "c.yaml:3:9: error: mesh.size: only says something with mesh.file", 1},
       {"mesh:\n", "mesh:\n  groups: {root: {radius: 1}}\n",
        "c.yaml:3:11: error: mesh.groups: only says something with mesh.file", 1},
+      {"  points: 4", "  points: 4\n  tolerance: 1e-2",
+       "c.yaml:24:14: error: contact.tolerance: only says something with contact.points: auto", 1},
       {"  scale: 1.3", "  search: {at: [100]}",
        "c.yaml:34:16: error: mhb.search.at: only says something with mhb.search.starts above 0", 1},
       {"  scale: 1.3", "  search: {orders: [2]}",
