@@ -10,7 +10,7 @@ static const char *needed(case_condition when) {
     case CASE_IF_MESH_FILE:
     case CASE_IF_SIZE:
       return "only says something with mesh.file";
-    case CASE_IF_AUTO_POINTS:
+    case CASE_IF_PATCHES:
       return "only says something with contact.points: auto";
     case CASE_IF_STABILITY:
       return "only says something with mhb.stability: auto or always";
