@@ -19,7 +19,8 @@ set(INTEGRATION_TESTS cases.study.study cases.study.eval cases.study.blade_study
   mhb.response.modal_motion
   mhb.response.direct_stress mhb.response.response mhb.balance.condensation
   mhb.balance.truncation_error mhb.floquet.floquet mhb.integration.integrator
-  mhb.integration.integration_sweep mhb.ring.lasting mhb.branches.lasting_motion
+  mhb.integration.integration_sweep mhb.integration.mistuned_ring
+  mhb.amplification.ring_response bench.mistuning mhb.ring.lasting mhb.branches.lasting_motion
   mhb.continuation.arclength mhb.continuation.linear_resonances
   mhb.branches.harmonic_selection mhb.branches.branch_stability mhb.branches.secondary_branches
   mhb.branches.forced_response mhb.branches.run_up postproc.report.report cases.commands.integrate

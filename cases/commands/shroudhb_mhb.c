@@ -30,7 +30,7 @@ static const char usage[] =
     "hysteresis loops, friction path and states.\n";
 
 /* Does the file at path hold the complete result of these settings? */
-static bool up_to_date(const char *path, const char *settings) {
+static bool up_to_date(const char *path, const char *settings, int samples) {
   bool          same     = up_to_date_with(path, settings);
   mhb_response *response = NULL;
   same                   = same && mhb_response_read(path, &response) == SHB_OK;
@@ -39,6 +39,10 @@ static bool up_to_date(const char *path, const char *settings) {
     const mhb_branch *branch = &response->branch[i];
     same                     = branch->main != i || (branch->complete && branch->searched);
   }
+  const mhb_samples *drawn = same ? response->samples : NULL;
+  if (samples > 0) same = same && drawn != NULL;
+  for (int i = 0; same && drawn && i < drawn->preloads; i++)
+    same = mhb_samples_done(drawn, i) == drawn->n;
   mhb_response_destroy(response);
   return same;
 }
@@ -94,10 +98,13 @@ static void note_points(shb_progress *progress, const case_file *file, const cas
 
 static shb_status solve(const case_file *file, const char *modal, char *settings,
                         const char *output, shb_progress *progress) {
-  case_model     model;
-  mhb_response  *response   = NULL;
-  shb_provenance provenance = command_provenance(file, settings, "shroudhb-mhb");
-  shb_status     status     = case_model_read(file, modal, 0, true, &model);
+  case_model         model;
+  mhb_response      *response   = NULL;
+  shb_provenance     provenance = command_provenance(file, settings, "shroudhb-mhb");
+  shb_status         status     = case_model_read(file, modal, 0, true, &model);
+  const mhb_sampling sampling   = {.n         = file->mistuning.samples,
+                                   .deviation = file->mistuning.deviation,
+                                   .seed      = file->mistuning.seed};
   if (status == SHB_OK && model.run_up) note_run_up(progress, &model);
   if (status == SHB_OK && file->points < 0) note_points(progress, file, &model);
   if (status == SHB_OK && !file->modal_file) status = case_model_judge_points(&model);
@@ -105,7 +112,8 @@ static shb_status solve(const case_file *file, const char *modal, char *settings
     status = mhb_tracked_response(&model.model, &model.settings, output, &provenance, progress,
                                   &response);
   else if (status == SHB_OK && model.ring)
-    status = mhb_ring_response(&model.settings, output, &provenance, progress, &response);
+    status =
+        mhb_ring_response(&model.settings, &sampling, output, &provenance, progress, &response);
   else if (status == SHB_OK)
     status = mhb_forced_response(&model.model, &model.settings, output, &provenance, progress,
                                  &response);
@@ -126,7 +134,7 @@ static shb_status run(const case_file *file, const command_options *options) {
   if (status == SHB_OK && !file->modal_file) up_to_date_warn(file, CASE_MODAL, modal);
   if (status == SHB_OK) status = up_to_date_settings(file, CASE_MHB, modal, &settings);
   if (status == SHB_OK) {
-    if (!options->force && up_to_date(output, settings)) {
+    if (!options->force && up_to_date(output, settings, file->mistuning.samples)) {
       shb_progress_note(&progress, "%s is up to date", output);
     } else {
       status = solve(file, modal, settings, output, &progress);

@@ -79,7 +79,7 @@ typedef struct {
   double              each[CASE_MAX_BLADES]; /* [n] relative frequency deviations */
   char               *file;                  /* resolved path */
   double              deviation;             /* standard deviation of random ones */
-  int                 seed;
+  int                 seed, samples;         /* 0: none but the first */
 } case_mistuning;
 
 typedef struct {

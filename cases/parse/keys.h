@@ -39,7 +39,7 @@ typedef enum {
   /* list of mappings, whose keys are rows "LIST[].KEY"; elements of size each, counted at
    * count_at */
   CASE_LIST,
-  /* list of deviations, {file: }, or {deviation: , seed: }: the case_file's mistuning */
+  /* list of deviations, {file: }, or {deviation: , seed: , samples: }: the case_file's mistuning */
   CASE_MISTUNING,
   CASE_SIGNAL, /* [[amplitude, phase], ...] from harmonic 0; read by schema/motion.c */
   CASE_N_TYPES

@@ -316,18 +316,20 @@ static bool mistuning_list(const case_value_context *c, const case_node *node, c
   return case_value_numbers(c, c->path, node, node->n, m->each);
 }
 
-/* {deviation: , seed: } */
+enum { MOST_SAMPLES = 100000 };
+
+/* {deviation: , seed: , samples: } */
 bool case_list_mistuning(const case_value_context *c, const case_node *node, void *slot) {
   static const char expected[] = "missing; expected {deviation: 1 %, seed: 7}";
   case_mistuning   *m          = slot;
   if (node->kind == CASE_SEQUENCE) return mistuning_list(c, node, m);
   if (node->kind != CASE_MAPPING) return case_value_refuse(c, node);
   const case_node *deviation = case_node_find(node, "deviation"),
-                  *seed      = case_node_find(node, "seed");
+                  *seed = case_node_find(node, "seed"), *samples = case_node_find(node, "samples");
   char path[CASE_PATH], why[CASE_WHY];
   for (int i = 0; i < node->n; i++) {
     const case_node *child = &node->child[i];
-    if (child == deviation || child == seed) continue;
+    if (child == deviation || child == seed || child == samples) continue;
     case_path(path, "%s.%s", c->path, child->key);
     case_issue_add(c->issues, child->key_line, child->key_column, path,
                    "unknown key; give a list, {file: NAME} or {deviation: 1 %%, seed: 7}");
@@ -353,5 +355,16 @@ bool case_list_mistuning(const case_value_context *c, const case_node *node, voi
     return false;
   }
   m->kind = CASE_MISTUNED_RANDOM;
+  if (!samples) return true;
+  case_path(path, "%s.samples", c->path);
+  if (samples->kind != CASE_SCALAR)
+    return case_value_refuse_kind(c, path, samples, "a whole number");
+  if (case_integer(samples->text, &m->samples, why) && m->samples >= 2 &&
+      m->samples <= MOST_SAMPLES)
+    return true;
+  case_issue_add(c->issues, samples->line, samples->column, path,
+                 "'%.20s' is not a number of samples; expected a whole number, 2 to %d",
+                 samples->text, MOST_SAMPLES);
+  return false;
   return true;
 }

@@ -67,7 +67,7 @@ static void print_mistuning(FILE *out, const case_file *file, const case_mistuni
   char fingerprint[17] = "-";
   if (m->kind == CASE_MISTUNED_LIST) print_numbers(out, m->n, m->each);
   if (m->kind == CASE_MISTUNED_RANDOM)
-    fprintf(out, "deviation %.17g seed %d", m->deviation, m->seed);
+    fprintf(out, "deviation %.17g seed %d samples %d", m->deviation, m->seed, m->samples);
   if (m->kind != CASE_MISTUNED_FILE) return;
   if (shb_fingerprint(m->file, fingerprint) != SHB_OK) strcpy(fingerprint, "-");
   fprintf(out, "file %s %s", inside(file, m->file), fingerprint);

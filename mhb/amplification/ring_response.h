@@ -2,13 +2,14 @@
 #ifndef MHB_AMPLIFICATION_RING_RESPONSE_H
 #define MHB_AMPLIFICATION_RING_RESPONSE_H
 
-#include "mesh/base/progress.h"
-#include "mhb/response/response.h"
+#include "mhb/amplification/ring_samples.h"
 
 /* As mhb_forced_response of settings->ring->whole. Then the peaks of each main curve and of the
- * tuned ring are found, and the file is written once more. Errors: as mhb_forced_response. */
-shb_status mhb_ring_response(const mhb_settings *settings, const char *path,
-                             const shb_provenance *provenance, shb_progress *progress,
-                             mhb_response **response);
+ * tuned ring are found, samples are drawn unless sampling is NULL, and the file is written once
+ * more. Samples of an interrupted run with equal settings are taken over. Errors: as
+ * mhb_forced_response and mhb_ring_samples. */
+shb_status mhb_ring_response(const mhb_settings *settings, const mhb_sampling *sampling,
+                             const char *path, const shb_provenance *provenance,
+                             shb_progress *progress, mhb_response **response);
 
 #endif

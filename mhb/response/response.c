@@ -112,6 +112,7 @@ void mhb_response_destroy(mhb_response *response) {
     free(response->interface_name[i]);
   free(response->interface_name);
   free(response->interface);
+  mhb_samples_destroy(response->samples);
   free(response->track);
   free(response->output);
   free(response->branch);

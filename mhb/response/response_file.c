@@ -158,6 +158,7 @@ static shb_status write_root(hid_t file, const mhb_response *response) {
   if (response->unfinished) SHB_TRY(h5_write_attribute_int(file, "/", "finished", 0));
   SHB_TRY(h5_write_attribute_text(file, "/", "parameter", mhb_parameter_name(response->parameter)));
   SHB_TRY(write_tracking(file, response));
+  if (response->samples) SHB_TRY(mhb_samples_write(file, response->samples));
   SHB_TRY(h5_write_attribute_double(file, "/", "psi", response->psi));
   SHB_TRY(h5_write_attribute_double(file, "/", "phi", response->phi));
   SHB_TRY(h5_write_attribute_text(file, "/", "angle_units", "rad"));
@@ -479,6 +480,7 @@ static shb_status read_root(hid_t file, const char *path, mhb_response **out) {
   response->unfinished = finished == 0;
   response->run_up     = run_up != 0 && response->engine_order >= 1;
   SHB_TRY(read_tracking(file, path, response));
+  SHB_TRY(mhb_samples_read(file, &response->samples));
   SHB_TRY(h5_read_attribute_double(file, "/", "psi", 0, &response->psi));
   SHB_TRY(h5_read_attribute_double(file, "/", "phi", 0, &response->phi));
   SHB_CHECK(response->subharmonics >= 1, SHB_ERR_INPUT,

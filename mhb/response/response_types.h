@@ -8,6 +8,7 @@
 #include "mesh/base/publish.h"
 #include "mesh/base/status.h"
 #include "mhb/problem/settings.h"
+#include "mhb/response/response_samples.h"
 
 /* Solutions of the balance, its linear limits, and single points by time integration. */
 typedef enum {
@@ -198,7 +199,8 @@ typedef struct {
   bool    run_up; /* the speed follows the frequency on the engine order; modes of the top speed */
   double  psi, phi;       /* rad, mean of the pairs */
   char   *track, *output; /* with mhb.track: what is followed, of which output; else NULL */
-  mhb_optimum optimum;
+  mhb_optimum  optimum;
+  mhb_samples *samples; /* of a mistuned ring; NULL: none were drawn */
 } mhb_response;
 
 #endif

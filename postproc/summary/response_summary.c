@@ -129,6 +129,32 @@ static shb_status put_curve(const work *w, int group) {
   return SHB_OK;
 }
 
+/* Distribution of the amplification factor of random rings, a preload each. */
+static void put_samples(const work *w) {
+  static const struct {
+    const char *name;
+    double      p;
+  } quantile[]         = {{"median", 0.5}, {"percentile_95", 0.95}, {"percentile_99", 0.99}};
+  const mhb_samples *s = w->analysis->response->samples;
+  if (!s) return;
+  post_json_list(w->json, "samples");
+  for (int i = 0; i < s->preloads; i++) {
+    const int worst = mhb_samples_worst(s, i);
+    post_json_object(w->json, NULL);
+    post_json_number(w->json, "n0", s->n0[i]);
+    post_json_integer(w->json, "samples", mhb_samples_done(s, i));
+    for (int q = 0; q < 3; q++) {
+      double value[3];
+      mhb_samples_quantile(s, i, quantile[q].p, value);
+      post_json_numbers(w->json, quantile[q].name, 3, value);
+    }
+    post_json_integer(w->json, "worst_sample", worst);
+    post_json_number(w->json, "largest", worst < 0 ? NAN : s->factor[i * s->n + worst]);
+    post_json_end(w->json);
+  }
+  post_json_end(w->json);
+}
+
 /* ---- the best preload ---- */
 
 static void put_tracked(const work *w, const mhb_optimum *o) {
@@ -181,5 +207,6 @@ shb_status post_response_put(const post_analysis *analysis, const post_stress_so
   for (int g = 0; g < analysis->n_groups; g++) SHB_TRY(put_curve(&w, g));
   post_json_end(json);
   put_optimum(&w);
+  put_samples(&w);
   return SHB_OK;
 }

@@ -28,6 +28,7 @@ shb_test(mhb/low_rank woodbury tests_models)
 target_sources(test_mhb_low_rank_woodbury PRIVATE bench/shroud_face.c)
 shb_test(mhb/response response shb_mhb_response)
 shb_test(mhb/response publisher shb_mhb_response)
+shb_test(mhb/response response_samples shb_mhb_response)
 shb_test(mhb/response modal_motion tests_models)
 shb_test(mhb/response direct_stress tests_fem tests_models shb_modal)
 foreach(noun balance stick_stiffness condensation multistart newton ring_system subharmonics
@@ -59,7 +60,7 @@ foreach(noun arclength arclength_scalar balance_curve closed_curve corrector cur
     resonance_detection segment)
   shb_test(mhb/continuation ${noun} tests_models)
 endforeach()
-foreach(noun whitehead)
+foreach(noun whitehead ring_response)
   shb_test(mhb/amplification ${noun} tests_models)
 endforeach()
 foreach(noun branch_completion branch_stability chain forced_response harmonic_selection

@@ -1,0 +1,182 @@
+#include "mhb/response/response_samples.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* Probability beyond each bound. */
+static const double BEYOND = 0.025;
+
+enum { QUANTILES = 3 };
+static const double QUANTILE[QUANTILES] = {0.5, 0.95, 0.99};
+
+shb_status mhb_samples_create(int n, int preloads, int blades, mhb_samples **out) {
+  mhb_samples *s = calloc(1, sizeof *s);
+  SHB_CHECK(s, SHB_ERR_IO, "out of memory");
+  const size_t all = (size_t)n * (size_t)preloads;
+  *s               = (mhb_samples){.n = n, .preloads = preloads, .blades = blades};
+  s->n0            = calloc((size_t)preloads, sizeof(double));
+  s->deviation     = calloc((size_t)n * (size_t)blades, sizeof(double));
+  s->factor        = calloc(all, sizeof(double));
+  s->frequency     = calloc(all, sizeof(double));
+  s->blade         = calloc(all, sizeof(int));
+  if (s->n0 && s->deviation && s->factor && s->frequency && s->blade) {
+    *out = s;
+    return SHB_OK;
+  }
+  mhb_samples_destroy(s);
+  SHB_FAIL(SHB_ERR_IO, "out of memory for %d samples", n);
+}
+
+void mhb_samples_destroy(mhb_samples *s) {
+  if (!s) return;
+  free(s->n0);
+  free(s->deviation);
+  free(s->factor);
+  free(s->frequency);
+  free(s->blade);
+  free(s);
+}
+
+static const double *factors_of(const mhb_samples *s, int preload) {
+  return s->factor + (size_t)preload * (size_t)s->n;
+}
+
+int mhb_samples_done(const mhb_samples *s, int preload) {
+  int done = 0;
+  for (int i = 0; i < s->n; i++) done += factors_of(s, preload)[i] > 0;
+  return done;
+}
+
+int mhb_samples_worst(const mhb_samples *s, int preload) {
+  const double *factor = factors_of(s, preload);
+  int           worst  = -1;
+  for (int i = 0; i < s->n; i++)
+    if (factor[i] > 0 && (worst < 0 || factor[i] > factor[worst])) worst = i;
+  return worst;
+}
+
+/* ---- distribution ---- */
+
+static int by_value(const void *a, const void *b) {
+  const double x = *(const double *)a, y = *(const double *)b;
+  return (x > y) - (x < y);
+}
+
+/* P(B = k) of B binomial in n trials of probability p. */
+static double binomial(int n, int k, double p) {
+  return exp(lgamma(n + 1.) - lgamma(k + 1.) - lgamma(n - k + 1.) + k * log(p) +
+             (n - k) * log1p(-p));
+}
+
+/* Ranks from 1: x_(low) <= quantile <= x_(high), each wrong with a probability of at most BEYOND;
+ * 0: none. B samples are below the quantile: x_(r) is above it if B < r. */
+static void ranks(int n, double p, int *low, int *high) {
+  double below = 0, above = 0;
+  *low = *high = 0;
+  for (int r = 1; r <= n; r++) {
+    below += binomial(n, r - 1, p); /* P(B <= r - 1) */
+    if (below > BEYOND) break;
+    *low = r;
+  }
+  for (int r = n; r >= 1; r--) {
+    above += binomial(n, r, p); /* P(B >= r) */
+    if (above > BEYOND) break;
+    *high = r;
+  }
+}
+
+void mhb_samples_quantile(const mhb_samples *s, int preload, double p, double out[3]) {
+  const int n = mhb_samples_done(s, preload);
+  double   *x = malloc(sizeof *x * (size_t)(n + 1));
+  int       low, high, m = 0;
+  out[0] = out[1] = out[2] = NAN;
+  for (int i = 0; x && i < s->n; i++)
+    if (factors_of(s, preload)[i] > 0) x[m++] = factors_of(s, preload)[i];
+  if (x && n > 0) {
+    qsort(x, (size_t)n, sizeof *x, by_value);
+    const double at = p * (n - 1), part = at - floor(at);
+    const int    i = (int)at;
+    out[0]         = i + 1 < n ? (1 - part) * x[i] + part * x[i + 1] : x[n - 1];
+    ranks(n, p, &low, &high);
+    if (low > 0) out[1] = x[low - 1];
+    if (high > 0) out[2] = x[high - 1];
+  }
+  free(x);
+}
+
+/* ---- file ---- */
+
+static shb_status write_distribution(hid_t file, const mhb_samples *s) {
+  const hsize_t preloads = (hsize_t)s->preloads;
+  double        all[s->preloads * QUANTILES * 3];
+  int           worst[s->preloads];
+  for (int i = 0; i < s->preloads; i++) {
+    worst[i] = mhb_samples_worst(s, i);
+    for (int q = 0; q < QUANTILES; q++)
+      mhb_samples_quantile(s, i, QUANTILE[q], all + (size_t)(i * QUANTILES + q) * 3);
+  }
+  for (int i = 0; i < s->preloads * QUANTILES * 3; i++)
+    if (isnan(all[i])) all[i] = 0;
+  SHB_TRY(h5_write_double(file, "/samples/quantile", H5_SHAPE(QUANTILES), QUANTILE, "-",
+                          "of the amplification factor"));
+  SHB_TRY(h5_write_double(file, "/samples/distribution", H5_SHAPE(preloads, QUANTILES, 3), all, "-",
+                          "quantiles of the amplification factor: value, lower and upper bound of "
+                          "95 % confidence; 0: too few samples"));
+  return h5_write_int(file, "/samples/worst", H5_SHAPE(preloads), worst, "-",
+                      "sample with the largest factor, from 0; -1: none is done");
+}
+
+shb_status mhb_samples_write(hid_t file, const mhb_samples *s) {
+  const hsize_t n = (hsize_t)s->n, preloads = (hsize_t)s->preloads;
+  SHB_TRY(h5_write_double(file, "/samples/n0", H5_SHAPE(preloads), s->n0, "N", "normal preload"));
+  SHB_TRY(h5_write_double(file, "/samples/deviation", H5_SHAPE(n, (hsize_t)s->blades), s->deviation,
+                          "-", "relative frequency deviations of the blades of each sample"));
+  SHB_TRY(h5_write_double(file, "/samples/factor", H5_SHAPE(preloads, n), s->factor, "-",
+                          "amplification factor: worst blade over the tuned peak; 0: not done"));
+  SHB_TRY(h5_write_double(file, "/samples/frequency", H5_SHAPE(preloads, n), s->frequency, "Hz",
+                          "where the worst blade is highest"));
+  SHB_TRY(h5_write_int(file, "/samples/blade", H5_SHAPE(preloads, n), s->blade, "-",
+                       "the worst blade, from 0"));
+  return write_distribution(file, s);
+}
+
+/* Read a list into an array that is there. */
+static shb_status read_into(hid_t file, const char *name, h5_shape shape, double *to) {
+  double *values;
+  SHB_TRY(h5_read_double(file, name, &shape, &values));
+  memcpy(to, values, sizeof *to * h5_count(shape));
+  free(values);
+  return SHB_OK;
+}
+
+static shb_status read_all(hid_t file, mhb_samples *s) {
+  h5_shape table = H5_SHAPE((hsize_t)s->preloads, (hsize_t)s->n);
+  int     *blade;
+  SHB_TRY(read_into(file, "/samples/n0", H5_SHAPE((hsize_t)s->preloads), s->n0));
+  SHB_TRY(read_into(file, "/samples/deviation", H5_SHAPE((hsize_t)s->n, (hsize_t)s->blades),
+                    s->deviation));
+  SHB_TRY(read_into(file, "/samples/factor", table, s->factor));
+  SHB_TRY(read_into(file, "/samples/frequency", table, s->frequency));
+  SHB_TRY(h5_read_int(file, "/samples/blade", &table, &blade));
+  memcpy(s->blade, blade, sizeof *blade * h5_count(table));
+  free(blade);
+  return SHB_OK;
+}
+
+shb_status mhb_samples_read(hid_t file, mhb_samples **out) {
+  h5_shape table, pattern;
+  *out = NULL;
+  if (!h5_exists(file, "/samples")) return SHB_OK;
+  SHB_TRY(h5_shape_of(file, "/samples/factor", &table));
+  SHB_TRY(h5_shape_of(file, "/samples/deviation", &pattern));
+  SHB_CHECK(table.rank == 2 && pattern.rank == 2 && table.dim[1] == pattern.dim[0] &&
+                table.dim[0] * table.dim[1] <= 1 << 24 && pattern.dim[1] <= 1 << 14,
+            SHB_ERR_INPUT, "/samples/factor and /samples/deviation do not fit together");
+  SHB_TRY(mhb_samples_create((int)table.dim[1], (int)table.dim[0], (int)pattern.dim[1], out));
+  shb_status status = read_all(file, *out);
+  if (status == SHB_OK) return SHB_OK;
+  mhb_samples_destroy(*out);
+  *out = NULL;
+  return status;
+}

@@ -1,0 +1,37 @@
+/* Amplification factors of random samples of a mistuned ring, and their distribution. */
+#ifndef MHB_RESPONSE_RESPONSE_SAMPLES_H
+#define MHB_RESPONSE_RESPONSE_SAMPLES_H
+
+#include "modal/hdf5/h5.h"
+
+typedef struct {
+  int     n, preloads, blades;
+  double *n0;        /* [preload] N */
+  double *deviation; /* [sample][blade] relative frequency deviations */
+  double *factor;    /* [preload][sample] worst blade's peak over the tuned one's; 0: not done */
+  double *frequency; /* [preload][sample] Hz, where that is */
+  int    *blade;     /* [preload][sample] which blade, from 0 */
+} mhb_samples;
+
+/* Zeros. SHB_ERR_IO: no memory. */
+shb_status mhb_samples_create(int n, int preloads, int blades, mhb_samples **samples);
+void       mhb_samples_destroy(mhb_samples *samples);
+
+/* Samples of a preload that are done. */
+int mhb_samples_done(const mhb_samples *samples, int preload);
+
+/* Sample with the largest factor of a preload; -1: none is done. */
+int mhb_samples_worst(const mhb_samples *samples, int preload);
+
+/* A quantile of the factors done, 0 < p < 1, with bounds that hold it with 95 % confidence,
+ * whatever the distribution: order statistics whose ranks have binomial probabilities of 2.5 %
+ * beyond. A bound that so few samples do not give is NAN; so are all three without samples.
+ *   out  out  [3] quantile (linear between order statistics), lower bound, upper bound */
+void mhb_samples_quantile(const mhb_samples *samples, int preload, double p, double out[3]);
+
+/* The group /samples of an open response file. */
+shb_status mhb_samples_write(hid_t file, const mhb_samples *samples);
+/* *samples <- NULL if the file has none. */
+shb_status mhb_samples_read(hid_t file, mhb_samples **samples);
+
+#endif
