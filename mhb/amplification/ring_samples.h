@@ -13,9 +13,9 @@ typedef struct {
   long   seed;
 } mhb_sampling;
 
-/* Fill response->samples, made here unless it is there with some of them done. Threads take samples;
- * the main curve of a sample and preload is traced from end to end. Every ten seconds, and where
- * interrupted, the file is written.
+/* Fill response->samples, made here unless some of them are there. Threads take samples. The main
+ * curve of a sample and preload is traced from end to end. The file is written every ten seconds,
+ * and where interrupted.
  *   tuned  in  [preloads] peaks of the tuned ring
  * Errors: SHB_ERR_IO; SHB_INTERRUPTED. A curve that does not cover its range counts as far as it
  * goes. */
