@@ -465,8 +465,26 @@ case_keys case_key_table(void) {
   return (case_keys){COUNT(table), table};
 }
 
+/* Whether the one load is of the kind of a condition. */
+static bool load_applies(case_condition when, const fem_load *load) {
+  switch (when) {
+    case CASE_IF_PRESSURE:
+      return load->kind == FEM_LOAD_PRESSURE;
+    case CASE_IF_TRACTION:
+      return load->kind == FEM_LOAD_TRACTION;
+    case CASE_IF_FIELD:
+      return load->kind == FEM_LOAD_FIELD;
+    case CASE_IF_FACTORS:
+      return load->kind != FEM_LOAD_FIELD;
+    case CASE_IF_FORCE_AT:
+      return load->kind == FEM_LOAD_FORCE && load->has_at;
+    default:
+      return load->kind == FEM_LOAD_FORCE;
+  }
+}
+
 bool case_key_applies(const case_key *key, const case_file *file) {
-  bool own = !file->modal_file, blade = own && !file->mesh_file, one = own && !file->has_loads;
+  bool own = !file->modal_file, blade = own && !file->mesh_file;
   switch (key->when) {
     case CASE_IF_BLADE:
       return blade;
@@ -514,17 +532,12 @@ bool case_key_applies(const case_key *key, const case_file *file) {
     case CASE_IF_PHI:
       return file->mhb.has_phi && !file->has_interfaces;
     case CASE_IF_PRESSURE:
-      return one && file->load.kind == FEM_LOAD_PRESSURE;
     case CASE_IF_TRACTION:
-      return one && file->load.kind == FEM_LOAD_TRACTION;
     case CASE_IF_FORCE:
-      return one && file->load.kind == FEM_LOAD_FORCE;
     case CASE_IF_FACTORS:
-      return one && file->load.kind != FEM_LOAD_FIELD;
     case CASE_IF_FIELD:
-      return one && file->load.kind == FEM_LOAD_FIELD;
     case CASE_IF_FORCE_AT:
-      return one && file->load.kind == FEM_LOAD_FORCE && file->load.has_at;
+      return own && !file->has_loads && load_applies(key->when, &file->load);
     case CASE_IF_OUTPUT:
       return file->converge_output != NULL;
     case CASE_IF_AUTO:

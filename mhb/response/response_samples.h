@@ -24,8 +24,9 @@ int mhb_samples_done(const mhb_samples *samples, int preload);
 int mhb_samples_worst(const mhb_samples *samples, int preload);
 
 /* A quantile of the factors done, 0 < p < 1, with bounds that hold it with 95 % confidence. The
- * bounds are order statistics: by the binomial distribution each is wrong in 2.5 % of the cases at
- * most, whatever the distribution of the factor. A bound that so few samples do not give is NAN; so are all three without samples.
+ * bounds are order statistics. By the binomial distribution each is wrong in 2.5 % of the cases at
+ * most, whatever the distribution of the factor. A bound that so few samples do not give is NAN, as
+ * are all three without samples.
  *   out  out  [3] quantile (linear between order statistics), lower bound, upper bound */
 void mhb_samples_quantile(const mhb_samples *samples, int preload, double p, double out[3]);
 
