@@ -14,6 +14,7 @@
 #include "postproc/analysis/findings.h"
 #include "postproc/analysis/response_analysis.h"
 #include "postproc/draw/number_format.h"
+#include "postproc/inspect/diameter_table.h"
 #include "postproc/inspect/mode_table.h"
 #include "postproc/inspect/phase_table.h"
 
@@ -87,8 +88,12 @@ static shb_status sum_up_modal(hid_t file, const char *path, bool verbose, post_
   if (m.n_residual > 0) post_put(out, ", ");
   if (m.n_residual > 0) put_count(out, m.n_residual, "residual mode");
   post_put(out, "\n");
-  shb_status   status = post_mode_table(file, &m, verbose, out);
-  modal_speeds speeds = {0};
+  modal_nodal_diameters diameters;
+  modal_speeds          speeds = {0};
+  shb_status            status = modal_nodal_diameters_read(path, &diameters);
+  if (status == SHB_OK && diameters.n == 0) status = post_mode_table(file, &m, verbose, out);
+  if (diameters.n > 0) status = post_diameter_table(file, &diameters, verbose, out);
+  modal_nodal_diameters_free(&diameters);
   if (status == SHB_OK) status = modal_speeds_read(path, &speeds);
   if (speeds.n > 0) post_campbell_table(&speeds, verbose, out);
   modal_speeds_free(&speeds);

@@ -36,7 +36,7 @@ typedef struct {
   double      faster, memory;    /* goals: ccx's seconds to ours at least, our memory to ccx's */
 } rung;
 
-static const rung rungs[] = {{"1k", 1, 5, 5, 0, 0}, {"7k", 3, 4, 7, 8, 1}, {"31k", 5, 4, 5, 8, 1}};
+static const rung rungs[] = {{"1k", 1, 5, 5, 0, 0}, {"7k", 3, 4, 7, 8, 1}, {"31k", 5, 5, 5, 8, 1}};
 
 enum { RUNGS = sizeof rungs / sizeof *rungs };
 

@@ -1,11 +1,13 @@
 /* The stage of a sector with a disc, file to file, against the explicit ring of all sectors. */
 #include <complex.h>
 #include <math.h>
+#include <omp.h>
 #include <petscksp.h>
 
 #include "fem/body/equilibrium.h"
 #include "mesh/base/constants.h"
 #include "mesh/core/cyclic_sides.h"
+#include "mesh/io/inp_write.h"
 #include "modal/common/session.h"
 #include "modal/model/nodal_diameters.h"
 #include "modal/model/residual_series.h"
@@ -384,7 +386,33 @@ static void at_speed(void **state) {
   modal_nodal_diameters_free(&models);
 }
 
-/* One thread or several: the same numbers. A list of nodal diameters, with 0 added. */
+/* A mesh of Abaqus's format gives the same. One thread or several: the same numbers. */
+static void any_format_and_number_of_threads(void **state) {
+  scene                *s        = *state;
+  modal_settings        settings = default_settings();
+  modal_nodal_diameters models[2];
+  mesh_fe               mesh = make_bladed_sector(BLADES, 1);
+  const int             most = omp_get_max_threads();
+  assert_ok(mesh_inp_write(&mesh, scratch("sector.inp")));
+  for (int i = 0; i < 2; i++) {
+    omp_set_num_threads(i ? 3 : 1);
+    assert_ok(modal_stage(PETSC_COMM_WORLD, scratch("sector.inp"), scratch("inp.modal.h5"),
+                          &settings, &provenance, NULL));
+    assert_ok(modal_nodal_diameters_read(scratch("inp.modal.h5"), &models[i]));
+  }
+  omp_set_num_threads(most);
+  for (int n = 0; n <= BLADES / 2; n++)
+    for (int i = 0; i < MODES; i++) {
+      assert_true(models[0].model[n].frequency[i] == models[1].model[n].frequency[i]);
+      assert_near(models[0].model[n].frequency[i] / s->models.model[n].frequency[i], 1, 1e-10);
+    }
+  for (int i = 0; i < 3 * MODES; i++)
+    assert_true(models[0].imaginary[1].right[i] == models[1].imaginary[1].right[i]);
+  for (int i = 0; i < 2; i++) modal_nodal_diameters_free(&models[i]);
+  mesh_fe_free(&mesh);
+}
+
+/* A list of nodal diameters, with 0 added. */
 static void a_list_of_nodal_diameters(void **state) {
   scene                *s        = *state;
   modal_settings        settings = default_settings();
@@ -475,6 +503,7 @@ int main(int argc, char **argv) {
                                      cmocka_unit_test(content_of_the_file),
                                      cmocka_unit_test(at_speed),
                                      cmocka_unit_test(a_list_of_nodal_diameters),
+                                     cmocka_unit_test(any_format_and_number_of_threads),
                                      cmocka_unit_test(two_blades),
                                      cmocka_unit_test(bad_input)};
   if (modal_session_start(&argc, &argv, &session) != SHB_OK) return 1;
