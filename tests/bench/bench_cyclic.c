@@ -1,8 +1,8 @@
 /* Six modes of a sector with a disc at its nodal diameters, beside CalculiX's cyclic symmetry.
  * Processor seconds and peak memory are of the same mesh of ten-node tetrahedra, one thread each.
  *
- *   bench_cyclic CCX 7k 31k    rungs, by nodes; CCX: the program ccx, "" if not installed
- *   bench_cyclic CCX --quick   1k: fails if the frequencies differ
+ *   bench_cyclic CCX 8k 37k    rungs, by nodes; CCX: the program ccx, "" if not installed
+ *   bench_cyclic CCX --quick   3k: fails if the frequencies differ
  *
  * Every figure is that of a process of its own. shroudhb: from assembly to modes. ccx: the whole
  * program; its eigenvalues come twice each and are compared at the first nodal diameter of a rung.
@@ -25,18 +25,23 @@
 #include "mesh/io/inp_write.h"
 #include "modal/common/session.h"
 #include "modal/cyclic/wave_modes.h"
-#include "tests/support/fem.h"
-#include "tests/support/sector.h"
+#include "tests/bench/z_notch.h"
+#include "tests/support/read_mesh.h"
 
-enum { MODES = 6, BLADES = 24 };
+enum { MODES = 6, BLADES = 40 };
+
+static const fem_material steel = {.E = 2.1e11, .nu = .3, .rho = 7850};
 
 typedef struct {
-  const char *name;
-  int         fine, first, last; /* of make_bladed_sector; nodal diameters */
-  double      faster, memory;    /* goals: ccx's seconds to ours at least, our memory to ccx's */
+  const char   *name;
+  z_notch_sizes sizes;
+  int           first, last;    /* nodal diameters */
+  double        faster, memory; /* goals: ccx's seconds to ours at least, our memory to ccx's */
 } rung;
 
-static const rung rungs[] = {{"1k", 1, 5, 5, 0, 0}, {"7k", 3, 4, 7, 8, 1}, {"31k", 5, 5, 5, 8, 1}};
+static const rung rungs[] = {{"3k", {14, 0, 0}, 5, 5, 0, 0},
+                             {"8k", {7, 0, 0}, 4, 6, 8, 1},
+                             {"37k", {3.9, 0, 0}, 5, 5, 8, 1}};
 
 enum { RUNGS = sizeof rungs / sizeof *rungs };
 
@@ -92,9 +97,9 @@ static bool write_step(const rung *r, const mesh_fe *mesh) {
 }
 
 static bool make_mesh(const rung *r, figures *out) {
-  use_elements(MESH_TET10);
-  mesh_fe mesh = make_bladed_sector(BLADES, r->fine);
-  straighten(&mesh);
+  mesh_fe mesh = {0};
+  if (z_notch_disc_write(&r->sizes, "sector.msh") != SHB_OK) return false;
+  if (read_mesh("sector.msh", &mesh) != SHB_OK) return false;
   bool good  = mesh_inp_write(&mesh, "sector.inp") == SHB_OK && write_step(r, &mesh);
   out->nodes = mesh.n_nodes;
   mesh_fe_free(&mesh);
@@ -118,13 +123,15 @@ static shb_status find_waves(const rung *r, const fem_sector *sector, const fem_
 }
 
 static shb_status find_modes(const rung *r, mesh_fe *mesh, figures *out) {
-  fem_element         *element = make_element_tables(FEM_CALCULIX);
+  fem_element         *element = malloc(sizeof *element);
   const fem_body       body    = {mesh, &steel, element, {MESH_AXIS_X, 0}, 0};
   const double         began   = processor_time();
   mesh_cyclic_sides    sides;
   fem_system           system;
   fem_sector           sector;
   fem_hermitian_order *order;
+  SHB_CHECK(element, SHB_ERR_IO, "out of memory");
+  FEM_PETSC(fem_element_create(mesh->kind, FEM_CALCULIX, element));
   SHB_TRY(mesh_cyclic_pair(mesh, MESH_AXIS_X, BLADES, &sides));
   FEM_PETSC(fem_system_create(PETSC_COMM_SELF, mesh, &steel, FEM_CALCULIX, &system));
   FEM_PETSC(fem_sector_create(&body, NULL, &system, &sector));
@@ -143,10 +150,8 @@ static bool run_own(const rung *r, figures *out) {
   char         *words[] = {"bench_cyclic", NULL}, **arguments = words;
   modal_session session;
   if (modal_session_start(&count, &arguments, &session) != SHB_OK) return false;
-  use_elements(MESH_TET10);
-  mesh_fe mesh = make_bladed_sector(BLADES, r->fine);
-  straighten(&mesh);
-  bool good = find_modes(r, &mesh, out) == SHB_OK;
+  mesh_fe mesh = {0};
+  bool    good = read_mesh("sector.msh", &mesh) == SHB_OK && find_modes(r, &mesh, out) == SHB_OK;
   if (!good) fprintf(stderr, "bench_cyclic: %s\n", shb_message());
   mesh_fe_free(&mesh);
   modal_session_end(&session, good ? SHB_OK : SHB_ERR_IO);
@@ -256,9 +261,9 @@ static void remove_folder(const char *folder) {
 int main(int argc, char **argv) {
   char        folder[] = "/tmp/shb_cyclic_XXXXXX";
   const bool  quick    = argc == 3 && strcmp(argv[2], "--quick") == 0;
-  const char *own[]    = {"1k"};
+  const char *own[]    = {"3k"};
   if (argc < 3) {
-    fprintf(stderr, "usage: bench_cyclic CCX --quick | RUNG...   (1k 7k 31k)\n");
+    fprintf(stderr, "usage: bench_cyclic CCX --quick | RUNG...   (3k 8k 37k)\n");
     return 2;
   }
   const int          n    = quick ? 1 : argc - 2;

@@ -31,8 +31,8 @@ target_link_libraries(bench_elements PRIVATE shb_modal)
 add_executable(bench_modal bench/bench_modal.c bench/z_notch.c)
 target_link_libraries(bench_modal PRIVATE shb_modal m)
 add_test(NAME bench.modal COMMAND bench_modal "$<$<BOOL:${SHROUDHB_CCX}>:${SHROUDHB_CCX}>" --quick)
-add_executable(bench_cyclic bench/bench_cyclic.c)
-target_link_libraries(bench_cyclic PRIVATE tests_fem shb_modal m)
+add_executable(bench_cyclic bench/bench_cyclic.c bench/z_notch.c)
+target_link_libraries(bench_cyclic PRIVATE shb_modal m)
 add_test(NAME bench.cyclic COMMAND bench_cyclic "$<$<BOOL:${SHROUDHB_CCX}>:${SHROUDHB_CCX}>"
   --quick)
 set_tests_properties(bench.elements bench.modal bench.cyclic PROPERTIES

@@ -40,6 +40,16 @@ shb_status z_notch_write(mesh_kind kind, const z_notch_sizes *sizes, const char 
   return mesh_blade_write(&blade, path, &provenance, NULL);
 }
 
+shb_status z_notch_disc_write(const z_notch_sizes *sizes, const char *path) {
+  mesh_blade           blade      = make_blade(MESH_TET10, sizes);
+  const shb_provenance provenance = {"", "", "", "bench"};
+  blade.root_width                = .033; /* between the sides of the disc */
+  blade.disc_bore                 = .15;
+  blade.disc_web                  = .02;
+  blade.disc_rim                  = .03;
+  return mesh_blade_write(&blade, path, &provenance, NULL);
+}
+
 shb_status z_notch_mesh(mesh_kind kind, const z_notch_sizes *sizes, mesh_fe *mesh) {
   char      path[] = "/tmp/shb_bench_XXXXXX.msh";
   const int handle = mkstemps(path, 4);
