@@ -1,5 +1,6 @@
 #include "modal/stage/stage.h"
 
+#include <omp.h>
 #include <stdio.h>
 #include <stdlib.h>
 
@@ -194,8 +195,10 @@ shb_status modal_stage(MPI_Comm comm, const char *mesh_path, const char *out_pat
   mesh_fe mesh = {0};
   MPI_Comm_rank(comm, &rank);
   shb_progress_show(progress, 0, "reading %s", mesh_path);
+  const int  threads = omp_get_max_threads(); /* gmsh sets it to 1 */
   shb_status status =
       modal_agree(comm, rank == 0 ? read_mesh(mesh_path, settings, progress, &mesh) : SHB_OK);
+  omp_set_num_threads(threads);
   if (status == SHB_OK) status = fem_petsc_status(fem_mesh_broadcast(comm, &mesh));
   if (status == SHB_OK)
     modal_phase(comm, progress, "mesh", "%d nodes, %d elements", mesh.n_nodes, mesh.n_elements);
