@@ -37,7 +37,8 @@ if(SHROUDHB_CHROMIUM AND SHROUDHB_PYTHON)
   list(APPEND INTEGRATION_TESTS postproc.study.page_script postproc.report.page_script)
 endif()
 set(SLOW_TESTS
-  cases.scenes.mistuned_ring mesh.blade.blade mhb.floquet.monodromy mhb.branches.verdicts cases.converge.converge hard.gaps
+  cases.scenes.mistuned_ring
+  mesh.blade.blade mhb.floquet.monodromy mhb.branches.verdicts cases.converge.converge hard.gaps
   bench.elements cases.scenes.optimum_preload fuzz.libfuzzer mhb.tracking.tracked_response)
 
 set(TIMEOUT_unit 100)
