@@ -241,5 +241,5 @@ void post_contact_name(const mhb_response *response, int pair, const char *gap, 
 const char *post_axis_name(post_output output) {
   static const char *const probe[]   = {"motion", "tangential", "axial", "radial"};
   static const char *const contact[] = {"relative motion", "v, normal", "u, sliding", "w, sliding"};
-  return (output.place == POST_PLACE_PROBE ? probe : contact)[output.axis + 1];
+  return (output.place == POST_PLACE_CONTACT ? contact : probe)[output.axis + 1];
 }
