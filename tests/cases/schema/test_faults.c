@@ -683,8 +683,42 @@ static void carets_stay_below(void **state) {
   free(said);
 }
 
+/* Blades that differ; the case asks for verdicts too, which such rings do not have. */
+static void mistuning(void **state) {
+  (void)state;
+  static const fault rows[] = {
+      {"axis: -y", "axis: -y, mistuning: [0.01, 0.02]",
+       "c.yaml:12:59: error: rotor.mistuning: has 2 deviations, must have 37, one a blade "
+       "(rotor.blades)",
+       2},
+      {"axis: -y", "axis: -y, mistuning: {deviation: 1 %}",
+       "c.yaml:12:59: error: rotor.mistuning.seed: missing; expected {deviation: 1 %, seed: 7}", 1},
+      {"axis: -y", "axis: -y, mistuning: {deviation: 1 %, seed: 7, samples: 1}",
+       "c.yaml:12:94: error: rotor.mistuning.samples: '1' is not a number of samples; expected a "
+       "whole number, 2 to 100000",
+       1},
+      {"axis: -y", "axis: -y, mistuning: {samples: 3, deviation: 1 %}",
+       "c.yaml:12:59: error: rotor.mistuning.seed: missing; expected {deviation: 1 %, seed: 7}", 1},
+      {"axis: -y", "axis: -y, mistuning: {deviation: 1 %, seed: 7, sample: 3}",
+       "c.yaml:12:85: error: rotor.mistuning.sample: unknown key; give a list, {file: NAME} or "
+       "{deviation: 1 %, seed: 7}",
+       1},
+      {"axis: -y", "axis: -y, mistuning: {file: nope.csv}",
+       "c.yaml:12:59: error: rotor.mistuning: nope.csv: cannot be read: No such file or directory",
+       2},
+      {"axis: -y", "axis: -y, mistuning: {deviation: 30 %, seed: 1}",
+       "c.yaml:12:71: error: rotor.mistuning.deviation: is 0.3, must be 0 to 0.1", 1},
+      {"axis: -y", "axis: -y, mistuning: [-0.5]",
+       "c.yaml:12:60: error: rotor.mistuning[0]: is -0.5, must be above -0.5 to 1", 1},
+      {"axis: -y", "axis: -y, mistuning: {file: a.csv, seed: 1}",
+       "c.yaml:12:59: error: rotor.mistuning: has 2 keys; {file: NAME} goes with no other", 1},
+  };
+  check_faults(rows, COUNT(rows));
+}
+
 int main(void) {
   const struct CMUnitTest tests[] = {cmocka_unit_test(keys_and_kinds),
+                                     cmocka_unit_test(mistuning),
                                      cmocka_unit_test(numbers_and_ranges),
                                      cmocka_unit_test(keys_among_each_other),
                                      cmocka_unit_test(run_ups),
