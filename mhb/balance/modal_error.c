@@ -11,6 +11,9 @@
 /* Most axes of linear pairs whose harmonics are solved one by one: 20 pairs. */
 enum { MOST_SOLVED = 60 };
 
+/* A change longer than this part of the vibration is checked for the curvature. */
+static const double LONG = 0.02;
+
 /* The two parts of e_k, added as if orthogonal. */
 typedef enum { BY_LOAD, BY_CONTACT, PARTS } part;
 
@@ -64,20 +67,21 @@ static double norm_of(int n, const double complex *e) {
   return sqrt(sum);
 }
 
-/* |du| by the condensed balance, for e[k][n]. */
-static double solve_by_system(const mhb_balance *b, mhb_condensation *system,
+/* |du| by the condensed balance with twice the harmonics, for e[k][n]. */
+static double solve_by_system(const mhb_balance *b, mhb_truncation *t, double size,
                               const double complex *e) {
-  const mhb_balance *larger = system->balance;
+  const mhb_balance *larger = t->doubled;
   const int          n      = 3 * b->n_pairs;
-  double            *rhs    = calloc((size_t)larger->n, sizeof *rhs);
+  double            *du     = calloc((size_t)larger->n, sizeof *du);
   double             length = 0;
-  for (int k = 1; rhs && k <= b->m; k++)
+  for (int k = 1; du && k <= b->m; k++)
     for (int i = 0; i < n; i++) {
-      rhs[(size_t)i * (size_t)larger->nb + (size_t)(2 * k - 1)] = creal(e[k * n + i]);
-      rhs[(size_t)i * (size_t)larger->nb + (size_t)(2 * k)]     = cimag(e[k * n + i]);
+      du[(size_t)i * (size_t)larger->nb + (size_t)(2 * k - 1)] = creal(e[k * n + i]);
+      du[(size_t)i * (size_t)larger->nb + (size_t)(2 * k)]     = cimag(e[k * n + i]);
     }
-  if (rhs && mhb_condensation_solve(system, rhs)) length = mhb_norm(rhs, larger->n);
-  free(rhs);
+  if (du && mhb_condensation_solve(t->system, du)) length = mhb_norm(du, larger->n);
+  if (length > LONG * size) length *= fmin(1, mhb_truncation_part(t, du));
+  free(du);
   return length;
 }
 
@@ -97,11 +101,11 @@ static void solve_by_harmonic(const mhb_balance *b, double complex *A, int *pivo
   }
 }
 
-double mhb_modal_error(const mhb_balance *b, const double *x, mhb_condensation *system) {
+double mhb_modal_error(const mhb_balance *b, const double *x, mhb_truncation *t) {
   const mhb_receptance *r = b->receptance;
   if (r->ring) return -1;
   const int    n = r->n, all = (b->m + 1) * n;
-  const bool   linear = !system && n <= MOST_SOLVED && mhb_balance_is_linear(b);
+  const bool   linear = !t && n <= MOST_SOLVED && mhb_balance_is_linear(b);
   const double size   = mhb_balance_vibration(b, x);
   double       ratio[b->m + 1], sum = 0;
   int          pivot[n];
@@ -115,7 +119,7 @@ double mhb_modal_error(const mhb_balance *b, const double *x, mhb_condensation *
   for (part by = 0; by < PARTS; by++) {
     set_missing_motion(b, ratio, by, e);
     if (linear) solve_by_harmonic(b, e + all, pivot, e);
-    sum = hypot(sum, system ? solve_by_system(b, system, e) : norm_of(all, e));
+    sum = hypot(sum, t ? solve_by_system(b, t, size, e) : norm_of(all, e));
   }
   free(e);
   return sum / size;

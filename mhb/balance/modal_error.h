@@ -5,17 +5,18 @@
  * last residual term of the file. At given forces the motion lacks e_k = d(free)_k - dR_k p_k. The
  * contact answers to it:
  *   (I + R J) du = e,   J = dp/du,
- * near a resonance of the blade with its contact many times e. */
+ * near a resonance of the blade with its contact many times e. Near a fold this du is far too long;
+ * a long one is shortened by the curvature of the residual along it. */
 #ifndef MHB_BALANCE_MODAL_ERROR_H
 #define MHB_BALANCE_MODAL_ERROR_H
 
-#include "mhb/balance/condensation.h"
+#include "mhb/balance/truncation_error.h"
 
 /* Estimated |du| of a solution relative to its vibration; -1 if the file has no residual
  * flexibility.
- *   x       in  [n] the solution, point of the balance's evaluation in use
- *   system  in  condensation factored at x, with as many harmonics or more. NULL: with up to 20
- *               pairs, all linear, harmonics are solved one by one; otherwise |e| is returned */
-double mhb_modal_error(const mhb_balance *balance, const double *x, mhb_condensation *system);
+ *   x           in  [n] the solution, point of the balance's evaluation in use
+ *   truncation  in  its last estimate was by Newton's step, at x. NULL: with up to 20 pairs, all
+ *                   linear, harmonics are solved one by one; otherwise |e| is returned */
+double mhb_modal_error(const mhb_balance *balance, const double *x, mhb_truncation *truncation);
 
 #endif

@@ -71,18 +71,18 @@ static void copy_rows(int rows, const double *from, int nb, double *to, int wide
     memcpy(to + (size_t)i * (size_t)wide, from + (size_t)i * (size_t)nb, length);
 }
 
-/* kappa of the residual along the step, -1 + tau + kappa tau^2 in units of the step, from one more
- * evaluation nearby. */
-static double curvature(mhb_truncation *t, double length, double size) {
+/* kappa of the residual along a step, -1 + tau + kappa tau^2 in units of the step, from one more
+ * evaluation nearby. The residual of the solution is that of delta / part. */
+static double curvature(mhb_truncation *t, const double *step, double length, double size) {
   mhb_balance *b    = t->doubled;
   double       part = fmin(1, NEARBY * size / length), product = 0;
-  for (int i = 0; i < b->n; i++) t->trial[i] = t->x[i] + part * t->step[i];
+  for (int i = 0; i < b->n; i++) t->trial[i] = t->x[i] + part * step[i];
   double *r = t->trial;
   mhb_balance_evaluate(b, t->trial, t->balance->eval->at.omega, t->r, NULL, NULL);
   for (int i = 0; i < b->n; i++) r[i] = t->r[i] + t->feedback[i];
   if (!mhb_condensation_solve(t->system, r)) return 0;
   for (int i = 0; i < b->n; i++)
-    product += (r[i] + (1 - part) * t->step[i]) / length * (t->step[i] / length);
+    product += (r[i] + t->step[i] / t->part - part * step[i]) / length * (step[i] / length);
   return product / (part * part);
 }
 
@@ -92,15 +92,20 @@ static double first_root(double kappa) {
   return root >= 0 ? 2 / (1 + sqrt(root)) : 1 / sqrt(-kappa);
 }
 
-static void scale_step(mhb_truncation *t, double size) {
-  double length = mhb_norm(t->step, t->doubled->n);
-  if (!(length > 0)) return;
-  double part = first_root(curvature(t, length, size));
+double mhb_truncation_part(mhb_truncation *t, const double *step) {
+  double length = mhb_norm(step, t->doubled->n), size = mhb_balance_vibration(t->doubled, t->x);
+  return length > 0 ? first_root(curvature(t, step, length, size)) : 1;
+}
+
+static void scale_step(mhb_truncation *t) {
+  t->part     = 1;
+  double part = mhb_truncation_part(t, t->step);
   for (int i = 0; i < t->doubled->n; i++) t->step[i] *= part;
+  t->part = part;
 }
 
 /* step <- the Newton step, or -r where the step does not exist or is too large a system. */
-static mhb_truncation_kind set_step(mhb_truncation *t, double size) {
+static mhb_truncation_kind set_step(mhb_truncation *t) {
   mhb_balance *b     = t->doubled;
   double       omega = t->balance->eval->at.omega;
   size_t       bytes = sizeof(double) * (size_t)b->n;
@@ -118,7 +123,7 @@ static mhb_truncation_kind set_step(mhb_truncation *t, double size) {
     mhb_condensation_solve(t->system, t->trial);
   }
   memcpy(t->step, t->trial, bytes);
-  scale_step(t, size);
+  scale_step(t);
   return MHB_TRUNCATION_NEWTON;
 }
 
@@ -131,7 +136,7 @@ double mhb_truncation_error(mhb_truncation *t, const double *x) {
   t->kind        = MHB_TRUNCATION_NONE;
   if (mhb_balance_is_linear(t->balance)) return 0;
   mhb_balance_set_operating_point(b, &t->balance->eval->at);
-  t->kind = set_step(t, size);
+  t->kind = set_step(t);
   return size > 0 ? hypot(mhb_norm(t->step, b->n), t->higher_size) / size : 0;
 }
 

@@ -40,6 +40,7 @@ typedef struct {
   double               *step;                 /* [doubled->n] delta, -r or 0 of the last estimate */
   double               *r, *trial, *feedback; /* [doubled->n] */
   double                higher_size;          /* |u_k|, k > 2m, of the last estimate */
+  double                part;                 /* of the Newton step that delta is */
   mhb_truncation_kind   kind;                 /* of the last estimate */
   shb_arena             arena;
 } mhb_truncation;
@@ -51,6 +52,11 @@ void       mhb_truncation_destroy(mhb_truncation *truncation);
 /* Estimated error of the solution x[n], the point of the balance's evaluation in use, relative to
  * its vibration. Of first order also where the Newton step does not exist (at a fold). */
 double mhb_truncation_error(mhb_truncation *truncation, const double *x);
+
+/* How much of a change of the solution, step[doubled->n], is left by the curvature of the residual:
+ * 1 for a small one. A linearised change is far too long near a fold. The last estimate must have
+ * been by Newton's step, and of the present solution. */
+double mhb_truncation_part(mhb_truncation *truncation, const double *step);
 
 /* Sum of squares of harmonic k > 0 of the last estimate, m^2. */
 double mhb_truncation_power(const mhb_truncation *truncation, int k);

@@ -186,9 +186,8 @@ void mhb_harmonic_levels_errors(mhb_harmonic_levels *h, mhb_curve_point *point) 
   mhb_balance_use(level->balance, point->evaluation);
   point->truncation      = mhb_truncation_error(level->truncation, point->x);
   point->truncation_kind = level->truncation->kind;
-  mhb_condensation *system =
-      point->truncation_kind == MHB_TRUNCATION_NEWTON ? level->truncation->system : NULL;
-  point->modal = mhb_modal_error(level->balance, point->x, system);
+  bool newton            = point->truncation_kind == MHB_TRUNCATION_NEWTON;
+  point->modal = mhb_modal_error(level->balance, point->x, newton ? level->truncation : NULL);
 }
 
 double mhb_harmonic_levels_spatial(const mhb_harmonic_levels *h, const mhb_curve_point *point) {

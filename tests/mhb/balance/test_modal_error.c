@@ -16,8 +16,10 @@
 #include <cmocka.h>
 
 #include "mhb/balance/truncation_error.h"
+#include "mhb/branches/forced_response.h"
 #include "mhb/continuation/first_solution.h"
 #include "modal/model/reduce.h"
+#include "tests/support/check.h"
 #include "tests/support/periodic.h"
 #include "tests/support/three_degree.h"
 
@@ -89,10 +91,10 @@ static void compare(const char *where, int modes, double level, double n0, doubl
     solve(&exact, omega);
     solve(&rough, omega);
     mhb_truncation_error(rough.truncation, rough.x);
-    mhb_truncation *t        = rough.truncation;
-    double          estimate = mhb_modal_error(rough.residual, rough.x,
-                                      t->kind == MHB_TRUNCATION_NEWTON ? t->system : NULL);
-    double          off = 0, size = mhb_balance_vibration(rough.residual, rough.x), bare = 0;
+    mhb_truncation *t = rough.truncation;
+    double          estimate =
+        mhb_modal_error(rough.residual, rough.x, t->kind == MHB_TRUNCATION_NEWTON ? t : NULL);
+    double off = 0, size = mhb_balance_vibration(rough.residual, rough.x), bare = 0;
     for (int j = 0; j < rough.residual->n; j++) off += pow(rough.x[j] - exact.x[j], 2);
     double error = sqrt(off) / size;
     for (int c = 0; c < 3; c++)
@@ -129,7 +131,37 @@ static void slipping(void **state) {
   compare("slip, 4 modes", 4, 100, 60, 600, 900, 1e-5, 3);
 }
 
+/* At a fold the linearised change has no bound: it is up to five times the motion here. The
+ * shortened one goes with the root of the fold's shift, 1e-3 of the frequency. */
+static void folds(void **state) {
+  (void)state;
+  modal_model   few, all;
+  mhb_response *r     = NULL;
+  mhb_settings  s     = ground_settings(.3, 2e6, 1e6, -2e-5, 7);
+  double        least = INFINITY, most = 0;
+  int           n = 0;
+  s.engine_order  = 1;
+  s.scale         = 40;
+  s.frequency[0]  = 150;
+  s.frequency[1]  = 200;
+  few_modes(2, &all, &few);
+  assert_ok(mhb_forced_response(&few, &s, NULL, NULL, NULL, &r));
+  for (int k = 0; k < r->n_branches; k++)
+    for (int i = 0; i < r->branch[k].n_points; i++) {
+      if (r->branch[k].special[i] != MHB_FOLD) continue;
+      n++;
+      least = fmin(least, r->branch[k].error_modal[i]);
+      most  = fmax(most, r->branch[k].error_modal[i]);
+    }
+  print_message("%d folds, estimates %.3f to %.3f\n", n, least, most);
+  assert_true(n >= 4 && least > 0.01 && most < 0.15);
+  mhb_response_destroy(r);
+  modal_model_free(&all);
+  modal_model_free(&few);
+}
+
 int main(void) {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(stuck), cmocka_unit_test(slipping)};
+  const struct CMUnitTest tests[] = {cmocka_unit_test(stuck), cmocka_unit_test(slipping),
+                                     cmocka_unit_test(folds)};
   return cmocka_run_group_tests(tests, NULL, NULL);
 }
