@@ -4,6 +4,7 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "postproc/analysis/resonances.h"
 #include "postproc/analysis/ring_findings.h"
 #include "postproc/analysis/stability_findings.h"
 #include "postproc/analysis/tracked_findings.h"
@@ -42,8 +43,11 @@ static void put_peak_figure(const post_analysis *analysis, post_buffer *out, con
                             const post_track_point *p) {
   char a[POST_NUMBER], at[POST_PLACE], note[160];
   if (!(p->amplitude > 0)) return;
-  snprintf(note, sizeof note, "at %s%s", place(analysis, p, at),
-           p->edge && !p->level ? ", the edge of the range" : "");
+  int resonance = post_resonance_of(&analysis->resonances, p->branch, p->point);
+  int used      = snprintf(note, sizeof note, "at %s%s", place(analysis, p, at),
+                      p->edge && !p->level ? ", the edge of the range" : "");
+  if (resonance >= 0 && analysis->resonances.n > 1)
+    snprintf(note + used, sizeof note - (size_t)used, ", resonance %d", resonance + 1);
   put_figure(out, label, post_measure(a, p->amplitude, post_unit_length(p->amplitude), 3), note);
 }
 
@@ -196,7 +200,36 @@ static void put_extremes(const post_analysis *analysis, post_buffer *out) {
            post_measure(a, highest.amplitude, post_unit_length(highest.amplitude), 3));
 }
 
+/* One resonance over the preload: "from 103.6 to 110.2 Hz (open 103.6, stuck 121.9 Hz)". */
+static void put_resonance(const post_analysis *analysis, int index, post_buffer *out) {
+  const post_tracking *t        = &analysis->resonances.list[index];
+  const post_abscissa *x        = &analysis->abscissa;
+  const double         limit[2] = {t->open.at, t->stuck.at};
+  char                 from[POST_PLACE], to[POST_PLACE];
+  const char          *joint = " (";
+  post_put(out, "%s%d from %s to %s", index ? "; " : " ", index + 1,
+           post_abscissa_number(x, t->point[0].at, 5, from),
+           post_abscissa_value(x, t->point[t->n - 1].at, 5, to));
+  for (int i = 0; i < 2; i++) {
+    if (!isfinite(limit[i])) continue;
+    post_put(out, "%s%s %s", joint, i ? "stuck" : "open", post_abscissa_value(x, limit[i], 5, to));
+    joint = ", ";
+  }
+  if (joint[0] == ',') post_put(out, ")");
+}
+
+static void put_resonances(const post_analysis *analysis, post_buffer *out) {
+  const post_resonances *r = &analysis->resonances;
+  post_put(out, "<li>The range holds %d resonances. Over the preloads their peaks move:", r->n);
+  for (int i = 0; i < r->n && i < 6; i++) put_resonance(analysis, i, out);
+  post_put(out, "%s.</li>\n", r->n > 6 ? "; and more" : "");
+}
+
 static void put_shift(const post_analysis *analysis, post_buffer *out) {
+  if (analysis->resonances.n > 1) { /* the highest peak may be another one at each preload */
+    put_resonances(analysis, out);
+    return;
+  }
   const post_tracking *t = &analysis->tracking;
   const post_abscissa *x = &analysis->abscissa;
   char                 from[POST_PLACE], to[POST_PLACE], n0[POST_NUMBER], n1[POST_NUMBER];

@@ -5,6 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "postproc/analysis/resonances.h"
 #include "postproc/draw/number_format.h"
 
 double post_spatial_error(const mhb_branch *branch, int point) {
@@ -172,9 +173,7 @@ static shb_status track_group(const post_analysis *analysis, int group, double *
   return SHB_OK;
 }
 
-/* Vertex of log amplitude over n0 (or log n0) through best and its neighbours. any_edge: a largest
- * value at an edge of the range counts (parameter other than the frequency). */
-static void find_optimum(bool any_edge, post_tracking *t) {
+void post_tracking_optimum(bool any_edge, post_tracking *t) {
   t->best       = -1;
   t->bracket[0] = t->bracket[1] = t->optimum_n0 = t->optimum_amplitude = NAN;
   for (int edges = any_edge; edges <= 1 && t->best < 0; edges++)
@@ -222,7 +221,7 @@ shb_status post_track(const post_analysis *analysis, double *const *values,
     else if (analysis->group[g].rank >= 0 && point.amplitude > 0)
       tracking->point[tracking->n++] = point;
   }
-  find_optimum(post_at_one_frequency(analysis), tracking);
+  post_tracking_optimum(post_at_one_frequency(analysis), tracking);
   return SHB_OK;
 }
 
@@ -276,7 +275,8 @@ static shb_status fill_analysis(post_analysis *analysis) {
   SHB_CHECK(
       analysis->n_points > 0, SHB_ERR_INPUT,
       "the response holds no point on any branch: nothing to show; run the harmonic balance first");
-  return post_track(analysis, analysis->values, &analysis->tracking);
+  SHB_TRY(post_track(analysis, analysis->values, &analysis->tracking));
+  return post_resonances_find(analysis, analysis->values, &analysis->resonances);
 }
 
 shb_status post_analysis_create(const mhb_response *response, post_analysis **out) {
@@ -310,6 +310,7 @@ void post_analysis_destroy(post_analysis *analysis) {
     free(analysis->curve[b].fold);
   }
   post_tracking_free(&analysis->tracking);
+  post_resonances_free(&analysis->resonances);
   post_values_free(analysis->response, analysis->values);
   free(analysis->curve);
   free(analysis->group);

@@ -46,6 +46,12 @@ typedef struct {
   double optimum_n0, optimum_amplitude;
 } post_tracking;
 
+/* The highest peaks of one resonance each, by rising frequency (resonances.h). */
+typedef struct {
+  int            n;
+  post_tracking *list; /* each has a peak at half of the preloads or more */
+} post_resonances;
+
 /* Peaks, valleys and folds of one branch. */
 typedef struct {
   const double *amplitude; /* [n_points] m, first harmonic of the primary output */
@@ -61,10 +67,11 @@ typedef struct {
   const mhb_response *response;
   post_output         primary;
   int                 n_groups, n_ranks;
-  post_group         *group;    /* nonlinear by rank, then varying n0, open, stuck */
-  post_curve         *curve;    /* [n_branches] */
-  double            **values;   /* memory of curve[].amplitude */
-  post_tracking       tracking; /* of the first harmonic of the primary output */
+  post_group         *group;      /* nonlinear by rank, then varying n0, open, stuck */
+  post_curve         *curve;      /* [n_branches] */
+  double            **values;     /* memory of curve[].amplitude */
+  post_tracking       tracking;   /* of the first harmonic of the primary output */
+  post_resonances     resonances; /* of the same */
   post_abscissa       abscissa;
   double              frequency[2]; /* Hz, range over all points */
   double              largest;      /* m, largest primary output of all branches */
@@ -93,7 +100,9 @@ void       post_values_free(const mhb_response *response, double **values);
 /* Tracking of an output from its values on every branch; free with post_tracking_free. */
 shb_status post_track(const post_analysis *analysis, double *const *values,
                       post_tracking *tracking);
-void       post_tracking_free(post_tracking *tracking);
+/* Set best, bracket and optimum. any_edge: a largest value at an edge of the range counts. */
+void post_tracking_optimum(bool any_edge, post_tracking *tracking);
+void post_tracking_free(post_tracking *tracking);
 
 /* Largest finite error estimate of a point; NAN if there is none. */
 double post_error(const mhb_branch *branch, int point);

@@ -283,6 +283,21 @@ static void draw_level(const post_plot *plot, double value, bool open) {
             open ? "start" : "end", open ? "open" : "stuck");
 }
 
+/* A thin line through the peaks of one resonance. */
+static void draw_resonance(const post_tracking *t, const post_plot *plot, bool place) {
+  double *x = calloc((size_t)t->n + 1, 2 * sizeof *x), *y = x ? x + t->n : NULL;
+  if (!x) {
+    plot->out->failed = true;
+    return;
+  }
+  for (int i = 0; i < t->n; i++) {
+    x[i] = t->point[i].n0;
+    y[i] = place ? t->point[i].at : t->point[i].amplitude;
+  }
+  plot_line(plot, "line resonance", t->n, x, y, NULL);
+  free(x);
+}
+
 /* Draw all lower peaks of the preloads, faint, and join the highest ones. */
 static void draw_track(const post_analysis *analysis, const post_plot *plot, bool place) {
   const post_tracking *t = &analysis->tracking;
@@ -297,6 +312,8 @@ static void draw_track(const post_analysis *analysis, const post_plot *plot, boo
       plot_dot(plot, "lesser", group->n0, place ? peak->at : peak->amplitude, 2.4);
     }
   }
+  const post_resonances *r = &analysis->resonances;
+  for (int i = 0; i < r->n && r->n > 1; i++) draw_resonance(&r->list[i], plot, place);
   double *x = calloc((size_t)t->n, 2 * sizeof *x), *y = x ? x + t->n : NULL;
   if (!x) {
     plot->out->failed = true;

@@ -295,6 +295,8 @@
       }
       for (const t of o.peaks)
         if (D.groups[t[0]].rank >= 0) p.dot("lesser", D.groups[t[0]].n0, t[limit], 2.4);
+      for (const r of o.resonances)
+        p.line("line resonance", r.map(t => t[0]), r.map(t => t[limit]));
       p.line("line track", track.map(t => t[T.n0]), track.map(t => t[value]));
       track.forEach(
           (t, i) => p.dot(

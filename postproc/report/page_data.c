@@ -1,4 +1,5 @@
 #include "postproc/report/page_data.h"
+#include "postproc/analysis/resonances.h"
 #include "postproc/analysis/stability_findings.h"
 
 #include <math.h>
@@ -157,6 +158,30 @@ static shb_status put_track(const post_analysis *analysis, double *const *values
   return SHB_OK;
 }
 
+/* "resonances":[[[n0, abscissa, amplitude], ...], ...]; empty below two. */
+static shb_status put_resonances(const post_analysis *analysis, double *const *values,
+                                 post_buffer *out) {
+  post_resonances r;
+  SHB_TRY(post_resonances_find(analysis, values, &r));
+  post_put(out, ",\"resonances\":[");
+  for (int i = 0; i < r.n && r.n > 1; i++) {
+    post_put(out, "%s[", i ? "," : "");
+    for (int k = 0; k < r.list[i].n; k++) {
+      const post_track_point *p      = &r.list[i].point[k];
+      const double            all[3] = {p->n0, p->at, p->amplitude};
+      for (int j = 0; j < 3; j++) {
+        post_put(out, j ? "," : k ? ",[" : "[");
+        put_value(out, all[j]);
+      }
+      post_put(out, "]");
+    }
+    post_put(out, "]");
+  }
+  post_put(out, "]");
+  post_resonances_free(&r);
+  return SHB_OK;
+}
+
 static shb_status put_peaks(const post_analysis *analysis, double *const *values,
                             post_buffer *out) {
   bool first = true;
@@ -202,6 +227,7 @@ static shb_status put_output(const post_analysis *analysis, const column *c, she
   post_put(out, ",\"axis\":\"%s\",\"quantity\":\"%s\"", post_axis_name(c->output),
            c->quantity == POST_QUANTITY_FIRST_HARMONIC ? "first harmonic" : "peak to peak");
   shb_status status = put_track(analysis, values, out);
+  if (status == SHB_OK) status = put_resonances(analysis, values, out);
   if (status == SHB_OK) status = put_peaks(analysis, values, out);
   if (status == SHB_OK) status = put_folds(analysis, values, out);
   for (int b = 0; b < analysis->response->n_branches; b++) {

@@ -2,7 +2,7 @@
  *
  *   groups    [{name, kind, n0, rank}]
  *   branches  [{group, n, complete, reason, data}]
- *   outputs   [{place, axis, quantity, row, track, peaks, folds}]
+ *   outputs   [{place, axis, quantity, row, track, resonances, peaks, folds}]
  *   spectra   [{place, row, n}]
  *   rows, chosen, log; in a run-up rpm, speed over frequency
  *   abscissa  {parameter (as in a case file), name, unit, scale (shown is value in SI / scale),
@@ -13,7 +13,8 @@
  *          outputs and spectra (harmonics 0 .. n - 1).
  *   track  for each preload [group, n0, amplitude, abscissa, edge, stuck, slipping, open,
  *          dissipation]
- *   peaks, folds  [group, abscissa, amplitude] */
+ *   peaks, folds  [group, abscissa, amplitude]
+ *   resonances    where there are several, each [[n0, abscissa, amplitude], ...] */
 #ifndef POSTPROC_REPORT_PAGE_DATA_H
 #define POSTPROC_REPORT_PAGE_DATA_H
 

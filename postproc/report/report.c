@@ -200,11 +200,14 @@ static void put_tracking(const post_analysis *analysis, post_buffer *out) {
       out,
       "<section>\n<h2>Peak against preload</h2>\n<p class=\"note\">Each preload’s highest peak, "
       "joined; lesser peaks are the "
-      "faint dots. An open ring marks a largest value at the edge of the %s range.</p>\n"
+      "faint dots.%s An open ring marks a largest value at the edge of the %s range.</p>\n"
       "<div class=\"card\"><figure><div class=\"chart\">\n",
+      analysis->resonances.n > 1 ? " The thin lines join the peaks of one resonance each." : "",
       post_at_one_frequency(analysis) ? "parameter’s" : "frequency");
   post_chart_tracking(analysis, out);
-  post_put(out, "</div></figure></div>\n</section>\n");
+  post_put(out, "</div></figure></div>\n");
+  post_table_resonances(analysis, out);
+  post_put(out, "</section>\n");
 }
 
 static void put_contact(const post_analysis *analysis, int chosen, post_buffer *out) {

@@ -100,6 +100,47 @@ void post_table_peaks(const post_analysis *analysis, post_buffer *out) {
   post_put(out, "</tbody></table></div>\n");
 }
 
+static void put_peak_cells(const post_analysis *analysis, const post_track_point *p, post_unit unit,
+                           post_buffer *out) {
+  char number[POST_NUMBER];
+  put_cell(out, post_abscissa_number(&analysis->abscissa, p->at, 5, number));
+  put_cell(out, post_number(number, p->amplitude / unit.scale, 3));
+}
+
+static void put_resonance_row(const post_analysis *analysis, int index, post_unit unit,
+                              post_buffer *out) {
+  static const post_track_point none = {NAN, NAN, NAN, -1, -1, false, false, false};
+  const post_tracking          *t    = &analysis->resonances.list[index];
+  const post_track_point       *best = t->best >= 0 ? &t->point[t->best] : &none;
+  char                          number[POST_NUMBER];
+  double change = best->amplitude / fmin(t->open.amplitude, t->stuck.amplitude) - 1;
+  post_put(out, "<tr><th scope=\"row\">%d</th>", index + 1);
+  put_peak_cells(analysis, &t->open, unit, out);
+  put_peak_cells(analysis, &t->stuck, unit, out);
+  put_peak_cells(analysis, best, unit, out);
+  put_cell(out, isfinite(best->n0) ? post_plain(number, best->n0, 6) : "–");
+  post_put(out, "<td>%s%s</td>", change < 0 ? "−" : "", post_percent(number, fabs(change)));
+  post_put(out, "</tr>\n");
+}
+
+void post_table_resonances(const post_analysis *analysis, post_buffer *out) {
+  const post_resonances *r    = &analysis->resonances;
+  post_unit              unit = post_unit_length(analysis->largest);
+  if (r->n < 2) return;
+  post_put(out,
+           "<div class=\"scroll\"><table><caption>Peaks of each resonance: open, stuck, and the "
+           "lowest over the preloads. Peaks of neighbouring preloads belong together by their "
+           "order of frequency.</caption>\n<thead><tr><th scope=\"col\">Resonance</th>"
+           "<th scope=\"col\">Open, Hz</th><th scope=\"col\">%s</th>"
+           "<th scope=\"col\">Stuck, Hz</th><th scope=\"col\">%s</th>"
+           "<th scope=\"col\">Lowest, Hz</th><th scope=\"col\">%s</th>"
+           "<th scope=\"col\">at n₀, N</th><th scope=\"col\">against the lower limit</th>"
+           "</tr></thead>\n<tbody>\n",
+           unit.name, unit.name, unit.name);
+  for (int i = 0; i < r->n; i++) put_resonance_row(analysis, i, unit, out);
+  post_put(out, "</tbody></table></div>\n");
+}
+
 /* Largest finite value, NAN if none; 0 counts as not estimated. */
 static double largest(int n, const double *x) {
   double most = NAN;

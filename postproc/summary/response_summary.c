@@ -188,6 +188,36 @@ static void put_optimum(const work *w) {
   post_json_end(w->json);
 }
 
+static void put_resonance_peak(const work *w, const char *key, const post_track_point *p) {
+  if (!(p->amplitude > 0)) {
+    if (key) post_json_null(w->json, key);
+    return;
+  }
+  post_json_object(w->json, key);
+  post_json_number(w->json, "n0", p->n0);
+  post_json_number(w->json, "frequency", p->at);
+  post_json_number(w->json, "amplitude", p->amplitude);
+  post_json_end(w->json);
+}
+
+static void put_resonances(const work *w) {
+  const post_resonances *r = &w->analysis->resonances;
+  post_json_list(w->json, "resonances");
+  for (int i = 0; i < r->n; i++) {
+    const post_tracking *t = &r->list[i];
+    post_json_object(w->json, NULL);
+    put_resonance_peak(w, "open", &t->open);
+    put_resonance_peak(w, "stuck", &t->stuck);
+    if (t->best >= 0) put_resonance_peak(w, "lowest", &t->point[t->best]);
+    if (t->best < 0) post_json_null(w->json, "lowest");
+    post_json_list(w->json, "peaks");
+    for (int k = 0; k < t->n; k++) put_resonance_peak(w, NULL, &t->point[k]);
+    post_json_end(w->json);
+    post_json_end(w->json);
+  }
+  post_json_end(w->json);
+}
+
 shb_status post_response_put(const post_analysis *analysis, const post_stress_source *stress,
                              post_json *json) {
   const mhb_response *r = analysis->response;
@@ -206,6 +236,7 @@ shb_status post_response_put(const post_analysis *analysis, const post_stress_so
   post_json_list(json, "curves");
   for (int g = 0; g < analysis->n_groups; g++) SHB_TRY(put_curve(&w, g));
   post_json_end(json);
+  put_resonances(&w);
   put_optimum(&w);
   put_samples(&w);
   return SHB_OK;

@@ -2,7 +2,7 @@ foreach(noun colour number_format text_buffer plot)
   shb_test(postproc/draw ${noun} shb_post)
 endforeach()
 foreach(noun outputs abscissa curves curve_distance convergence response_analysis campbell
-    file_origin findings stability_findings)
+    file_origin findings resonances stability_findings)
   shb_test(postproc/analysis ${noun} tests_responses)
 endforeach()
 foreach(noun csv report publish page_data tables picture)
