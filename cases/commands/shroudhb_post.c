@@ -303,7 +303,8 @@ static shb_status publish(const case_file *file, const command_options *options)
                           diagram,
                           up_to_date_keys(file, CASE_MHB, response) ? &file->mhb : NULL,
                           stress.section.text,
-                          file->axis};
+                          file->axis,
+                          file->n_speeds == 1 ? file->speed[0] : 0};
     if (status == SHB_OK) status = post_publish(&job, &progress, &summary);
     if (status == SHB_OK && stress.response && case_has_fatigue(file))
       status = stress_publish(file, &stress, &progress);

@@ -321,6 +321,39 @@ shb_status mhb_resonances_of_limit(const mhb_balance *b, bool stuck, double low,
   return status;
 }
 
+/* ---- of one nodal diameter ---- */
+
+/* Stuck mode j of harmonic 1 with R at its own frequency, rad/s; NAN: not found. */
+static double settle(stuck_modes *w, int j) {
+  enum { MOST_TURNS = 50 };
+  double omega = SHB_TWO_PI * w->b->receptance->model->frequency[j];
+  for (int i = 0; i < MOST_TURNS; i++) {
+    const double before = omega;
+    w->low = w->high = omega;
+    if (!solve(w, 1)) return NAN;
+    omega = sqrt(fmax(0, w->square[j]));
+    if (fabs(omega - before) <= 1e-9 * omega) break;
+  }
+  return omega;
+}
+
+shb_status mhb_stuck_frequencies(const modal_model *model, const mhb_settings *settings,
+                                 int diameter, int n, double *frequency) {
+  mhb_settings one     = *settings;
+  mhb_balance *balance = NULL;
+  stuck_modes  w       = {0};
+  one.engine_order     = diameter;
+  one.harmonics = one.subharmonics = 1;
+  one.motion_tolerance             = 0;
+  one.run_up                       = NULL;
+  SHB_TRY(mhb_balance_create(model, &one, &balance));
+  shb_status status = open_work(balance, 0, 0, &w);
+  for (int j = 0; j < n && status == SHB_OK; j++) frequency[j] = settle(&w, j) / SHB_TWO_PI;
+  close_work(&w);
+  mhb_balance_destroy(balance);
+  return status;
+}
+
 void mhb_resonances_destroy(mhb_resonances *s) {
   free(s->at);
   *s = (mhb_resonances){0};

@@ -38,6 +38,17 @@ shb_status mhb_resonances_of_limit(const mhb_balance *balance, bool stuck, doubl
                                    mhb_resonances *resonances);
 void       mhb_resonances_destroy(mhb_resonances *resonances);
 
+/* Lowest natural frequencies of a wave of one nodal diameter with every contact stuck, Hz, rising.
+ *
+ * With residual flexibility R depends on the frequency: each mode has that of its own frequency, by
+ * fixed-point iteration to 1e-9.
+ *   settings   in   of contact and ring; frequency range and harmonics are not used
+ *   diameter   in   0 to blades/2; of no effect with contact to the ground
+ *   frequency  out  [n], n at most the modes of the model
+ * Errors: as mhb_balance_create. */
+shb_status mhb_stuck_frequencies(const modal_model *model, const mhb_settings *settings,
+                                 int diameter, int n, double *frequency);
+
 /* The longest change of a value, in sense +1 or -1, that resolves the significant resonances. It
  * leaves a few points from four half widths before each. INFINITY: any. */
 double mhb_resonances_step_limit(const mhb_resonances *resonances, double value, int sense);

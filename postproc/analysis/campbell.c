@@ -14,11 +14,13 @@ enum { WIDTH = 1000, HEIGHT = 600, SAMPLES = 241, COLOURS = 6, MOST_ORDERS = 16,
 
 const char post_campbell_css[] =
     ".k0{color:#0b6e75}.k1{color:#a3540f}.k2{color:#6a4aa5}.k3{color:#2f6f2f}.k4{color:#a83250}"
-    ".k5{color:#5c6470}.order{stroke:#c2c9d0;stroke-width:1;fill:none}"
+    ".k5{color:#5c6470}.line.coupled{color:#1b2530;stroke-width:1.3;stroke-dasharray:2 "
+    "3.5}.order{stroke:#c2c9d0;stroke-width:1;fill:none}"
     ".order.excited{stroke:#1b2530;stroke-width:1.4;stroke-dasharray:7 4}"
     ".crossing{fill:none;stroke:#1b2530;stroke-width:1.6}.plot .name{fill:currentColor}"
     "@media screen and (prefers-color-scheme:dark){.k0{color:#4cc3cb}.k1{color:#e2a15c}"
-    ".k2{color:#b8a1ea}.k3{color:#86c586}.k4{color:#f08aa4}.k5{color:#aeb6c0}"
+    ".k2{color:#b8a1ea}.k3{color:#86c586}.k4{color:#f08aa4}.k5{color:#aeb6c0}.line.coupled{color:#"
+    "e6eaee}"
     ".order{stroke:#39434e}.order.excited,.crossing{stroke:#e6eaee}}";
 
 /* ---------------------------------------------------------------- modes between the speeds */
@@ -70,6 +72,29 @@ static double speed_at(const modal_speeds *s, int sample, int samples) {
   return (1 - share) * s->speed[0] + share * s->speed[s->n - 1];
 }
 
+/* Stuck frequency number j at a speed, Hz: its square is linear in Omega^2 between two speeds. */
+static double stuck_at(const post_campbell *c, int j, double speed) {
+  const modal_speeds *s = c->speeds;
+  int                 i = 1;
+  while (i < s->n - 1 && speed > s->speed[i]) i++;
+  const double low = s->speed[i - 1] * s->speed[i - 1], high = s->speed[i] * s->speed[i],
+               f = c->stuck[(i - 1) * c->n_stuck + j], g = c->stuck[i * c->n_stuck + j],
+               part = (speed * speed - low) / (high - low);
+  return sqrt((1 - part) * f * f + part * g * g);
+}
+
+/* A track of the free blade, or one stuck frequency. */
+typedef struct {
+  const post_campbell *campbell;
+  curves              *c;
+  bool                 stuck;
+  int                  index;
+} curve;
+
+static double curve_at(const curve *k, double speed) {
+  return k->stuck ? stuck_at(k->campbell, k->index, speed) : frequency_at(k->c, k->index, speed);
+}
+
 /* ---------------------------------------------------------------- crossings */
 
 /* True if harmonic k of the load excites any mode. */
@@ -92,11 +117,11 @@ static int highest_order(const post_campbell *c) {
 }
 
 /* Crossing of the mode and the order's line between lo and hi, by bisection. */
-static double bisect(curves *c, int track, int order, double lo, double hi) {
-  bool above = frequency_at(c, track, lo) > order * lo / SHB_TWO_PI;
+static double bisect(const curve *k, int order, double lo, double hi) {
+  bool above = curve_at(k, lo) > order * lo / SHB_TWO_PI;
   for (int i = 0; i < 60; i++) {
     double middle = (lo + hi) / 2;
-    if ((frequency_at(c, track, middle) > order * middle / SHB_TWO_PI) == above)
+    if ((curve_at(k, middle) > order * middle / SHB_TWO_PI) == above)
       lo = middle;
     else
       hi = middle;
@@ -112,15 +137,15 @@ static bool add_crossing(int *n, post_crossing **all, post_crossing one) {
   return true;
 }
 
-static bool find_crossings(curves *c, int track, int order, int *n, post_crossing **all) {
+static bool find_crossings(const curve *k, int order, int *n, post_crossing **all) {
   double before = NAN, from = 0;
   for (int i = 0; i < SAMPLES; i++) {
-    double speed = speed_at(c->speeds, i, SAMPLES);
-    double here  = frequency_at(c, track, speed) - order * speed / SHB_TWO_PI;
+    double speed = speed_at(k->campbell->speeds, i, SAMPLES);
+    double here  = curve_at(k, speed) - order * speed / SHB_TWO_PI;
     if (here * before <= 0 && before != 0) {
-      double at = bisect(c, track, order, from, speed);
-      if (!add_crossing(n, all, (post_crossing){order, track, at, order * at / SHB_TWO_PI}))
-        return false;
+      double        at  = bisect(k, order, from, speed);
+      post_crossing one = {k->stuck, order, k->index, at, order * at / SHB_TWO_PI};
+      if (!add_crossing(n, all, one)) return false;
     }
     before = here;
     from   = speed;
@@ -142,7 +167,10 @@ shb_status post_campbell_crossings(const post_campbell *campbell, int *n, post_c
   for (int k = 1; k <= campbell->speeds->model[0].n_load; k++)
     for (int t = 0; good && t < campbell->speeds->n_modes; t++)
       if (is_excited(campbell, k * campbell->engine_order))
-        good = find_crossings(&c, t, k * campbell->engine_order, n, all);
+        good = find_crossings(&(curve){campbell, &c, false, t}, k * campbell->engine_order, n, all);
+  for (int j = 0; good && j < campbell->n_stuck; j++) /* at the nodal diameter of E itself */
+    if (is_excited(campbell, campbell->engine_order))
+      good = find_crossings(&(curve){campbell, &c, true, j}, campbell->engine_order, n, all);
   curves_free(&c);
   if (*n > 1) qsort(*all, (size_t)*n, sizeof **all, by_speed);
   SHB_CHECK(good, SHB_ERR_IO, "not enough memory for the Campbell diagram");
@@ -180,6 +208,16 @@ static void draw_track(curves *c, const post_plot *plot, int track) {
   for (int i = 0; i < s->n; i++)
     if (modal_speeds_frequency(s, i, track) <= plot->y.hi)
       plot_dot(plot, classes, s->speed[i], modal_speeds_frequency(s, i, track), 2.6);
+}
+
+static void draw_stuck(const post_campbell *c, const post_plot *plot, int j) {
+  const modal_speeds *s = c->speeds;
+  double              x[SAMPLES], y[SAMPLES];
+  for (int i = 0; i < SAMPLES; i++) {
+    x[i] = speed_at(s, i, SAMPLES);
+    y[i] = stuck_at(c, j, x[i]);
+  }
+  if (y[0] <= plot->y.hi) plot_line(plot, "line coupled", SAMPLES, x, y, NULL);
 }
 
 /* Heights of the labels on the right, px. */
@@ -263,6 +301,7 @@ static void draw(const post_campbell *campbell, post_plot *plot) {
   name_tracks(s, plot, &all);
   draw_orders(campbell, plot, &all);
   for (int t = 0; t < s->n_modes; t++) draw_track(&c, plot, t);
+  for (int j = 0; j < campbell->n_stuck; j++) draw_stuck(campbell, plot, j);
   if (post_campbell_crossings(campbell, &n, &crossing) != SHB_OK) plot->out->failed = true;
   for (int i = 0; i < n; i++)
     if (crossing[i].frequency <= plot->y.hi)
@@ -282,9 +321,11 @@ static void put_plot(const post_campbell *campbell, double top, post_buffer *out
 }
 
 static const char description[] =
-    "Frequencies of the modes over the rotor's speed, straight lines the engine orders, rings "
-    "where "
-    "an excited order meets a mode. The crossings are in the table.";
+    "Frequencies of the modes over the rotor's speed, dotted those of the ring with stuck "
+    "contacts, "
+    "straight lines the engine orders, rings where an excited order meets one. The crossings are "
+    "in "
+    "the table.";
 
 void post_campbell_picture(const post_campbell *campbell, const char *case_name, post_buffer *out) {
   char title[256];
@@ -309,14 +350,15 @@ static void put_crossings(const post_campbell *campbell, post_buffer *out) {
     return;
   }
   post_put(out,
-           "<div class=\"scroll\"><table><caption>Resonances of the free blade in the range of "
+           "<div class=\"scroll\"><table><caption>Resonances of the free blade%s in the range of "
            "speeds.</caption>\n<thead><tr><th scope=\"col\">Speed, rpm</th><th "
            "scope=\"col\">Order</th><th scope=\"col\">Mode</th><th scope=\"col\">Frequency, "
-           "Hz</th></tr></thead>\n<tbody>\n");
+           "Hz</th></tr></thead>\n<tbody>\n",
+           campbell->n_stuck > 0 ? ", and of the ring with stuck contacts," : "");
   for (int i = 0; i < n; i++)
-    post_put(out, "<tr><th scope=\"row\">%s</th><td>%dE</td><td>%d</td><td>%s</td></tr>\n",
-             post_plain(rpm, all[i].speed * 60 / SHB_TWO_PI, 5), all[i].order, all[i].track + 1,
-             post_plain(hz, all[i].frequency, 5));
+    post_put(out, "<tr><th scope=\"row\">%s</th><td>%dE</td><td>%s%d</td><td>%s</td></tr>\n",
+             post_plain(rpm, all[i].speed * 60 / SHB_TWO_PI, 5), all[i].order,
+             all[i].stuck ? "stuck " : "", all[i].track + 1, post_plain(hz, all[i].frequency, 5));
   post_put(out, "</tbody></table></div>\n");
   free(all);
 }
@@ -325,9 +367,13 @@ void post_campbell_section(const post_campbell *campbell, post_buffer *out) {
   post_put(out,
            "<section>\n<h2>Campbell diagram</h2>\n<p class=\"note\">Modes of the blade with free "
            "contact faces at %d speeds (dots), followed by their shapes (MAC) and joined in "
-           "Ω². Straight lines: engine orders, the excited ones dashed; rings: where they meet a "
+           "Ω².%s Straight lines: engine orders, the excited ones dashed; rings: where they meet a "
            "mode.</p>\n<div class=\"card\"><figure><div class=\"chart\">\n",
-           campbell->speeds->n);
+           campbell->speeds->n,
+           campbell->n_stuck > 0
+               ? " Dotted: the ring with stuck contacts, at the nodal diameter of "
+                 "the excitation."
+               : "");
   plot_svg_open(out, "campbell", WIDTH, HEIGHT - 42, "Campbell diagram", description);
   put_plot(campbell, 34, out);
   plot_svg_close(out);

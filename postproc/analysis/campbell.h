@@ -3,16 +3,23 @@
 #ifndef POSTPROC_ANALYSIS_CAMPBELL_H
 #define POSTPROC_ANALYSIS_CAMPBELL_H
 
+#include <stdbool.h>
+
 #include "modal/model/speeds.h"
 #include "postproc/draw/text_buffer.h"
 
 typedef struct {
   const modal_speeds *speeds;
   int                 engine_order; /* E of the excitation; 0: none */
+  /* [speed][n_stuck] Hz, rising: the ring with stuck contacts at the nodal diameter of E; NULL:
+   * not known */
+  int     n_stuck;
+  double *stuck;
 } post_campbell;
 
 /* A resonance: the line of an engine order meets a mode. */
 typedef struct {
+  bool   stuck;        /* of the ring with stuck contacts, else of the free blade */
   int    order, track; /* track from 0 */
   double speed;        /* rad/s */
   double frequency;    /* Hz */

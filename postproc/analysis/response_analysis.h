@@ -80,9 +80,10 @@ typedef struct {
   const post_convergence *convergence;
   /* Settings of the response, and the area of each contact, m2; NULL: not known. Set by the
    * caller. */
-  const mhb_settings  *settings;
-  const double        *area;
-  const char          *stress; /* section of the page on stress, HTML; NULL: none. Set likewise. */
+  const mhb_settings *settings;
+  const double       *area;
+  const char         *stress;   /* section of the page on stress, HTML; NULL: none. Set likewise. */
+  const struct post_safe *safe; /* frequencies over the nodal diameter; NULL: none. Set likewise. */
   const post_campbell *campbell; /* modes over the speed, if there are several; set by the caller */
 } post_analysis;
 

@@ -3,10 +3,12 @@
 #include <stdio.h>
 #include <stdlib.h>
 
+#include "mhb/continuation/linear_resonances.h"
 #include "postproc/analysis/findings.h"
 #include "postproc/report/csv.h"
 #include "postproc/report/picture.h"
 #include "postproc/report/report.h"
+#include "postproc/report/safe_diagram.h"
 
 typedef struct {
   mhb_response    *response;
@@ -17,6 +19,7 @@ typedef struct {
   modal_model      model;
   post_blade_field field;
   post_campbell    campbell;
+  post_safe        safe;
   post_buffer      html, csv, svg, diagram;
 } work;
 
@@ -52,11 +55,38 @@ static shb_status add_model(const post_job *job, work *w) {
   return job->html ? post_blade_field_read_motion(job->modal, &w->field) : SHB_OK;
 }
 
+/* Frequencies of the ring with stuck contacts over the nodal diameter. */
+static shb_status add_safe(const post_job *job, work *w) {
+  if (!job->html || !job->modal || !job->settings || post_at_one_frequency(w->analysis))
+    return SHB_OK;
+  SHB_TRY(
+      post_safe_compute(&w->model, job->settings, w->analysis->frequency, job->speed, &w->safe));
+  w->analysis->safe = &w->safe;
+  return SHB_OK;
+}
+
+/* Stuck frequencies at each speed, at the nodal diameter of the excitation. */
+static shb_status add_stuck(const mhb_settings *settings, work *w) {
+  enum { MOST = 12 };
+  const modal_speeds *s = &w->speeds;
+  const int           n = s->n_modes < MOST ? s->n_modes : MOST;
+  if (!settings || s->model[0].n_pairs == 0) return SHB_OK;
+  if (!settings->to_ground && !s->model[0].has_left) return SHB_OK;
+  w->campbell.stuck = calloc((size_t)(n * s->n), sizeof *w->campbell.stuck);
+  SHB_CHECK(w->campbell.stuck, SHB_ERR_IO, "not enough memory for the Campbell diagram");
+  for (int i = 0; i < s->n; i++)
+    SHB_TRY(mhb_stuck_frequencies(&s->model[i], settings, settings->engine_order, n,
+                                  w->campbell.stuck + i * n));
+  w->campbell.n_stuck = n;
+  return SHB_OK;
+}
+
 static shb_status add_campbell(const post_job *job, work *w) {
   if (!job->modal) return SHB_OK;
   SHB_TRY(modal_speeds_read(job->modal, &w->speeds));
   if (w->speeds.n < 2) return SHB_OK;
-  w->campbell           = (post_campbell){&w->speeds, w->response->engine_order};
+  w->campbell = (post_campbell){&w->speeds, w->response->engine_order, 0, NULL};
+  SHB_TRY(add_stuck(job->settings, w));
   w->analysis->campbell = &w->campbell;
   post_campbell_picture(&w->campbell, job->case_name, &w->diagram);
   return SHB_OK;
@@ -75,6 +105,7 @@ static shb_status compose(const post_job *job, shb_progress *progress, work *w) 
   }
   SHB_TRY(add_model(job, w));
   SHB_TRY(add_campbell(job, w));
+  SHB_TRY(add_safe(job, w));
   shb_progress_note(progress, "read %d points on %d curves in %.2f s", w->analysis->n_points,
                     w->response->n_branches, shb_seconds() - started);
   started = shb_seconds();
@@ -123,6 +154,8 @@ shb_status post_publish(const post_job *job, shb_progress *progress, char **summ
   post_buffer_free(&w.csv);
   post_buffer_free(&w.svg);
   post_buffer_free(&w.diagram);
+  free(w.campbell.stuck);
+  post_safe_free(&w.safe);
   modal_speeds_free(&w.speeds);
   modal_model_free(&w.model);
   post_blade_field_free(&w.field);

@@ -19,6 +19,7 @@ typedef struct {
   const mhb_settings *settings;         /* of the response; NULL: not known, no loops are drawn */
   const char         *stress;           /* section of the page on stress, HTML, or NULL */
   mesh_axis           axis;             /* of the engine */
+  double              speed;            /* of the rotor, rad/s; 0: none, or a range */
 } post_job;
 
 /* Nothing is written unless everything could be composed. summary: malloc'ed line for the terminal,

@@ -15,6 +15,7 @@
 #include "postproc/report/convergence_chart.h"
 #include "postproc/report/page.h"
 #include "postproc/report/page_data.h"
+#include "postproc/report/safe_diagram.h"
 #include "postproc/report/still_blade.h"
 #include "postproc/report/tables.h"
 
@@ -320,6 +321,7 @@ shb_status post_report(const post_analysis *analysis, const post_origin *source,
   if (analysis->stress) post_put_bytes(out, analysis->stress, strlen(analysis->stress));
   put_axes(analysis, out);
   if (analysis->campbell) post_campbell_section(analysis->campbell, out);
+  if (analysis->safe) post_safe_section(analysis->safe, out);
   if (analysis->convergence) post_convergence_section(analysis->convergence, out);
   put_tables(analysis, out);
   put_source(source, out);

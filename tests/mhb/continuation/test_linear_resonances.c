@@ -8,6 +8,7 @@
 #include <string.h>
 
 #include <cmocka.h>
+#include <lapacke.h>
 
 #include "mesh/base/constants.h"
 #include "mhb/branches/forced_response.h"
@@ -35,6 +36,72 @@ static mhb_settings ground(double n0) {
   s.frequency[1]    = 2 / SHB_TWO_PI;
   s.stability       = MHB_STABILITY_NEVER;
   return s;
+}
+
+/* ---- one nodal diameter ---- */
+
+enum { BLADES = 6, MODES = 6, RING = BLADES * MODES };
+
+/* All natural frequencies of the ring with springs between the blades, from its whole matrix. The
+ * spring of blade b joins its right side to the left side of blade b + 1. */
+static void solve_ring(const modal_model *m, const mhb_settings *s, double square[RING]) {
+  double S[3][3]       = {{s->kv, 0, 0}, {0, s->ku[0], s->ku[1]}, {0, s->ku[1], s->ku[2]}};
+  double K[RING][RING] = {{0}};
+  for (int b = 0; b < BLADES; b++) {
+    double row[3][RING] = {{0}};
+    for (int c = 0; c < 3; c++)
+      for (int i = 0; i < MODES; i++) {
+        row[c][b * MODES + i] += m->right[c * MODES + i];
+        row[c][(b + 1) % BLADES * MODES + i] -= m->left[c * MODES + i];
+      }
+    for (int i = 0; i < RING; i++)
+      for (int j = 0; j < RING; j++)
+        for (int c = 0; c < 3; c++)
+          for (int d = 0; d < 3; d++) K[i][j] += row[c][i] * S[c][d] * row[d][j];
+    for (int i = 0; i < MODES; i++)
+      K[b * MODES + i][b * MODES + i] += pow(SHB_TWO_PI * m->frequency[i], 2);
+  }
+  assert_int_equal(LAPACKE_dsyev(LAPACK_ROW_MAJOR, 'N', 'U', RING, K[0], RING, square), 0);
+}
+
+static int ascending(const void *a, const void *b) {
+  double x = *(const double *)a, y = *(const double *)b;
+  return (x > y) - (x < y);
+}
+
+/* The frequencies of all nodal diameters, those between 0 and 3 twice, are those of the ring. */
+static void stuck_frequencies_are_those_of_the_ring(void **state) {
+  (void)state;
+  modal_model  model;
+  mhb_settings s = random_settings(3);
+  double       square[RING], all[RING], worst = 0;
+  int          n = 0;
+  random_model(1, WITH_LEFT, 11, &model);
+  solve_ring(&model, &s, square);
+  for (int diameter = 0; diameter <= BLADES / 2; diameter++)
+    for (int twice = 0; twice < (diameter % (BLADES / 2) ? 2 : 1); twice++, n += MODES)
+      assert_int_equal(mhb_stuck_frequencies(&model, &s, diameter, MODES, all + n), SHB_OK);
+  assert_int_equal(n, RING);
+  qsort(all, RING, sizeof *all, ascending);
+  for (int i = 0; i < RING; i++)
+    worst = fmax(worst, fabs(SHB_TWO_PI * all[i] / sqrt(square[i]) - 1));
+  print_message("ring of %d: %.1e\n", BLADES, worst);
+  assert_true(worst < 1e-10);
+  modal_model_free(&model);
+}
+
+/* One mode and a residual flexibility r: w^2 = 1 + 1/(1/ku + r). */
+static void residual_flexibility_softens_the_contact(void **state) {
+  (void)state;
+  modal_model  model;
+  mhb_settings s = ground(0.1);
+  double       f, r = 0.4;
+  one_degree_model(0.01, 1, 0.05, &model);
+  model.residual_flexibility    = calloc(9, sizeof(double));
+  model.residual_flexibility[4] = r;
+  assert_int_equal(mhb_stuck_frequencies(&model, &s, 0, 1, &f), SHB_OK);
+  assert_true(fabs(SHB_TWO_PI * f / sqrt(1 + 1 / (1 + r)) - 1) < 1e-10);
+  modal_model_free(&model);
 }
 
 /* ---- places ---- */
@@ -248,6 +315,8 @@ static void jumps_are_located(void **state) {
 
 int main(void) {
   const struct CMUnitTest tests[] = {
+      cmocka_unit_test(stuck_frequencies_are_those_of_the_ring),
+      cmocka_unit_test(residual_flexibility_softens_the_contact),
       cmocka_unit_test(places_are_those_of_both_limits),
       cmocka_unit_test(near_limits_leave_no_gap),
       cmocka_unit_test(light_modes_are_not_passed_over),

@@ -49,7 +49,7 @@ static void crossings_are_exact(void **state) {
   int            n, wanted = 0, seen = 0;
   make(&s);
   assert_int_equal(s.mode[3 * MODES + 1], 2); /* they do cross */
-  const post_campbell campbell = {&s, 2};
+  const post_campbell campbell = {&s, 2, 0, NULL};
   assert_ok(post_campbell_crossings(&campbell, &n, &found));
   for (int k = 1; k <= 3; k += 2)
     for (int t = 0; t < MODES; t++) {
@@ -76,7 +76,7 @@ static void picture_and_section(void **state) {
   modal_speeds s;
   post_buffer  svg = {0}, html = {0}, text = {0};
   make(&s);
-  const post_campbell campbell = {&s, 2};
+  const post_campbell campbell = {&s, 2, 0, NULL};
   post_campbell_picture(&campbell, "<x>", &svg);
   assert_has(svg.text, "Campbell diagram: &lt;x&gt;");
   assert_has(svg.text, "speed, rpm");
@@ -105,7 +105,7 @@ static void lost_tracks_are_left_out(void **state) {
   int            n;
   make(&s);
   for (int i = 1; i < SPEEDS; i++) s.mac[i * MODES] = 0.3;
-  const post_campbell campbell = {&s, 2};
+  const post_campbell campbell = {&s, 2, 0, NULL};
   assert_ok(post_campbell_crossings(&campbell, &n, &found));
   for (int i = 0; i < n; i++) assert_int_not_equal(found[i].track, 0);
   free(found);
@@ -115,9 +115,41 @@ static void lost_tracks_are_left_out(void **state) {
   release(&s);
 }
 
+/* Stuck frequencies with f^2 linear in Omega^2 are met exactly, by the order E alone. */
+static void stuck_frequencies_are_met(void **state) {
+  (void)state;
+  enum { STUCK = 2 };
+  static const double low[STUCK] = {30, 2000}, rate[STUCK] = {3e-3, 1e-3}; /* Hz, Hz^2 s^2 */
+  modal_speeds        s;
+  post_crossing      *found;
+  post_buffer         html                  = {0};
+  double              stuck[SPEEDS * STUCK] = {0};
+  int                 n, seen = 0;
+  make(&s);
+  for (int i = 0; i < SPEEDS; i++)
+    for (int j = 0; j < STUCK; j++)
+      stuck[i * STUCK + j] = sqrt(low[j] * low[j] + rate[j] * s.speed[i] * s.speed[i]);
+  const post_campbell campbell = {&s, 2, STUCK, stuck};
+  assert_ok(post_campbell_crossings(&campbell, &n, &found));
+  for (int i = 0; i < n; i++) {
+    if (!found[i].stuck) continue;
+    double slope = 2 / SHB_TWO_PI;
+    assert_int_equal(found[i].order, 2);
+    assert_int_equal(found[i].track, 0); /* the other one is far above */
+    assert_near(found[i].speed, low[0] / sqrt(slope * slope - rate[0]), 1e-9 * found[i].speed);
+    seen++;
+  }
+  assert_int_equal(seen, 1);
+  post_campbell_section(&campbell, &html);
+  assert_non_null(strstr(html.text, "<td>stuck 1</td>"));
+  post_buffer_free(&html);
+  free(found);
+  release(&s);
+}
+
 int main(void) {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(crossings_are_exact),
-                                     cmocka_unit_test(picture_and_section),
-                                     cmocka_unit_test(lost_tracks_are_left_out)};
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(crossings_are_exact), cmocka_unit_test(stuck_frequencies_are_met),
+      cmocka_unit_test(picture_and_section), cmocka_unit_test(lost_tracks_are_left_out)};
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,0 +1,35 @@
+/* SAFE diagram (ZZENF): natural frequencies of the ring over the nodal diameter, and where the
+ * excitation is. A resonance needs both: the frequency, and the shape over the blades.
+ *
+ * Harmonic k of the load meets waves of nodal diameter kE mod N, or N less that, whichever is at
+ * most N/2. */
+#ifndef POSTPROC_REPORT_SAFE_DIAGRAM_H
+#define POSTPROC_REPORT_SAFE_DIAGRAM_H
+
+#include "mhb/problem/settings.h"
+#include "modal/model/model.h"
+#include "postproc/draw/text_buffer.h"
+
+typedef struct post_safe {
+  int     blades, engine_order;
+  int     n_families;           /* mode families drawn */
+  double *open, *stuck;         /* [blades/2 + 1][n_families] Hz */
+  int     n_driven, driven[16]; /* harmonics of the load with a force */
+  double  range[2];             /* of the curves, Hz */
+  double  speed;                /* of the rotor, rad/s; 0: not known */
+} post_safe;
+
+/* Nodal diameter of the waves that engine order `order` drives. */
+int post_nodal_diameter(int order, int blades);
+
+/* Compute the families of a blade that is clamped at its root: the open ones have the same
+ * frequency at every diameter. n_families = 0 without a neighbour or with less than three blades.
+ * Errors: SHB_ERR_IO no memory. */
+shb_status post_safe_compute(const modal_model *model, const mhb_settings *settings,
+                             const double range[2], double speed, post_safe *safe);
+void       post_safe_free(post_safe *safe);
+
+/* The section of the report; nothing without families. */
+void post_safe_section(const post_safe *safe, post_buffer *out);
+
+#endif
