@@ -14,6 +14,8 @@
 #include "cases/schema/case_paths.h"
 #include "cases/schema/converge_settings.h"
 #include "mesh/base/progress.h"
+#include "postproc/comparison/comparison_page.h"
+#include "postproc/comparison/comparison_text.h"
 #include "postproc/field/strain_gauge.h"
 #include "postproc/field/stress_section.h"
 #include "postproc/field/stress_table.h"
@@ -31,6 +33,7 @@ static const char usage[] =
     "usage: shroudhb-post [--quiet] [--verbose] [--json] [--no-report] [--set KEY=VALUE]...\n"
     "                     [--into FOLDER] CASE.yaml\n"
     "       shroudhb-post --summary | --modes | --check | --facts CASE.yaml\n"
+    "       shroudhb-post [--quiet] [--json] CASE.yaml OTHER.yaml\n"
     "       shroudhb-post [--quiet] [--verbose] NAME.study.h5\n"
     "       shroudhb-post --inspect [--verbose] FILE.h5 [OTHER.h5]\n"
     "       shroudhb-post --inspect [--csv | --json] FILE.h5 PATH[SELECTION]\n"
@@ -47,6 +50,8 @@ static const char usage[] =
     "case).\n"
     "--facts prints mass, lowest mode and static stress of the modal file.\n"
     "--no-report leaves out page and picture.\n"
+    "Of two cases, or two response files: NAME.vs.OTHER.html beside the first, and their peaks on\n"
+    "standard output, with --json for scripts.\n"
     "Of a study file: NAME.study.html, NAME.study.csv and NAME.study.svg.\n"
     "With --inspect: what an HDF5 file holds; --verbose unfolds everything, case text and settings "
     "too.\n"
@@ -345,6 +350,82 @@ static shb_status publish_study(const command_options *options) {
   return status;
 }
 
+/* A run by its case or its response file. */
+typedef struct {
+  char *response, *name, *page; /* malloc'ed; page: its path without a suffix */
+} run_files;
+
+static void run_files_free(run_files *f) {
+  free(f->response);
+  free(f->name);
+  free(f->page);
+}
+
+static bool ends_with(const char *text, const char *end) {
+  size_t n = strlen(text), m = strlen(end);
+  return n >= m && strcmp(text + n - m, end) == 0;
+}
+
+static shb_status find_run(const command_options *options, const char *path, run_files *out) {
+  static const char suffix[] = ".response.h5";
+  if (ends_with(path, ".h5")) {
+    const char *slash = strrchr(path, '/'), *base = slash ? slash + 1 : path;
+    size_t      cut = ends_with(path, suffix) ? sizeof suffix - 1 : strlen(".h5");
+    out->response   = strdup(path);
+    out->name       = strndup(base, strlen(base) - cut);
+    out->page       = strndup(path, strlen(path) - cut);
+  } else {
+    case_file       file;
+    command_options one = *options;
+    one.path            = path;
+    SHB_TRY(command_read(&one, CASE_POST, &file));
+    out->response = case_output(&file, ".response.h5");
+    out->name     = strdup(file.name);
+    out->page     = case_output(&file, "");
+    up_to_date_warn(&file, CASE_MHB, out->response);
+    case_free(&file);
+  }
+  SHB_CHECK(out->response && out->name && out->page, SHB_ERR_IO, "out of memory");
+  return SHB_OK;
+}
+
+static shb_status show_comparison(const post_comparison *c, const run_files run[POST_RUNS],
+                                  const command_options *options) {
+  size_t      size = strlen(run[0].page) + strlen(run[1].name) + 16;
+  char       *path = malloc(size);
+  post_buffer page = {0}, text = {0};
+  SHB_CHECK(path, SHB_ERR_IO, "out of memory");
+  snprintf(path, size, "%s.vs.%s.html", run[0].page, run[1].name);
+  post_comparison_page(c, &page);
+  if (options->json)
+    post_comparison_json(c, &text);
+  else if (!options->quiet)
+    post_comparison_text(c, &text);
+  if (!options->json && !options->quiet) post_put(&text, "%s\n", path);
+  shb_status status = post_buffer_publish(&page, path);
+  if (status == SHB_OK) status = print(&text);
+  post_buffer_free(&page);
+  post_buffer_free(&text);
+  free(path);
+  return status;
+}
+
+static shb_status compare_runs(const command_options *options) {
+  run_files       run[POST_RUNS] = {{0}};
+  post_comparison comparison;
+  shb_status      status = find_run(options, options->path, &run[0]);
+  if (status == SHB_OK) status = find_run(options, options->other, &run[1]);
+  if (status == SHB_OK)
+    status = post_comparison_read((const char *[]){run[0].response, run[1].response},
+                                  (const char *[]){run[0].name, run[1].name}, &comparison);
+  if (status == SHB_OK) {
+    status = show_comparison(&comparison, run, options);
+    post_comparison_free(&comparison);
+  }
+  for (int i = 0; i < POST_RUNS; i++) run_files_free(&run[i]);
+  return status;
+}
+
 /* What is done with a case. */
 static shb_status work(const case_file *file, const command_options *options) {
   const char *mode = options->mode ? options->mode : "";
@@ -361,11 +442,12 @@ int main(int argc, char **argv) {
   if (code >= 0) return code;
   if (options.mode && strcmp(options.mode, "inspect") == 0)
     return command_finish(inspect(&options));
-  if (options.other) {
-    fprintf(stderr, "shroudhb: error: one case is enough; unexpected '%s'; see --help\n",
-            options.other);
+  if (options.other && options.mode) {
+    fprintf(stderr, "shroudhb: error: --%s takes one case; unexpected '%s'; see --help\n",
+            options.mode, options.other);
     return SHB_ERR_INPUT;
   }
+  if (options.other) return command_finish(compare_runs(&options));
   if (study_publish_takes(options.path)) return command_finish(publish_study(&options));
   case_file  file;
   shb_status status = command_read(&options, CASE_POST, &file);
