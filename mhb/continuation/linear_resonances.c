@@ -346,6 +346,8 @@ shb_status mhb_stuck_frequencies(const modal_model *model, const mhb_settings *s
   one.harmonics = one.subharmonics = 1;
   one.motion_tolerance             = 0;
   one.run_up                       = NULL;
+  one.ring                         = NULL; /* equal blades */
+  one.other_pairs                  = NULL;
   SHB_TRY(mhb_balance_create(model, &one, &balance));
   shb_status status = open_work(balance, 0, 0, &w);
   for (int j = 0; j < n && status == SHB_OK; j++) frequency[j] = settle(&w, j) / SHB_TWO_PI;

@@ -228,10 +228,8 @@ shb_status post_resonances_find(const post_analysis *analysis, double *const *va
   return status;
 }
 
-void post_resonances_free(post_resonances *r) {
-  for (int i = 0; i < r->n; i++) post_tracking_free(&r->list[i]);
-  free(r->list);
-  *r = (post_resonances){0};
+shb_status post_resonances_add(post_analysis *analysis) {
+  return post_resonances_find(analysis, analysis->values, &analysis->resonances);
 }
 
 int post_resonance_of(const post_resonances *r, int branch, int point) {

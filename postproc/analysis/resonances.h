@@ -15,7 +15,8 @@
  * frequency, or without a preload. Errors: SHB_ERR_IO no memory. */
 shb_status post_resonances_find(const post_analysis *analysis, double *const *values,
                                 post_resonances *resonances);
-void       post_resonances_free(post_resonances *resonances);
+/* Those of the primary output, kept in the analysis. Errors: the same. */
+shb_status post_resonances_add(post_analysis *analysis);
 
 /* Index of the resonance that holds a point of a branch as a peak; -1: none. */
 int post_resonance_of(const post_resonances *resonances, int branch, int point);

@@ -5,7 +5,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "postproc/analysis/resonances.h"
 #include "postproc/draw/number_format.h"
 
 double post_spatial_error(const mhb_branch *branch, int point) {
@@ -230,6 +229,12 @@ void post_tracking_free(post_tracking *tracking) {
   *tracking = (post_tracking){0};
 }
 
+void post_resonances_free(post_resonances *r) {
+  for (int i = 0; i < r->n; i++) post_tracking_free(&r->list[i]);
+  free(r->list);
+  *r = (post_resonances){0};
+}
+
 /* Minima: peaks of the reciprocal amplitude. */
 static shb_status find_valleys(int n, const double *x, post_curve *c) {
   const double *amplitude  = c->amplitude;
@@ -275,8 +280,7 @@ static shb_status fill_analysis(post_analysis *analysis) {
   SHB_CHECK(
       analysis->n_points > 0, SHB_ERR_INPUT,
       "the response holds no point on any branch: nothing to show; run the harmonic balance first");
-  SHB_TRY(post_track(analysis, analysis->values, &analysis->tracking));
-  return post_resonances_find(analysis, analysis->values, &analysis->resonances);
+  return post_track(analysis, analysis->values, &analysis->tracking);
 }
 
 shb_status post_analysis_create(const mhb_response *response, post_analysis **out) {

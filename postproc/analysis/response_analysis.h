@@ -71,7 +71,7 @@ typedef struct {
   post_curve         *curve;      /* [n_branches] */
   double            **values;     /* memory of curve[].amplitude */
   post_tracking       tracking;   /* of the first harmonic of the primary output */
-  post_resonances     resonances; /* of the same */
+  post_resonances     resonances; /* of the same; none until resonances.h adds them */
   post_abscissa       abscissa;
   double              frequency[2]; /* Hz, range over all points */
   double              largest;      /* m, largest primary output of all branches */
@@ -104,6 +104,7 @@ shb_status post_track(const post_analysis *analysis, double *const *values,
 /* Set best, bracket and optimum. any_edge: a largest value at an edge of the range counts. */
 void post_tracking_optimum(bool any_edge, post_tracking *tracking);
 void post_tracking_free(post_tracking *tracking);
+void post_resonances_free(post_resonances *resonances);
 
 /* Largest finite error estimate of a point; NAN if there is none. */
 double post_error(const mhb_branch *branch, int point);

@@ -5,6 +5,7 @@
 
 #include "mhb/continuation/linear_resonances.h"
 #include "postproc/analysis/findings.h"
+#include "postproc/analysis/resonances.h"
 #include "postproc/report/csv.h"
 #include "postproc/report/picture.h"
 #include "postproc/report/report.h"
@@ -26,6 +27,7 @@ typedef struct {
 /* Put the file's name before an error text of the analysis. */
 static shb_status make_analysis(const post_job *job, work *w) {
   shb_status status = post_analysis_create(w->response, &w->analysis);
+  if (status == SHB_OK) status = post_resonances_add(w->analysis);
   if (status != SHB_ERR_INPUT) return status;
   char why[256];
   snprintf(why, sizeof why, "%s", shb_message());

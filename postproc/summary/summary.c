@@ -1,4 +1,5 @@
 #include "postproc/summary/summary.h"
+#include "postproc/analysis/resonances.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -26,6 +27,7 @@ static shb_status put_response(const post_summary_job *job, post_json *json) {
   const post_stress_source stress   = {job->field, job->fatigue};
   shb_status               status   = mhb_response_read(job->response, &response);
   if (status == SHB_OK) status = post_analysis_create(response, &analysis);
+  if (status == SHB_OK) status = post_resonances_add(analysis);
   if (status == SHB_OK) status = post_response_put(analysis, &stress, json);
   post_analysis_destroy(analysis);
   mhb_response_destroy(response);

@@ -20,6 +20,7 @@ foreach(noun study_effects study_page)
   shb_test(postproc/study ${noun} tests_studies)
 endforeach()
 
+shb_test(postproc/comparison run_comparison tests_responses)
 shb_test(postproc/report safe_diagram tests_responses tests_models)
 shb_test(postproc/report contact_points tests_responses tests_motions)
 shb_test(postproc/report blade_view tests_responses tests_box)

@@ -121,6 +121,7 @@ static void errors(void **state) {
   mhb_response *r        = small();
   mhb_branch   *b        = &r->branch[2];
   b->error_newton[5]     = NAN;
+  b->error_spatial[5]    = -1; /* one contact point: not known */
   b->error_sampling[5]   = 3e-3;
   b->error_modal[5]      = INFINITY;
   b->error_truncation[5] = 1e-3;

@@ -101,8 +101,11 @@ static void usage(void **state) {
   assert_int_equal(lines(error), 1);
   assert_int_equal(run("--colour x.yaml", out, error), SHB_ERR_INPUT);
   assert_has(error, "--colour");
-  assert_int_equal(run("a.yaml b.yaml", out, error), SHB_ERR_INPUT);
-  assert_has(error, "one case is enough; unexpected 'b.yaml'");
+  assert_int_equal(run("a.yaml b.yaml", out, error), SHB_ERR_IO);
+  assert_has(error, "a.yaml");
+  assert_int_equal(lines(error), 1);
+  assert_int_equal(run("--summary a.yaml b.yaml", out, error), SHB_ERR_INPUT);
+  assert_has(error, "--summary takes one case; unexpected 'b.yaml'");
   assert_int_equal(run("--inspect a.h5 b.h5 c.h5", out, error), SHB_ERR_INPUT);
   assert_has(error, "two files are enough; unexpected 'c.h5'");
   assert_int_equal(run("--inspect a.h5 b.h5", out, error), SHB_ERR_IO);
