@@ -95,7 +95,7 @@ static void page_and_text(void **state) {
   assert_non_null(strstr(page.text, "<td>+50"));
   assert_non_null(strstr(text.text, "amplitude +50 %"));
   assert_non_null(strstr(text.text, "1 settings differ:\n  a: <i>, 2\n"));
-  assert_non_null(strstr(json.text, "\"second\": \"<two>\""));
+  assert_non_null(strstr(json.text, "\"first\": \"one\""));
   assert_non_null(strstr(json.text, "\"amplitude_change\": "));
   post_buffer_free(&page);
   post_buffer_free(&text);
