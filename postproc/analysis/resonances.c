@@ -90,10 +90,10 @@ static int by_last_place(const void *left, const void *right) {
 
 /* partner[i] <- the chain of peak i, or -1, at the least cost in order of frequency. */
 static void match(const work *w, const column *c, int partner[MOST_PEAKS]) {
-  static const int left = 1, up = 2, diagonal = 3; /* the peak, the chain alone, or both joined */
-  const int        n = c->n, m = w->n_chains;
-  double           cost[MOST_PEAKS + 1][MOST_CHAINS + 1];
-  char             way[MOST_PEAKS + 1][MOST_CHAINS + 1];
+  enum { ALONE_PEAK = 1, ALONE_CHAIN, JOINED };
+  const int n = c->n, m = w->n_chains;
+  double    cost[MOST_PEAKS + 1][MOST_CHAINS + 1];
+  int       way[MOST_PEAKS + 1][MOST_CHAINS + 1];
   for (int i = 0; i <= n; i++)
     for (int j = 0; j <= m; j++) {
       const post_track_point *p = i > 0 ? &c->peak[i - 1] : NULL;
@@ -106,13 +106,13 @@ static void match(const work *w, const column *c, int partner[MOST_PEAKS]) {
       double least              = fmin(alone, fmin(ended, both));
       if (!i && !j) continue;
       cost[i][j] = least;
-      way[i][j]  = (char)(least == both ? diagonal : least == alone ? left : up);
+      way[i][j]  = least == both ? JOINED : least == alone ? ALONE_PEAK : ALONE_CHAIN;
     }
   for (int i = n, j = m; i > 0 || j > 0;) {
     int one = way[i][j];
-    if (one != up) partner[i - 1] = one == diagonal ? j - 1 : -1;
-    if (one != up) i--;
-    if (one != left) j--;
+    if (one != ALONE_CHAIN) partner[i - 1] = one == JOINED ? j - 1 : -1;
+    if (one != ALONE_CHAIN) i--;
+    if (one != ALONE_PEAK) j--;
   }
 }
 

@@ -74,7 +74,7 @@ static shb_status add_stuck(const mhb_settings *settings, work *w) {
   const int           n = s->n_modes < MOST ? s->n_modes : MOST;
   if (!settings || s->model[0].n_pairs == 0) return SHB_OK;
   if (!settings->to_ground && !s->model[0].has_left) return SHB_OK;
-  w->campbell.stuck = calloc((size_t)(n * s->n), sizeof *w->campbell.stuck);
+  w->campbell.stuck = calloc((size_t)n * (size_t)s->n, sizeof *w->campbell.stuck);
   SHB_CHECK(w->campbell.stuck, SHB_ERR_IO, "not enough memory for the Campbell diagram");
   for (int i = 0; i < s->n; i++)
     SHB_TRY(mhb_stuck_frequencies(&s->model[i], settings, settings->engine_order, n,
