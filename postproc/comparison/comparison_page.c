@@ -151,7 +151,8 @@ static void put_curves(const post_comparison *c, post_buffer *out) {
 static void put_peak(const post_analysis *a, const post_track_point *p, post_unit unit,
                      post_buffer *out) {
   char number[POST_NUMBER];
-  post_put(out, "<td>%s</td>", post_abscissa_number(&a->abscissa, p->at, 6, number));
+  post_put(out, "<td>%s%s</td>", post_abscissa_number(&a->abscissa, p->at, 6, number),
+           p->edge && !p->level ? ", end of range" : "");
   post_put(out, "<td>%s</td>", post_number(number, p->amplitude / unit.scale, 4));
 }
 

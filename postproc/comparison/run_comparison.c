@@ -93,25 +93,25 @@ static shb_status add_difference(post_comparison *c, char *key, char *first, cha
   return SHB_OK;
 }
 
-/* The settings of one run that the other has not got, or has with another value.
- *   run  in  0; 1: those that run 0 has are known */
+/* Compare one line of the settings of a run, whose key has `name` bytes.
+ *   run  in  0; 1: what run 0 has is known */
+static shb_status compare_line(post_comparison *c, int run, const char *line, size_t name) {
+  char *own   = value_of(c->run[run].origin.settings, line, name);
+  char *other = value_of(c->run[1 - run].origin.settings, line, name);
+  bool  known = own && other && (run == 1 || strcmp(own, other) == 0);
+  if (!known) return add_difference(c, strndup(line, name), run ? other : own, run ? own : other);
+  free(own);
+  free(other);
+  return SHB_OK;
+}
+
+/* The settings of one run that the other has not got, or has with another value. */
 static shb_status compare_settings(post_comparison *c, int run) {
-  const char *text[POST_RUNS] = {c->run[0].origin.settings, c->run[1].origin.settings};
-  for (const char *line = text[run]; *line;) {
-    size_t length = strcspn(line, "\n");
-    char  *equals = strstr(line, " = ");
-    if (equals && equals < line + length) {
-      size_t name  = (size_t)(equals - line);
-      char  *own   = value_of(text[run], line, name);
-      char  *other = value_of(text[1 - run], line, name);
-      bool   told  = own && other && (run == 1 || strcmp(own, other) == 0);
-      if (told) {
-        free(own);
-        free(other);
-      } else {
-        SHB_TRY(add_difference(c, strndup(line, name), run ? other : own, run ? own : other));
-      }
-    }
+  for (const char *line = c->run[run].origin.settings; *line;) {
+    size_t      length = strcspn(line, "\n");
+    const char *equals = strstr(line, " = ");
+    if (equals && equals < line + length)
+      SHB_TRY(compare_line(c, run, line, (size_t)(equals - line)));
     line += length + (line[length] == '\n');
   }
   return SHB_OK;

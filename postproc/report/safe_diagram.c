@@ -45,8 +45,8 @@ shb_status post_safe_compute(const modal_model *model, const mhb_settings *setti
   if (settings->to_ground || !model->has_left || model->n_pairs == 0 || settings->blades < 3)
     return SHB_OK;
   const int n = count_families(model, range[1]), diameters = settings->blades / 2 + 1;
-  s->open           = calloc((size_t)(n * diameters), sizeof *s->open);
-  s->stuck          = calloc((size_t)(n * diameters), sizeof *s->stuck);
+  s->open           = calloc((size_t)n * (size_t)diameters, sizeof *s->open);
+  s->stuck          = calloc((size_t)n * (size_t)diameters, sizeof *s->stuck);
   shb_status status = s->open && s->stuck ? SHB_OK : SHB_ERR_IO;
   SHB_CHECK(status == SHB_OK, SHB_ERR_IO, "not enough memory for the SAFE diagram");
   for (int d = 0; d < diameters && status == SHB_OK; d++) {
@@ -163,7 +163,8 @@ void post_safe_section(const post_safe *s, post_buffer *out) {
                     .top    = 34,
                     .width  = WIDTH - 66 - 40,
                     .height = HEIGHT - 34 - 58};
-  plot.x         = (plot_axis){-0.3, s->blades / 2 + 0.3, false, 0, 1, "nodal diameter"};
+  const int last = s->blades / 2;
+  plot.x         = (plot_axis){-0.3, last + 0.3, false, 0, 1, "nodal diameter"};
   plot.y         = (plot_axis){0, top_of(s), false, 0, 1, "frequency, Hz"};
   plot_frame(&plot);
   draw_zigzag(s, &plot);
