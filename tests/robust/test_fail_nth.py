@@ -1,0 +1,173 @@
+"""robust.fail_nth: the n-th call of a function fails, in every stage of a small case.
+
+Usage: test_fail_nth.py FOLDER_OF_PROGRAMS LIBRARY CASE_FOLDER [MOST]
+MOST calls of each function fail in turn; without it those are all calls. Exit code 77: no h5py.
+
+A run must end with a code of its own and say why, or publish what it would have published.
+A result of another run lies in its way: it must be untouched, or replaced by a whole one.
+"""
+import collections
+import os
+import shutil
+import subprocess
+import sys
+
+try:
+    import h5py
+except ImportError:
+    sys.exit(77)
+
+sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), '../support'))
+from programs import ENVIRONMENT, bring_your_own, run, write
+from results import numbers
+
+BIN, LIBRARY, SCENE = (os.path.abspath(word) for word in sys.argv[1:4])
+MOST = int(sys.argv[4]) if len(sys.argv) > 4 else None
+H5 = ('H5Fcreate', 'H5Fopen', 'H5Fclose', 'H5Gcreate2', 'H5Gopen2', 'H5Dcreate2', 'H5Dopen2',
+      'H5Dwrite', 'H5Dread', 'H5Dclose', 'H5Screate_simple', 'H5Awrite', 'H5Aread')
+CALLS = ('malloc', 'open', 'write', 'close', 'fsync', 'rename', 'thread') + H5
+LINES = 12 # a refusal is short, also with warnings before it
+
+BLADE = '''name: blade
+mesh:
+  blade:
+    root: {length: 50 mm, width: 26 mm, height: 14 mm}
+    sections:
+      - {radius: 300 mm, chord: 42 mm, thickness: 6.5 mm, camber: 7 mm, twist: -12 deg}
+      - {radius: 460 mm, chord: 35 mm, thickness: 3.2 mm, camber: 3 mm, twist: -38 deg}
+    shroud: {length: 36 mm, thickness: 6 mm, contact: 18 mm}
+    size: SIZE
+rotor: {blades: 60, axis: x}
+material: {E: 205 GPa, nu: 0.3, rho: 7850}
+modal: {modes: 3, damping: 0.003}
+excitation: {engine_order: 56, pressure: 2 kPa}
+probe: {tip: [0 mm, 0 mm, 466 mm]}
+contact: {to: neighbour, psi: 30 deg, mu: 0.3, ku: 1 MN/m, kv: 1.5 MN/m, n0: [20 N]}
+mhb: {frequency: [90 Hz, 200 Hz], harmonics: 3}
+'''
+
+
+def program(stage):
+    return os.path.join(BIN, f'shroudhb-{stage}')
+
+
+def content(path):
+    """What a file holds, of an HDF5 file the numbers."""
+    if path.endswith('.h5'):
+        return numbers(path)
+    with open(path, 'rb') as file:
+        return file.read()
+
+
+def attempt(stage, words, call, nth, count=''):
+    """Run a stage; its code and what it said. A run of 60 s counts as an endless one."""
+    more = dict(LD_PRELOAD=LIBRARY, FAIL_CALL=call, FAIL_NTH=str(nth), OPENBLAS_NUM_THREADS='1',
+                OMP_NUM_THREADS='2')
+    if count:
+        more['FAIL_COUNT'] = count
+    done = subprocess.run([program(stage), *words], env=dict(ENVIRONMENT, **more), text=True,
+                          capture_output=True, timeout=60, errors='replace')
+    return done.returncode, done.stdout + done.stderr
+
+
+def counted(stage, words, call):
+    """How often the main process of an undisturbed run calls a function."""
+    if os.path.exists('count'):
+        os.remove('count')
+    code, said = attempt(stage, words, call, 0, os.path.abspath('count'))
+    assert code == 0, (stage, call, code, said)
+    return int(open('count').read().split()[-1]) # children end before it
+
+
+def chosen(total):
+    """Which calls fail: all, or the first, the last and some between them."""
+    if MOST is None or total <= MOST:
+        return range(1, total + 1)
+    return sorted({1 + round(i * (total - 1) / (MOST - 1)) for i in range(MOST)})
+
+
+def verdict(code, said, name, old, whole):
+    """What is wrong with a run; empty: nothing. `old` is the earlier result."""
+    if code not in (0, 2, 3, 4):
+        return f'exit code {code}'
+    lines = [line for line in said.splitlines() if line.strip()]
+    if code and not lines:
+        return 'no reason given'
+    if len(lines) > LINES:
+        return f'{len(lines)} lines'
+    left = [entry for entry in os.listdir('.') if '.tmp.' in entry]
+    if left:
+        return f'left {left}'
+    if not os.path.exists(name):
+        return 'the earlier result is gone'
+    try:
+        now = content(name)
+    except OSError:
+        return 'the result cannot be read'
+    if code == 0 and now != whole:
+        return 'exit code 0, but another result'
+    if code and now not in (old, whole):
+        return 'a result that is neither the earlier one nor whole'
+    return ''
+
+
+def check(stage, case, name, earlier):
+    """All functions fail in turn in one stage. `earlier` leaves another result in the way."""
+    words = ['--quiet', '--force', case]
+    if stage == 'post':
+        words = ['--quiet', case]
+    earlier()
+    shutil.copy(name, 'old')
+    old = content(name)
+    run(program(stage), *words)
+    whole = content(name)
+    assert whole != old, (stage, 'the earlier result must differ')
+    bad, runs = [], collections.Counter()
+    for call in CALLS:
+        for nth in chosen(counted(stage, words, call)):
+            shutil.copy('old', name)
+            try:
+                code, said = attempt(stage, words, call, nth)
+            except subprocess.TimeoutExpired:
+                bad.append((stage, call, nth, 'endless', ''))
+                continue
+            runs[code] += 1
+            wrong = verdict(code, said, name, old, whole)
+            if wrong:
+                bad.append((stage, call, nth, wrong, said[-400:]))
+            for entry in os.listdir('.'):
+                if '.tmp.' in entry:
+                    os.remove(entry)
+    print(f'{stage}: {sum(runs.values())} runs, exit codes {dict(runs)}, {len(bad)} wrong')
+    return bad
+
+
+def main():
+    bad = []
+    with bring_your_own(SCENE) as folder:
+        run(sys.executable, 'write_modal.py')
+        text = open('case.yaml').read()
+        lines = [line for line in text.splitlines() if not line.strip().startswith(('n0:', 'harm'))]
+        text = '\n'.join(lines).replace('mhb:', 'mhb:\n  harmonics: 3')
+        write('case.yaml', text.replace('contact:', 'contact:\n  n0: [0.3 N]'))
+        write('other.yaml', text.replace('contact:', 'contact:\n  n0: [0.2 N]'))
+        name = 'three_degree.response.h5'
+        bad += check('mhb', 'case.yaml', name,
+                     lambda: run(program('mhb'), '--quiet', '--force', 'other.yaml'))
+        run(program('mhb'), '--quiet', '--force', 'case.yaml')
+        bad += check('post', 'case.yaml', 'three_degree.csv',
+                     lambda: write('three_degree.csv', 'an earlier table\n'))
+        write('blade.yaml', BLADE.replace('SIZE', '14 mm'))
+        write('coarse.yaml', BLADE.replace('SIZE', '18 mm'))
+        bad += check('mesh', 'blade.yaml', 'blade.msh',
+                     lambda: run(program('mesh'), '--quiet', '--force', 'coarse.yaml'))
+        run(program('mesh'), '--quiet', '--force', 'blade.yaml')
+        write('fewer.yaml', BLADE.replace('SIZE', '14 mm').replace('modes: 3', 'modes: 2'))
+        bad += check('modal', 'blade.yaml', 'blade.modal.h5',
+                     lambda: run(program('modal'), '--quiet', '--force', 'fewer.yaml'))
+    for row in bad:
+        print(*row)
+    assert not bad, f'{len(bad)} runs are wrong'
+
+
+main()
