@@ -3,6 +3,7 @@
 #   unit         below 1 s of CPU time, and below 20 s together; every test that is not listed here
 #   integration  below 20 s each
 #   slow         above
+#   nightly      hours; only `ctest -C nightly -L nightly` runs them
 #
 # The timeouts are ten times these times and more, because a busy machine runs a test slower.
 # A unit test that outgrows its label therefore fails at last.
@@ -32,15 +33,19 @@ set(INTEGRATION_TESTS cases.study.study cases.study.eval cases.study.blade_study
   bench.integrate bench.lasting bench.study mhb.floquet.friction_limit docs.first_case
   mhb.ring.ring_step mhb.ring.neimark_sacker cases.install.install
   mhb.tracking.corner mhb.tracking.tracked_curve bench.tracking
-  mesh.blade.shroud_angle cases.converge.points_ladder cases.commands.contact_points)
+  robust.same_bits mesh.blade.shroud_angle cases.converge.points_ladder cases.commands.contact_points)
 if(SHROUDHB_CHROMIUM AND SHROUDHB_PYTHON)
   list(APPEND INTEGRATION_TESTS postproc.study.page_script postproc.report.page_script)
 endif()
 set(SLOW_TESTS
   cases.scenes.mistuned_ring
   mesh.blade.blade mhb.floquet.monodromy mhb.branches.verdicts cases.converge.converge hard.gaps
-  bench.elements cases.scenes.optimum_preload fuzz.libfuzzer mhb.tracking.tracked_response)
+  bench.elements cases.scenes.optimum_preload fuzz.libfuzzer mhb.tracking.tracked_response
+  robust.fail_nth robust.kills)
 
+set(NIGHTLY_TESTS robust.fail_nth_all robust.kills_many)
+
+set(TIMEOUT_nightly 86400)
 set(TIMEOUT_unit 100)
 set(TIMEOUT_integration 600)
 set(TIMEOUT_slow 900)
@@ -55,7 +60,7 @@ if(TARGET shroudhb-study)
 endif()
 
 get_property(all_tests DIRECTORY PROPERTY TESTS)
-foreach(name ${INTEGRATION_TESTS} ${SLOW_TESTS})
+foreach(name ${INTEGRATION_TESTS} ${SLOW_TESTS} ${NIGHTLY_TESTS})
   if(SHROUDHB_PYTHON AND NOT name IN_LIST all_tests)
     message(WARNING "tests/labels.cmake: there is no test ${name}")
   endif()
@@ -66,6 +71,8 @@ foreach(name ${all_tests})
     set(label integration)
   elseif(name IN_LIST SLOW_TESTS)
     set(label slow)
+  elseif(name IN_LIST NIGHTLY_TESTS)
+    set(label nightly)
   endif()
   set_tests_properties(${name} PROPERTIES LABELS ${label} TIMEOUT ${TIMEOUT_${label}})
 endforeach()

@@ -80,7 +80,7 @@ static int parse(const words *line, command_options *options, case_file *file) {
   int code = command_parse(line->n_own, line->own, usage, options);
   if (code < 0) {
     shb_status status = command_read(options, CASE_MODAL, file);
-    if (status != SHB_OK) code = (int)status;
+    if (status != SHB_OK) code = command_finish(status);
   }
   fflush(stderr);
   if (saved >= 0) {

@@ -346,7 +346,10 @@ shb_status h5_close(hid_t file) {
   shb_status status = SHB_OK;
   const bool known = H5Fget_intent(file, &intent) >= 0, writing = intent & H5F_ACC_RDWR;
   if (known && writing) status = write_image(file);
+  char path[4096] = "";
+  if (known && writing && H5Fget_name(file, path, sizeof path) < 0) *path = '\0';
   const bool closed = H5Fclose(file) >= 0;
+  if (!closed && *path) remove_file(path); /* the caller does not publish it */
   if (known && !writing) stop_reading();
   if (!closed && status == SHB_OK) SHB_FAIL(SHB_ERR_IO, "an HDF5 file could not be closed");
   return status;

@@ -82,9 +82,8 @@ static void farthest(int n, int samples, const double *x, int pair[2]) {
 }
 
 static double extent(int n, int m, const double complex *a) {
-  int     samples = 8 * (m + 1);
-  double *x       = malloc((size_t)(samples * n) * sizeof *x);
-  if (!x) return NAN;
+  int    samples = 8 * (m + 1);
+  double x[samples * n]; /* 200 harmonics on three axes: 39 kB */
   for (int i = 0; i < samples; i++) {
     double complex turn = cexp(I * (SHB_TWO_PI * i / samples));
     for (int axis = 0; axis < n; axis++) {
@@ -95,7 +94,6 @@ static double extent(int n, int m, const double complex *a) {
   }
   int pair[2] = {0, 0};
   farthest(n, samples, x, pair);
-  free(x);
   double step = SHB_TWO_PI / samples;
   return refine_distance(n, m, a, pair[0] * step, pair[1] * step);
 }

@@ -1,14 +1,21 @@
 """Results as numbers: what two HDF5 files of the same run must share."""
+import os
+
 import h5py
 import numpy as np
 
 
+def is_cost(name):
+    """Time and memory of the run, which differ from run to run."""
+    return name.startswith('phases/') or os.path.basename(name) == 'seconds'
+
+
 def numbers(path):
-    """Bytes of every dataset of numbers, by name, with type and shape."""
+    """Bytes of every dataset of numbers but the cost of the run, by name, with type and shape."""
     found = {}
 
     def keep(name, item):
-        if isinstance(item, h5py.Dataset) and item.dtype.kind in 'iufcbV':
+        if not is_cost(name) and isinstance(item, h5py.Dataset) and item.dtype.kind in 'iufcbV':
             value = np.asarray(item[()])
             found[name] = (str(value.dtype), value.shape, value.tobytes())
     with h5py.File(path, 'r') as file:

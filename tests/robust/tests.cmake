@@ -1,0 +1,27 @@
+# Failing calls, signals and threads: what a run leaves behind must be whole and the same.
+set(ROBUST ${CMAKE_CURRENT_SOURCE_DIR}/robust)
+
+# shb_robust_test(noun file arguments...): tests/robust/test_file.py over the programs.
+function(shb_robust_test noun file)
+  add_test(NAME robust.${noun} ${CONFIGURATION}
+    COMMAND ${SHROUDHB_PYTHON} -B ${ROBUST}/test_${file}.py $<TARGET_FILE_DIR:shroudhb> ${ARGN})
+  set_tests_properties(robust.${noun} PROPERTIES SKIP_RETURN_CODE 77)
+endfunction()
+
+if(SHROUDHB_PYTHON)
+  set(SCENE ${PROJECT_SOURCE_DIR}/cases/bring_your_own)
+  shb_robust_test(same_bits same_bits ${SCENE})
+  shb_robust_test(kills kills ${SCENE} 2)
+  set(CONFIGURATION CONFIGURATIONS nightly)
+  shb_robust_test(kills_many kills ${SCENE} 170)
+  unset(CONFIGURATION)
+  if(NOT SHROUDHB_SANITIZE AND NOT SHROUDHB_FUZZ) # sanitizers replace the same functions
+    add_library(fail_nth MODULE robust/fail_nth.c)
+    target_link_libraries(fail_nth PRIVATE PkgConfig::HDF5 ${CMAKE_DL_LIBS})
+    target_compile_definitions(fail_nth PRIVATE _GNU_SOURCE)
+    shb_robust_test(fail_nth fail_nth $<TARGET_FILE:fail_nth> ${SCENE} 2 mhb post)
+    set(CONFIGURATION CONFIGURATIONS nightly)
+    shb_robust_test(fail_nth_all fail_nth $<TARGET_FILE:fail_nth> ${SCENE})
+    unset(CONFIGURATION)
+  endif()
+endif()
