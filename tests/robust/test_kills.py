@@ -1,4 +1,4 @@
-"""robust.kills: stages are stopped by signals at random moments; the next run is as an unbroken one.
+"""robust.kills: stages stopped by signals at random moments; the next run is as an unbroken one.
 
 Usage: test_kills.py FOLDER_OF_PROGRAMS CASE_FOLDER CYCLES [SEED]
 CYCLES of each of mesh, modal, mhb. Exit code 77: h5py is missing.
@@ -70,7 +70,8 @@ def check(stage, case, name):
         assert content(name) == whole, (stage, code, 'another result')
         left = [entry for entry in os.listdir() if ".tmp." in entry]
         assert not left, (stage, code, left)
-    print(f'{stage}: {CYCLES} cycles, exit codes {codes}, results as of an unbroken run', flush=True)
+    print(f'{stage}: {CYCLES} cycles, exit codes {codes}, results as of an unbroken run',
+          flush=True)
 
 
 with bring_your_own(SCENE):
