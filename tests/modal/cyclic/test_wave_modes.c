@@ -276,6 +276,85 @@ static void too_many_modes(void **state) {
   wave_operator_free(&op);
 }
 
+/* Is the node in the disc of make_bladed_sector? */
+static bool in_disc(const mesh_fe *mesh, int node) {
+  const double *x = mesh->coordinates + 3 * node;
+  return hypot(x[1], x[2]) < 0.11 + 1e-9;
+}
+
+/* Lowest frequencies of the blade whose disc is clamped as a whole, rad/s. */
+static void clamped_blade(const mesh_fe *sector, int n, double *omega) {
+  modal_eigen_settings wanted = {.modes = n};
+  const int            width  = mesh_topology_of(sector->kind)->face_nodes;
+  mesh_fe              mesh   = *sector;
+  fem_system           system;
+  modal_eigen          eigen;
+  int                 *node = malloc((size_t)(mesh.n_nodes + width) * sizeof *node), count = 0;
+  assert_non_null(node);
+  for (int i = 0; i < mesh.n_nodes; i++)
+    if (in_disc(&mesh, i)) node[count++] = i;
+  while (count % width) node[count++] = node[0];
+  mesh.image          = NULL;
+  mesh.set[MESH_ROOT] = (mesh_face_set){count / width, node};
+  assert_int_equal(fem_system_create(PETSC_COMM_SELF, &mesh, &steel, FEM_STANDARD, &system), 0);
+  assert_int_equal(modal_eigen_solve(&system, &wanted, &eigen), 0);
+  for (int i = 0; i < n; i++) omega[i] = sqrt(eigen.lambda[i]);
+  modal_eigen_destroy(&eigen);
+  fem_system_destroy(&system);
+  free(node);
+}
+
+/* The same at nodal diameter 2 with a disc that many times stiffer than steel. */
+static void stiff_disc(scene *s, double stiffer, int n, double *omega) {
+  fem_material         material[2] = {steel, steel};
+  mesh_fe              mesh        = s->mesh;
+  const fem_body       body        = {&mesh, material, s->element, {axis, 0}, 0};
+  const wave_settings  wanted      = {.modes = n};
+  const int            each        = mesh_topology_of(mesh.kind)->nodes;
+  fem_system           system;
+  fem_sector           sector;
+  fem_hermitian_order *order;
+  wave_operator        op;
+  wave_modes           modes;
+  material[1].E *= stiffer;
+  mesh.n_regions = 2;
+  mesh.region    = calloc((size_t)mesh.n_elements, sizeof *mesh.region);
+  assert_non_null(mesh.region);
+  for (int e = 0; e < mesh.n_elements; e++) {
+    mesh.region[e] = 1;
+    for (int i = 0; i < each; i++)
+      if (!in_disc(&mesh, mesh.connectivity[each * e + i])) mesh.region[e] = 0;
+  }
+  assert_int_equal(fem_system_create(PETSC_COMM_SELF, &mesh, material, FEM_STANDARD, &system), 0);
+  assert_int_equal(fem_sector_create(&body, NULL, &system, &sector), 0);
+  assert_ok(fem_hermitian_analyse(&sector.blocks, &order));
+  assert_ok(wave_operator_create(&sector, order, 2, BLADES, &op));
+  assert_ok(wave_modes_solve(&op, &wanted, &body, NULL, &modes));
+  for (int i = 0; i < n; i++) omega[i] = sqrt(modes.lambda[i]);
+  wave_modes_free(&modes);
+  wave_operator_free(&op);
+  fem_hermitian_order_free(order);
+  fem_sector_free(&sector);
+  fem_system_destroy(&system);
+  free(mesh.region);
+}
+
+/* A stiff disc gives the clamped blade back; the difference falls as the inverse stiffness. */
+static void a_stiff_disc_is_a_clamp(void **state) {
+  enum { LOWEST = 4 };
+  scene *s = *state;
+  double clamped[LOWEST], omega[LOWEST], off[2] = {0};
+  clamped_blade(&s->mesh, LOWEST, clamped);
+  for (int k = 0; k < 2; k++) {
+    stiff_disc(s, k ? 1e5 : 1e4, LOWEST, omega);
+    for (int i = 0; i < LOWEST; i++) off[k] = fmax(off[k], fabs(omega[i] / clamped[i] - 1));
+  }
+  print_message("disc 1e4 and 1e5 times stiffer: frequencies off by %.1e and %.1e\n", off[0],
+                off[1]);
+  check_below(off[0], 1e-4, "stiff disc");
+  assert_true(fabs(log10(off[0] / off[1]) - 1) < 0.05);
+}
+
 static int set_up(void **state) {
   static scene s;
   create(&s);
@@ -292,7 +371,8 @@ int main(int argc, char **argv) {
   modal_session           session;
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(travelling_waves_of_the_ring), cmocka_unit_test(modes_of_the_ring),
-      cmocka_unit_test(real_nodal_diameters), cmocka_unit_test(too_many_modes)};
+      cmocka_unit_test(real_nodal_diameters), cmocka_unit_test(a_stiff_disc_is_a_clamp),
+      cmocka_unit_test(too_many_modes)};
   if (modal_session_start(&argc, &argv, &session) != SHB_OK) return 1;
   int failed = run_with_both_elements(tests, set_up, tear_down);
   modal_session_end(&session, SHB_OK);

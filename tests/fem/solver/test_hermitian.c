@@ -1,0 +1,141 @@
+/* The complex Hermitian factor: solutions of a banded matrix, several factors of one analysis, a
+ * matrix that is not positive definite. */
+#include "fem/solver/hermitian.h"
+
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdlib.h>
+
+#include <cmocka.h>
+
+#include "tests/support/check.h"
+
+enum { N = 40, BAND = 5, ORDER = 3 * N, MOST = 9 };
+
+/* A matrix of N block rows, each coupled to the BAND next ones. */
+typedef struct {
+  int            start[N + 1], column[N * (BAND + 1)];
+  double complex value[N * (BAND + 1)][9];
+} matrix;
+
+static double complex random_number(uint64_t *state) {
+  double part[2];
+  for (int i = 0; i < 2; i++) {
+    *state  = *state * 6364136223846793005u + 1442695040888963407u;
+    part[i] = (double)(*state >> 11) * 0x1p-52 - 1;
+  }
+  return CMPLX(part[0], part[1]);
+}
+
+/* Random and Hermitian; the diagonal makes it positive definite where it is above about 30. */
+static void make(double diagonal, uint64_t seed, matrix *A) {
+  int n = 0;
+  for (int r = 0; r < N; r++) {
+    A->start[r] = n;
+    for (int c = r; c < N && c <= r + BAND; c++, n++) {
+      A->column[n] = c;
+      for (int i = 0; i < 9; i++) A->value[n][i] = random_number(&seed);
+      for (int d = 0; d < 3 && c == r; d++)
+        for (int e = 0; e <= d; e++)
+          A->value[n][d + 3 * e] = d == e ? diagonal : conj(A->value[n][e + 3 * d]);
+    }
+  }
+  A->start[N] = n;
+}
+
+/* y = A x */
+static void multiply(const matrix *A, const double complex *x, double complex *y) {
+  for (int i = 0; i < ORDER; i++) y[i] = 0;
+  for (int r = 0; r < N; r++)
+    for (int q = A->start[r]; q < A->start[r + 1]; q++)
+      for (int i = 0; i < 9; i++) {
+        const int            row = 3 * r + i % 3, column = 3 * A->column[q] + i / 3;
+        const double complex a = A->value[q][i];
+        y[row] += a * x[column];
+        if (A->column[q] != r) y[column] += conj(a) * x[row];
+      }
+}
+
+/* Greatest |A x - b| of count columns. */
+static double residual(const matrix *A, fem_hermitian *factor, int count) {
+  static double complex b[MOST * ORDER], x[MOST * ORDER], y[ORDER];
+  uint64_t              seed  = 3;
+  double                worst = 0;
+  for (int i = 0; i < count * ORDER; i++) b[i] = random_number(&seed);
+  assert_ok(fem_hermitian_solve(factor, count, b, x));
+  for (int c = 0; c < count; c++) {
+    multiply(A, x + (size_t)c * ORDER, y);
+    for (int i = 0; i < ORDER; i++) worst = fmax(worst, cabs(y[i] - b[c * ORDER + i]));
+  }
+  return worst;
+}
+
+static void solutions_of_one_analysis(void **state) {
+  (void)state;
+  static matrix        A[2];
+  fem_hermitian_order *order;
+  fem_hermitian       *factor[2];
+  bool                 definite;
+  make(40, 1, &A[0]);
+  make(57, 2, &A[1]);
+  const fem_blocks pattern = {N, A[0].start, A[0].column};
+  assert_ok(fem_hermitian_analyse(&pattern, &order));
+  assert_true(fem_hermitian_bytes(order) > 16. * ORDER);
+  for (int k = 0; k < 2; k++) {
+    assert_ok(fem_hermitian_create(order, A[k].value[0], &definite, &factor[k]));
+    assert_true(definite);
+  }
+  for (int k = 0; k < 2; k++)
+    for (int count = 1; count <= MOST; count += 2)
+      assert_near(residual(&A[k], factor[k], count), 0, 1e-13);
+  fem_hermitian_free(factor[0]);
+  fem_hermitian_free(factor[1]);
+  fem_hermitian_order_free(order);
+}
+
+static void a_solution_in_place(void **state) {
+  (void)state;
+  static matrix         A;
+  static double complex b[ORDER], x[ORDER];
+  fem_hermitian_order  *order;
+  fem_hermitian        *factor;
+  uint64_t              seed = 8;
+  bool                  definite;
+  make(40, 5, &A);
+  const fem_blocks pattern = {N, A.start, A.column};
+  assert_ok(fem_hermitian_analyse(&pattern, &order));
+  assert_ok(fem_hermitian_create(order, A.value[0], &definite, &factor));
+  for (int i = 0; i < ORDER; i++) b[i] = random_number(&seed);
+  assert_ok(fem_hermitian_solve(factor, 1, b, x));
+  assert_ok(fem_hermitian_solve(factor, 1, b, b));
+  for (int i = 0; i < ORDER; i++) assert_true(b[i] == x[i]);
+  fem_hermitian_free(factor);
+  fem_hermitian_order_free(order);
+}
+
+static void an_indefinite_matrix(void **state) {
+  (void)state;
+  static matrix        A;
+  fem_hermitian_order *order;
+  fem_hermitian       *factor;
+  bool                 definite = true;
+  make(2, 1, &A);
+  const fem_blocks pattern = {N, A.start, A.column};
+  assert_ok(fem_hermitian_analyse(&pattern, &order));
+  assert_ok(fem_hermitian_create(order, A.value[0], &definite, &factor));
+  assert_false(definite);
+  assert_null(factor);
+  fem_hermitian_order_free(order);
+  fem_hermitian_free(NULL);
+  fem_hermitian_order_free(NULL);
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {cmocka_unit_test(solutions_of_one_analysis),
+                                     cmocka_unit_test(a_solution_in_place),
+                                     cmocka_unit_test(an_indefinite_matrix)};
+  return cmocka_run_group_tests(tests, NULL, NULL);
+}
