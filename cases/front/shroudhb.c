@@ -31,7 +31,7 @@ static const char usage[] =
     "  mhb CASE.yaml      harmonic balance                  -> NAME.response.h5\n"
     "  integrate CASE.yaml  points by time integration      -> NAME.integration.h5, drawn by post\n"
     "  post CASE.yaml     report, curves                    -> NAME.html, NAME.csv, NAME.svg\n"
-    "  post CASE.yaml OTHER.yaml   two runs on one page    -> NAME.vs.OTHER.html\n"
+    "  post A.yaml B.yaml two runs on one page              -> A.vs.B.html\n"
     "  converge CASE.yaml error against time, setting by setting; `shroudhb converge --help`\n"
     "  study STUDY.yaml   many designs of a case on all cores; `shroudhb study --help`\n"
     "  eval CASE.yaml --params IN --results OUT  one design for Dakota and other drivers\n"

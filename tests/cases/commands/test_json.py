@@ -103,6 +103,9 @@ def scene():
     assert run('post', '--json', 'case.yaml') == result and os.path.exists('three_degree.html')
     alone = run('inspect', '--json', 'three_degree.response.h5')
     assert alone['curves'] == result['curves'] and alone['name'] is None
+    both = run('post', '--json', 'case.yaml', 'three_degree.response.h5') # a run against itself
+    assert all(c['amplitude_change'] in (0, None) for c in both['curves']), both
+    assert both['settings'] == [] and len(both['curves']) > 3
     table = run('inspect', '--json', 'three_degree.response.h5', 'branch_2[0:3]')
     assert table['columns'][0] == 'index' and len(table['rows'][0]) == len(table['columns'])
     tracked = run('run', '--json', '--set', 'name=along', '--set', 'contact.n0=0.3',
