@@ -2,15 +2,15 @@
 
 #include <string.h>
 
+#include "modal/model/nodal_diameters.h"
+
 /* Nodal diameters of harmonics 0 to most. */
 static int of_harmonics(const case_file *file, int most, int list[CASE_MOST_DIAMETERS]) {
   const int N                           = file->blades;
   bool      wanted[CASE_MOST_DIAMETERS] = {true};
   int       n                           = 0;
-  for (int k = 0; k <= most; k++) {
-    const int wave                          = (int)((long)k * file->engine_order % N);
-    wanted[wave <= N / 2 ? wave : N - wave] = true;
-  }
+  for (int k = 0; k <= most; k++)
+    wanted[modal_nodal_diameter((long)k * file->engine_order, N)] = true;
   for (int d = 0; d <= N / 2; d++)
     if (wanted[d]) list[n++] = d;
   return n;

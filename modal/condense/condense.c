@@ -214,20 +214,19 @@ static void store_terms(const workspace *w, int first, int count, modal_model *m
   }
 }
 
-/* Tails of the contact dofs and of the load harmonics. The error matrix of the columns is positive
- * semi-definite: this bounds the tail of a sum of patterns. */
-static void store_tails(const workspace *w, int order, modal_model *model) {
-  const modal_load *load  = &w->to->load;
-  double            ratio = 0;
-  model->tail_order       = order;
-  for (int c = 0; c < w->n_contact; c++)
-    for (int i = 0; i < 2; i++) model->contact_tail[2 * c + i] = w->tail[i][c];
-  for (int c = w->n_contact; c < w->n_column; c++)
-    if (w->tail[0][c] > 0) ratio = fmax(ratio, w->tail[1][c] / w->tail[0][c]);
+void modal_store_tails(int order, int n_contact, double *const tail[2], const modal_load *load,
+                       modal_model *model) {
+  const double *first = tail[0] + n_contact, *second = tail[1] + n_contact; /* of the patterns */
+  double        ratio = 0;
+  model->tail_order   = order;
+  for (int c = 0; c < n_contact; c++)
+    for (int i = 0; i < 2; i++) model->contact_tail[2 * c + i] = tail[i][c];
+  for (int c = 0; c < load->dofs.n; c++)
+    if (first[c] > 0) ratio = fmax(ratio, second[c] / first[c]);
   for (int k = 0; k <= load->n_harmonics; k++) {
     double root = 0;
     for (int c = 0; c < load->dofs.n; c++)
-      root += cabs(load->weight[k * load->dofs.n + c]) * sqrt(w->tail[0][w->n_contact + c]);
+      root += cabs(load->weight[k * load->dofs.n + c]) * sqrt(first[c]);
     model->load_tail[2 * k]     = root * root;
     model->load_tail[2 * k + 1] = root * root * ratio;
   }
@@ -420,7 +419,7 @@ static shb_status fill(workspace *w, shb_progress *progress, modal_model *model)
   symmetrise(model->residual_inertia, (size_t)nc);
   symmetrise(model->residual_fourth, (size_t)nc);
   if (single_batch) SHB_TRY(create_residual_modes(w, model));
-  store_tails(w, single_batch ? 2 * BLOCKS : BLOCKS, model);
+  modal_store_tails(single_batch ? 2 * BLOCKS : BLOCKS, nc, w->tail, &w->to->load, model);
   return SHB_OK;
 }
 

@@ -266,24 +266,6 @@ static void store_terms(const workspace *w, int first, int count) {
   }
 }
 
-/* Tails of the contact dofs and of the load harmonics, as in modal/condense/condense.c. */
-static void store_tails(const workspace *w, int order) {
-  const modal_load *load  = &w->to->load;
-  double            ratio = 0;
-  w->model->tail_order    = order;
-  for (int c = 0; c < w->n_contact; c++)
-    for (int i = 0; i < 2; i++) w->model->contact_tail[2 * c + i] = w->tail[i][c];
-  for (int c = w->n_contact; c < w->n_column; c++)
-    if (w->tail[0][c] > 0) ratio = fmax(ratio, w->tail[1][c] / w->tail[0][c]);
-  for (int k = 0; k <= load->n_harmonics; k++) {
-    double root = 0;
-    for (int c = 0; c < load->dofs.n; c++)
-      root += cabs(load->weight[k * load->dofs.n + c]) * sqrt(w->tail[0][w->n_contact + c]);
-    w->model->load_tail[2 * k]     = root * root;
-    w->model->load_tail[2 * k + 1] = root * root * ratio;
-  }
-}
-
 /* ------------------------------------------------------------------ residual modes */
 
 /* Residual modes at the columns and the probes. */
@@ -483,7 +465,8 @@ static shb_status fill(workspace *w) {
   symmetrise(m->residual_inertia, i->residual_inertia, (size_t)nc);
   symmetrise(m->residual_fourth, i->residual_fourth, (size_t)nc);
   if (single_batch) SHB_TRY(create_residual_modes(w));
-  store_tails(w, single_batch ? 2 * BLOCKS : BLOCKS);
+  modal_store_tails(single_batch ? 2 * BLOCKS : BLOCKS, w->n_contact, w->tail, &w->to->load,
+                    w->model);
   return SHB_OK;
 }
 

@@ -12,6 +12,12 @@ static const char model_format[] = "shroudhb modal model";
  * (modal/model/nodal_diameters.h). The model itself is as in version 1. */
 enum { MODEL_VERSION = 1, MAX_MODES = 100000, MAX_PAIRS = 100000, MAX_HARMONICS = 10000 };
 
+bool modal_model_is_driven(const modal_model *m, int k) {
+  for (int i = 0; k <= m->n_load && i < m->n_modes; i++)
+    if (cabs(m->modal_force[k * m->n_modes + i]) > 0) return true;
+  return false;
+}
+
 int modal_model_contact_dofs(const modal_model *model) {
   return 3 * model->n_pairs * (model->has_left ? 2 : 1);
 }

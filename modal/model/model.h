@@ -62,6 +62,9 @@ typedef struct {
 /* Number of contact dofs, 3 n_pairs for each side. */
 int modal_model_contact_dofs(const modal_model *model);
 
+/* Whether harmonic k of the load moves a mode. */
+bool modal_model_is_driven(const modal_model *model, int k);
+
 /* Write the datasets of docs/user/files.md into an open file, with the attributes format and
  * provenance. */
 shb_status modal_model_write(hid_t file, const modal_model *model,

@@ -51,12 +51,17 @@ modal_wave modal_wave_real(const modal_model *model) {
   return (modal_wave){model, NULL, model, 1};
 }
 
+int modal_nodal_diameter(long wave, int blades) {
+  const int n = (int)((wave % blades + blades) % blades);
+  return 2 * n > blades ? blades - n : n;
+}
+
 bool modal_nodal_diameters_wave(const modal_nodal_diameters *d, long wave, modal_wave *found,
                                 int *missing) {
-  const int  n        = (int)((wave % d->blades + d->blades) % d->blades);
-  const bool backward = 2 * n > d->blades;
-  const int  i        = modal_nodal_diameters_find(d, backward ? d->blades - n : n);
-  *missing            = backward ? d->blades - n : n;
+  const int  n        = modal_nodal_diameter(wave, d->blades);
+  const bool backward = (wave - n) % d->blades != 0;
+  const int  i        = modal_nodal_diameters_find(d, n);
+  *missing            = n;
   if (i < 0) return false;
   *found = modal_wave_real(&d->model[i]);
   if (has_imaginary(&d->imaginary[i])) found->imaginary = &d->imaginary[i];

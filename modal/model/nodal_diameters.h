@@ -39,6 +39,10 @@ shb_status modal_nodal_diameters_write(hid_t file, const modal_nodal_diameters *
  * also if the models do not fit together. */
 shb_status modal_nodal_diameters_read(const char *path, modal_nodal_diameters *diameters);
 
+/* Nodal diameter, 0 to blades/2, of a wave whose next blade lags by 2 pi wave/blades, forwards or
+ * backwards. */
+int modal_nodal_diameter(long wave, int blades);
+
 /* Index of nodal diameter n, or -1. */
 int modal_nodal_diameters_find(const modal_nodal_diameters *diameters, int n);
 

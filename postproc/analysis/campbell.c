@@ -97,16 +97,10 @@ static double curve_at(const curve *k, double speed) {
 
 /* ---------------------------------------------------------------- crossings */
 
-/* True if harmonic k of the load excites any mode. */
-static bool is_driven(const modal_model *m, int k) {
-  for (int i = 0; k <= m->n_load && i < m->n_modes; i++)
-    if (cabs(m->modal_force[k * m->n_modes + i]) > 0) return true;
-  return false;
-}
-
 static bool is_excited(const post_campbell *c, int order) {
   int e = c->engine_order;
-  return e > 0 && order > 0 && order % e == 0 && is_driven(&c->speeds->model[0], order / e);
+  return e > 0 && order > 0 && order % e == 0 &&
+         modal_model_is_driven(&c->speeds->model[0], order / e);
 }
 
 static int highest_order(const post_campbell *c) {

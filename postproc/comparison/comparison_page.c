@@ -18,9 +18,8 @@ static const char style[] =
     ".line.limit.second { stroke-dasharray: 7 4; }\n";
 
 static void put_name(const post_pair *p, post_buffer *out) {
-  const post_group group = {p->kind, false, p->n0, p->rank};
-  char             name[64];
-  post_group_name(&group, name);
+  char name[64];
+  post_pair_name(p, name);
   post_put(out, "%s", name);
 }
 

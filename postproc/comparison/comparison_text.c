@@ -15,21 +15,16 @@ static const char *signed_percent(double change, char out[POST_NUMBER]) {
   return out;
 }
 
-static const char *name_of(const post_pair *p, char out[64]) {
-  const post_group group = {p->kind, false, p->n0, p->rank};
-  post_group_name(&group, out);
-  return out;
-}
-
 void post_comparison_text(const post_comparison *c, post_buffer *out) {
   post_put(out, "%s against %s, highest peaks\n", c->run[1].name, c->run[0].name);
   for (int i = 0; i < c->n_pairs; i++) {
     const post_pair *p = &c->pair[i];
     char             name[64], a[POST_NUMBER], b[POST_NUMBER], da[POST_NUMBER], df[POST_NUMBER];
     if (!(p->peak[0].amplitude > 0) && !(p->peak[1].amplitude > 0)) continue;
+    post_pair_name(p, name);
     double most = fmax(p->peak[0].amplitude, p->peak[1].amplitude);
     post_put(
-        out, "  %-14s %12s  %12s  amplitude %-9s at %-9s\n", name_of(p, name),
+        out, "  %-14s %12s  %12s  amplitude %-9s at %-9s\n", name,
         p->peak[0].amplitude > 0 ? post_measure(a, p->peak[0].amplitude, post_unit_length(most), 4)
                                  : "–",
         p->peak[1].amplitude > 0 ? post_measure(b, p->peak[1].amplitude, post_unit_length(most), 4)

@@ -60,6 +60,11 @@ static shb_status pair_curves(post_comparison *c) {
   return SHB_OK;
 }
 
+void post_pair_name(const post_pair *p, char out[64]) {
+  const post_group group = {p->kind, false, p->n0, p->rank};
+  post_group_name(&group, out);
+}
+
 double post_change(const post_pair *p, bool place) {
   const double a = place ? p->peak[0].at : p->peak[0].amplitude,
                b = place ? p->peak[1].at : p->peak[1].amplitude;

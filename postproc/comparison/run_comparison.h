@@ -43,6 +43,9 @@ shb_status post_comparison_read(const char *const path[POST_RUNS],
                                 const char *const name[POST_RUNS], post_comparison *comparison);
 void       post_comparison_free(post_comparison *comparison);
 
+/* "open", "n₀ = 50 N", as post_group_name. */
+void post_pair_name(const post_pair *pair, char out[64]);
+
 /* b / a - 1 of the peaks' amplitudes or, if place, of their abscissae; NAN where one is missing. */
 double post_change(const post_pair *pair, bool place);
 

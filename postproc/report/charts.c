@@ -283,8 +283,12 @@ static void draw_level(const post_plot *plot, double value, bool open) {
             open ? "start" : "end", open ? "open" : "stuck");
 }
 
-/* A thin line through the peaks of one resonance. */
-static void draw_resonance(const post_tracking *t, const post_plot *plot, bool place) {
+static double shown(const post_track_point *p, bool place) {
+  return place ? p->at : p->amplitude;
+}
+
+static void join_peaks(const post_tracking *t, const post_plot *plot, bool place,
+                       const char *classes) {
   double *x = calloc((size_t)t->n + 1, 2 * sizeof *x), *y = x ? x + t->n : NULL;
   if (!x) {
     plot->out->failed = true;
@@ -292,9 +296,9 @@ static void draw_resonance(const post_tracking *t, const post_plot *plot, bool p
   }
   for (int i = 0; i < t->n; i++) {
     x[i] = t->point[i].n0;
-    y[i] = place ? t->point[i].at : t->point[i].amplitude;
+    y[i] = shown(&t->point[i], place);
   }
-  plot_line(plot, "line resonance", t->n, x, y, NULL);
+  plot_line(plot, classes, t->n, x, y, NULL);
   free(x);
 }
 
@@ -313,23 +317,14 @@ static void draw_track(const post_analysis *analysis, const post_plot *plot, boo
     }
   }
   const post_resonances *r = &analysis->resonances;
-  for (int i = 0; i < r->n && r->n > 1; i++) draw_resonance(&r->list[i], plot, place);
-  double *x = calloc((size_t)t->n, 2 * sizeof *x), *y = x ? x + t->n : NULL;
-  if (!x) {
-    plot->out->failed = true;
-    return;
-  }
+  for (int i = 0; i < r->n && r->n > 1; i++) join_peaks(&r->list[i], plot, place, "line resonance");
+  join_peaks(t, plot, place, "line track");
   for (int i = 0; i < t->n; i++) {
-    x[i] = t->point[i].n0;
-    y[i] = place ? t->point[i].at : t->point[i].amplitude;
+    const post_track_point *p = &t->point[i];
+    char                    classes[40];
+    snprintf(classes, sizeof classes, "%s c%d", p->edge ? "ring" : "dot", i);
+    plot_dot(plot, classes, p->n0, shown(p, place), i == t->best ? 5.5 : 4);
   }
-  plot_line(plot, "line track", t->n, x, y, NULL);
-  for (int i = 0; i < t->n; i++) {
-    char classes[40];
-    snprintf(classes, sizeof classes, "%s c%d", t->point[i].edge ? "ring" : "dot", i);
-    plot_dot(plot, classes, x[i], y[i], i == t->best ? 5.5 : 4);
-  }
-  free(x);
 }
 
 void post_chart_tracking(const post_analysis *analysis, post_buffer *out) {

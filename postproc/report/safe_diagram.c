@@ -1,21 +1,16 @@
 #include "postproc/report/safe_diagram.h"
 
-#include <complex.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 
 #include "mesh/base/constants.h"
 #include "mhb/continuation/linear_resonances.h"
+#include "modal/model/nodal_diameters.h"
 #include "postproc/draw/number_format.h"
 #include "postproc/draw/plot.h"
 
 enum { WIDTH = 1000, HEIGHT = 500, MOST_FAMILIES = 8, SHOWN = 3 };
-
-int post_nodal_diameter(int order, int blades) {
-  int rest = abs(order) % blades;
-  return rest <= blades / 2 ? rest : blades - rest;
-}
 
 /* ---------------------------------------------------------------- frequencies */
 
@@ -28,12 +23,8 @@ static int count_families(const modal_model *model, double high) {
 }
 
 static void find_driven(const modal_model *model, post_safe *s) {
-  for (int k = 1; k <= model->n_load && s->n_driven < 16; k++) {
-    double size = 0;
-    for (int i = 0; i < model->n_modes; i++)
-      size = fmax(size, cabs(model->modal_force[k * model->n_modes + i]));
-    if (size > 0) s->driven[s->n_driven++] = k;
-  }
+  for (int k = 1; k <= model->n_load && s->n_driven < 16; k++)
+    if (modal_model_is_driven(model, k)) s->driven[s->n_driven++] = k;
 }
 
 shb_status post_safe_compute(const modal_model *model, const mhb_settings *settings,
@@ -82,7 +73,7 @@ static void draw_family(const post_safe *s, const post_plot *plot, int family, b
  * frequency. Harmonic k of the excitation is at k times the frequency of the curve. */
 static void draw_excitation(const post_safe *s, const post_plot *plot) {
   for (int h = 0; h < s->n_driven; h++) {
-    const int    k = s->driven[h], d = post_nodal_diameter(k * s->engine_order, s->blades);
+    const int    k = s->driven[h], d = modal_nodal_diameter(k * s->engine_order, s->blades);
     const double lo = k * s->range[0], hi = fmin(k * s->range[1], plot->y.hi), x[2] = {d, d};
     char         text[32];
     if (lo >= plot->y.hi) continue;
@@ -107,7 +98,7 @@ static void draw_zigzag(const post_safe *s, const post_plot *plot) {
     return;
   }
   for (int k = 0; k < n; k++) {
-    x[k] = post_nodal_diameter(k, s->blades);
+    x[k] = modal_nodal_diameter(k, s->blades);
     y[k] = k * rate;
   }
   plot_line(plot, "order", n, x, y, NULL);
@@ -131,7 +122,7 @@ static void put_rows(const post_safe *s, post_buffer *out) {
   for (int i = 0; i < s->n_families; i++) post_put(out, "<th scope=\"col\">%d</th>", i + 1);
   post_put(out, "</tr></thead>\n<tbody>\n");
   for (int h = 0; h < s->n_driven; h++) {
-    const int order = s->driven[h] * s->engine_order, d = post_nodal_diameter(order, s->blades);
+    const int order = s->driven[h] * s->engine_order, d = modal_nodal_diameter(order, s->blades);
     for (int stuck = 0; stuck < 2; stuck++) {
       post_put(out, "<tr><th scope=\"row\">%d</th><td>%d</td><td>%s</td>", order, d,
                stuck ? "stuck" : "open");

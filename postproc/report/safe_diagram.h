@@ -19,9 +19,6 @@ typedef struct post_safe {
   double  speed;                /* of the rotor, rad/s; 0: not known */
 } post_safe;
 
-/* Nodal diameter of the waves that engine order `order` drives. */
-int post_nodal_diameter(int order, int blades);
-
 /* Compute the families of a blade that is clamped at its root: the open ones have the same
  * frequency at every diameter. n_families = 0 without a neighbour or with less than three blades.
  * Errors: SHB_ERR_IO no memory. */

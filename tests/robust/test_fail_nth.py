@@ -21,7 +21,7 @@ except ImportError:
 sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), '../support'))
 from blade import BLADE
 from programs import ENVIRONMENT, bring_your_own, run, write
-from results import numbers
+from results import content
 
 BIN, LIBRARY, SCENE = (os.path.abspath(word) for word in sys.argv[1:4])
 MOST = int(sys.argv[4]) if len(sys.argv) > 4 else None
@@ -36,14 +36,6 @@ LINES = 12 # a refusal is short, also with warnings before it
 
 def program(stage):
     return os.path.join(BIN, f'shroudhb-{stage}')
-
-
-def content(path):
-    """What a file holds, of an HDF5 file the numbers."""
-    if path.endswith('.h5'):
-        return numbers(path)
-    with open(path, 'rb') as file:
-        return file.read()
 
 
 def attempt(stage, words, call, nth, count=''):

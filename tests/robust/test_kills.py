@@ -18,7 +18,7 @@ except ImportError:
 sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), '../support'))
 from blade import BLADE
 from programs import ENVIRONMENT, bring_your_own, run, write
-from results import numbers
+from results import content
 
 BIN, SCENE = (os.path.abspath(word) for word in sys.argv[1:3])
 CYCLES = int(sys.argv[3])
@@ -28,13 +28,6 @@ ENVIRONMENT['OPENBLAS_NUM_THREADS'] = '1'
 
 def program(stage):
     return os.path.join(BIN, f'shroudhb-{stage}')
-
-
-def content(path):
-    if path.endswith('.h5'):
-        return numbers(path)
-    with open(path, 'rb') as file:
-        return file.read()
 
 
 def stopped(words, name, seconds):

@@ -21,3 +21,11 @@ def numbers(path):
     with h5py.File(path, 'r') as file:
         file.visititems(keep)
     return found
+
+
+def content(path):
+    """What a file holds, of an HDF5 file the numbers."""
+    if path.endswith('.h5'):
+        return numbers(path)
+    with open(path, 'rb') as file:
+        return file.read()

@@ -6,15 +6,16 @@
 
 #include "mesh/base/constants.h"
 #include "mhb/continuation/linear_resonances.h"
+#include "modal/model/nodal_diameters.h"
 #include "tests/support/check.h"
 #include "tests/support/random_model.h"
 
 static void diameters_of_orders(void **state) {
   (void)state;
   static const int order[] = {0, 1, 5, 20, 21, 35, 40, 45}, wanted[] = {0, 1, 5, 20, 19, 5, 0, 5};
-  for (int i = 0; i < 8; i++) assert_int_equal(post_nodal_diameter(order[i], 40), wanted[i]);
-  assert_int_equal(post_nodal_diameter(4, 7), 3);
-  assert_int_equal(post_nodal_diameter(3, 7), 3);
+  for (int i = 0; i < 8; i++) assert_int_equal(modal_nodal_diameter(order[i], 40), wanted[i]);
+  assert_int_equal(modal_nodal_diameter(4, 7), 3);
+  assert_int_equal(modal_nodal_diameter(3, 7), 3);
 }
 
 static void families_are_those_of_the_ring(void **state) {
