@@ -6,6 +6,7 @@
 #include <unistd.h>
 
 #include "cases/commands/command.h"
+#include "cases/commands/modal_changes.h"
 #include "cases/commands/subprocess.h"
 #include "cases/commands/up_to_date.h"
 #include "cases/schema/case.h"
@@ -14,6 +15,7 @@
 #include "mesh/base/publish.h"
 #include "modal/common/session.h"
 #include "modal/hdf5/h5.h"
+#include "modal/model/revision.h"
 #include "modal/stage/stage.h"
 
 static const char usage[] =
@@ -25,7 +27,8 @@ static const char usage[] =
     "to the\n"
     "contact, load and probe points and writes NAME.modal.h5; does nothing if that file is up to "
     "date\n"
-    "(unless --force). Needs mesh, material and clamp only: without contact, load and damping the "
+    "(unless --force), and keeps its modes if only damping or the amplitude of the load changed. "
+    "Needs mesh, material and clamp only: without contact, load and damping the "
     "file\n"
     "holds the modes alone. Meshes first if the mesh is missing. Options after the case go to "
     "PETSc and SLEPc, such as -eps_view,\n"
@@ -173,43 +176,74 @@ static bool holds_diameters(const case_file *file, const char *path) {
   return all;
 }
 
-/* Rank 0 decides whether the stage must run. *settings is malloc'ed there and NULL elsewhere. */
+/* What the stage has to do. */
+typedef enum { NOTHING, REVISE, SOLVE } task;
+
+/* A modal file of the case but for damping and load is revised. */
+static task task_of(const case_file *file, bool force, const char *output, const char *settings,
+                    modal_revision *revision) {
+  if (force || !holds_diameters(file, output)) return SOLVE;
+  if (up_to_date_with(output, settings)) return NOTHING;
+  char      *earlier = h5_check_earlier(output) == SHB_OK ? up_to_date_written(output) : NULL;
+  const bool revised = earlier && modal_changes_find(earlier, settings, revision);
+  free(earlier);
+  revision->damping = file->damping;
+  return revised ? REVISE : SOLVE;
+}
+
+/* Rank 0 decides. *settings is malloc'ed there and NULL elsewhere. */
 static shb_status decide(const case_file *file, bool force, const char *mesh, const char *output,
-                         char **settings, bool *skip) {
-  int rank, answer[2] = {SHB_OK, 0};
+                         char **settings, modal_revision *revision, task *what) {
+  int rank, answer[2] = {SHB_OK, NOTHING};
   MPI_Comm_rank(PETSC_COMM_WORLD, &rank);
   *settings = NULL;
   if (rank == 0) {
     answer[0] = up_to_date_settings(file, CASE_MODAL, mesh, settings);
-    answer[1] = answer[0] == SHB_OK && !force && up_to_date_with(output, *settings) &&
-                holds_diameters(file, output);
+    if (answer[0] == SHB_OK) answer[1] = (int)task_of(file, force, output, *settings, revision);
   }
   MPI_Bcast(answer, 2, MPI_INT, 0, PETSC_COMM_WORLD);
-  *skip = answer[1];
+  *what = (task)answer[1];
   return (shb_status)answer[0];
+}
+
+static shb_status revise(const case_file *file, char *settings, const char *output, int rank,
+                         const modal_revision *revision, shb_progress *progress) {
+  shb_provenance provenance = command_provenance(file, settings, "shroudhb-modal");
+  shb_status     status = rank == 0 ? modal_revise(output, output, revision, &provenance) : SHB_OK;
+  if (status == SHB_OK)
+    shb_progress_note(progress, "%s keeps its modes; damping or load changed", output);
+  return modal_agree(PETSC_COMM_WORLD, status);
+}
+
+static shb_status solve(const case_file *file, char *settings, const char *mesh, const char *output,
+                        shb_progress *progress) {
+  modal_probe    probe[CASE_MAX_PROBES];
+  modal_region   region[MESH_MAX_VOLUMES];
+  fem_load       loads[CASE_MAX_LOADS];
+  modal_contact  contacts[MHB_MAX_INTERFACES];
+  int            diameters[CASE_MOST_DIAMETERS];
+  modal_settings stage      = stage_settings(file, probe, region, loads, contacts, diameters);
+  shb_provenance provenance = command_provenance(file, settings, "shroudhb-modal");
+  shb_status status = modal_stage(PETSC_COMM_WORLD, mesh, output, &stage, &provenance, progress);
+  shb_progress_note(progress, "%.2f s in all", shb_seconds() - progress->started);
+  return status;
 }
 
 static shb_status run(const case_file *file, const command_options *options, int rank) {
   shb_progress progress =
       shb_progress_start("modal", options->quiet || rank != 0, options->verbose);
-  modal_probe   probe[CASE_MAX_PROBES];
-  modal_region  region[MESH_MAX_VOLUMES];
-  fem_load      loads[CASE_MAX_LOADS];
-  modal_contact contacts[MHB_MAX_INTERFACES];
-  int           diameters[CASE_MOST_DIAMETERS];
-  char         *mesh = case_mesh_path(file), *output = case_output(file, ".modal.h5");
-  char         *settings = NULL;
-  bool          skip;
-  shb_status    status =
+  char          *mesh = case_mesh_path(file), *output = case_output(file, ".modal.h5");
+  char          *settings = NULL;
+  modal_revision revision;
+  task           what = NOTHING;
+  shb_status     status =
       mesh && output ? SHB_OK : shb_fail(SHB_ERR_IO, __FILE__, __LINE__, "out of memory");
-  if (status == SHB_OK) status = decide(file, options->force, mesh, output, &settings, &skip);
-  if (status == SHB_OK && skip) shb_progress_note(&progress, "%s is up to date", output);
-  if (status == SHB_OK && !skip) {
-    modal_settings stage      = stage_settings(file, probe, region, loads, contacts, diameters);
-    shb_provenance provenance = command_provenance(file, settings, "shroudhb-modal");
-    status = modal_stage(PETSC_COMM_WORLD, mesh, output, &stage, &provenance, &progress);
-    shb_progress_note(&progress, "%.2f s in all", shb_seconds() - progress.started);
-  }
+  if (status == SHB_OK)
+    status = decide(file, options->force, mesh, output, &settings, &revision, &what);
+  if (status == SHB_OK && what == NOTHING) shb_progress_note(&progress, "%s is up to date", output);
+  if (status == SHB_OK && what == REVISE)
+    status = revise(file, settings, output, rank, &revision, &progress);
+  if (status == SHB_OK && what == SOLVE) status = solve(file, settings, mesh, output, &progress);
   free(mesh);
   free(output);
   free(settings);

@@ -36,8 +36,7 @@ shb_status up_to_date_settings(const case_file *file, case_stage stage, const ch
   return SHB_OK;
 }
 
-/* The settings a file was made from; malloc'ed, NULL if unknown. */
-static char *written(const char *path) {
+char *up_to_date_written(const char *path) {
   hid_t file;
   char *text = NULL;
   if (h5_open(path, &file) != SHB_OK) return NULL;
@@ -51,14 +50,14 @@ bool up_to_date_with(const char *path, const char *settings) {
     fprintf(stderr, "shroudhb: warning: %s; it is replaced\n", shb_message());
     return false;
   }
-  char *text = written(path);
+  char *text = up_to_date_written(path);
   bool  same = text && strcmp(text, settings) == 0;
   free(text);
   return same;
 }
 
 bool up_to_date_keys(const case_file *file, case_stage stage, const char *path) {
-  char *text = written(path), *keys = case_settings(file, stage);
+  char *text = up_to_date_written(path), *keys = case_settings(file, stage);
   bool  same = text && keys && strncmp(text, keys, strlen(keys)) == 0; /* the keys come first */
   free(text);
   free(keys);
@@ -66,7 +65,7 @@ bool up_to_date_keys(const case_file *file, case_stage stage, const char *path) 
 }
 
 void up_to_date_warn(const case_file *file, case_stage stage, const char *path) {
-  char *text = written(path), *keys = case_settings(file, stage);
+  char *text = up_to_date_written(path), *keys = case_settings(file, stage);
   if (text && keys && strncmp(text, keys, strlen(keys)) != 0) /* the keys come first */
     fprintf(stderr, "shroudhb: warning: %s was made from other settings; run `shroudhb %s` first\n",
             path, stage == CASE_MODAL ? "modal" : "mhb");

@@ -11,6 +11,9 @@
 shb_status up_to_date_settings(const case_file *file, case_stage stage, const char *input,
                                char **text);
 
+/* The settings that the HDF5 file at path was made from; malloc'ed, NULL if unknown. */
+char *up_to_date_written(const char *path);
+
 /* Was the HDF5 file at path made from these settings? */
 bool up_to_date_with(const char *path, const char *settings);
 

@@ -10,7 +10,7 @@
 #include "mesh/gmsh/source_settings.h"
 #include "mhb/problem/settings.h"
 #include "modal/common/completeness.h"
-#include "modal/common/damping.h"
+#include "modal/model/damping.h"
 
 enum { CASE_MAX_PROBES = 32, CASE_MAX_LOADS = 16, CASE_NAME = 64, CASE_MAX_BLADES = 1000 };
 

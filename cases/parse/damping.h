@@ -5,7 +5,7 @@
 #include "cases/parse/diagnostics.h"
 #include "cases/parse/keys.h"
 #include "cases/parse/yaml.h"
-#include "modal/common/damping.h"
+#include "modal/model/damping.h"
 
 /* Read a ratio, a list of ratios, {loss_factor: eta} or {rayleigh: [alpha, beta]} (1/s, s). Every
  * fault is recorded under path. */

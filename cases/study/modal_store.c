@@ -10,11 +10,17 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include "cases/commands/command.h"
+#include "cases/commands/modal_changes.h"
 #include "cases/commands/subprocess.h"
+#include "cases/commands/up_to_date.h"
 #include "cases/designs/digest.h"
+#include "cases/schema/case.h"
 #include "cases/schema/case_paths.h"
 
 enum { MORE_WORDS = 12 };
+
+static const char modal_suffix[] = ".modal.h5";
 
 static char *text3(const char *a, const char *b, const char *c) {
   size_t size = strlen(a) + strlen(b) + strlen(c) + 1;
@@ -113,7 +119,7 @@ static shb_status run_stage(const modal_store *s, const char *stage, const doubl
 static char *find_file(const modal_store *s, const char *digest) {
   glob_t found   = {0};
   char  *pattern = text3(s->spec->folder, "/*.study.d/", digest), *path = NULL;
-  char  *whole = pattern ? text3(pattern, ".modal.h5", "") : NULL;
+  char  *whole = pattern ? text3(pattern, modal_suffix, "") : NULL;
   if (whole && glob(whole, 0, NULL, &found) == 0 && found.gl_pathc > 0)
     path = strdup(found.gl_pathv[0]);
   globfree(&found);
@@ -122,17 +128,109 @@ static char *find_file(const modal_store *s, const char *digest) {
   return path;
 }
 
-/* The same, made if it is not there, under the lock of its digest. */
-static shb_status make_file(const modal_store *s, const double *value, const char *digest,
-                            char **path) {
+/* Keys on which the modes do not depend (modal/model/revision.h). */
+static bool keeps_modes(const char *key) {
+  return strcmp(key, "modal.damping") == 0 || strcmp(key, "excitation.pressure") == 0;
+}
+
+/* Values of the design of the same modes that has damping and load of the case. The modal file of a
+ * design depends on this one alone, not on the order of designs. */
+static void common_design(const study_spec *spec, const double *value, double *common) {
+  const study_keys *keys = &spec->keys;
+  for (int k = 0; k < keys->n; k++) {
+    const study_key *key = &keys->key[k];
+    common[k]            = value[k];
+    if (key->is_ratio && keeps_modes(keys->key[key->nominal].path)) common[k] = 1;
+    if (key->is_ratio || !keeps_modes(key->path)) continue;
+    common[k] = strcmp(key->path, "modal.damping") == 0 ? spec->base.damping.ratio
+                                                        : spec->base.load.pressure;
+  }
+}
+
+/* Read the case of a design; false, and nothing is printed, if it is no valid one. */
+static bool read_quietly(const modal_store *s, const double *value, case_file *file) {
+  FILE      *messages = fopen("/dev/null", "w");
+  const bool good =
+      messages && study_spec_design(s->spec, value, NULL, NULL, messages, file) == SHB_OK;
+  if (messages) fclose(messages);
+  return good;
+}
+
+/* The text that the modal file at path would have as settings; malloc'ed. The mesh lies beside. */
+static shb_status settings_beside(const case_file *file, const char *path, char **settings) {
+  char      *stem   = strndup(path, strlen(path) - strlen(modal_suffix));
+  char      *made   = stem ? text3(stem, ".msh", "") : NULL;
+  const bool given  = file->mesh_file && !case_mesh_is_made(file);
+  shb_status status = made ? SHB_OK : shb_fail(SHB_ERR_IO, __FILE__, __LINE__, "out of memory");
+  *settings         = NULL;
+  if (status == SHB_OK)
+    status = up_to_date_settings(file, CASE_MODAL, given ? file->mesh_file : made, settings);
+  free(stem);
+  free(made);
+  return status;
+}
+
+/* Write the modal file of a case from that of the common design. False if it cannot be. */
+static bool revise(const case_file *file, const char *common, const char *path) {
+  modal_revision revision;
+  char          *settings = NULL, *earlier = up_to_date_written(common);
+  bool           good = earlier && settings_beside(file, common, &settings) == SHB_OK &&
+              modal_changes_find(earlier, settings, &revision);
+  revision.damping = file->damping;
+  if (good) {
+    const shb_provenance from = command_provenance(file, settings, "shroudhb-design");
+    good                      = modal_revise(common, path, &revision, &from) == SHB_OK;
+  }
+  free(earlier);
+  free(settings);
+  return good;
+}
+
+static shb_status make_file(const modal_store *s, const double *value, const case_file *file,
+                            const char *digest, char **path);
+
+/* Make FOLDER/DIGEST.modal.h5 from the file of the common design, which is made if it is not there.
+ * *made stays false where that is the design itself, or the loads are not proportional. */
+static shb_status make_from_common(const modal_store *s, const double *value, const case_file *file,
+                                   const char *digest, bool *made) {
+  double    value_of_common[STUDY_MAX_KEYS];
+  char      modes[DIGEST_TEXT], *common = NULL;
+  case_file of_common;
+  *made = false;
+  common_design(s->spec, value, value_of_common);
+  if (!read_quietly(s, value_of_common, &of_common)) return SHB_OK;
+  digest_modes(&of_common, s->spec->inputs, modes);
+  shb_status status = SHB_OK;
+  if (strcmp(modes, digest) != 0)
+    status = make_file(s, value_of_common, &of_common, modes, &common);
+  case_free(&of_common);
+  if (status == SHB_OK && common) {
+    char *stem = text3(s->folder, "/", digest), *path = stem ? text3(stem, modal_suffix, "") : NULL;
+    *made = path && revise(file, common, path);
+    free(stem);
+    free(path);
+  }
+  free(common);
+  return status;
+}
+
+static shb_status run_stages(const modal_store *s, const double *value, const char *digest) {
+  SHB_TRY(run_stage(s, "mesh", value, digest));
+  return run_stage(s, "modal", value, digest);
+}
+
+/* The modal file of a design, made if it is not there, under the lock of its digest. */
+static shb_status make_file(const modal_store *s, const double *value, const case_file *file,
+                            const char *digest, char **path) {
   char *stem = text3(s->folder, "/", digest), *lock = stem ? text3(stem, ".lock", "") : NULL;
   int   held = lock ? open(lock, O_RDWR | O_CREAT, 0666) : -1;
   if (held >= 0) flock(held, LOCK_EX); /* a dead process holds none */
+  bool       made   = false;
   shb_status status = SHB_OK;
   *path             = find_file(s, digest);
   if (!*path) {
-    status = run_stage(s, "mesh", value, digest);
-    if (status == SHB_OK) status = run_stage(s, "modal", value, digest);
+    status = make_from_common(s, value, file, digest, &made);
+    if (status == SHB_OK && !made) status = run_stages(s, value, digest);
     if (status == SHB_OK) *path = find_file(s, digest);
     if (status == SHB_OK && !*path)
       status = shb_fail(SHB_ERR_IO, __FILE__, __LINE__, "modal: left no file");
@@ -169,7 +267,7 @@ static shb_status load(modal_store *s, const double *value, const case_file *fil
             "the same ones: give their number, or all");
   if (file->modal_file) path = case_modal_path(file);
   if (!file->modal_file) path = find_file(s, digest);
-  if (!path) status = make_file(s, value, digest, &path);
+  if (!path) status = make_file(s, value, file, digest, &path);
   if (status == SHB_OK) {
     status = case_model_read(file, path, 0, true, &s->entry[at].model);
     if (status == SHB_OK && peak_field_wanted(s->spec->n_outputs, s->spec->output))

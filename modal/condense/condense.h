@@ -4,10 +4,10 @@
 #define MODAL_CONDENSE_CONDENSE_H
 
 #include "fem/element/load.h"
-#include "modal/common/damping.h"
 #include "modal/condense/dofs.h"
 #include "modal/condense/load_patterns.h"
 #include "modal/eigen/eigen.h"
+#include "modal/model/damping.h"
 #include "modal/model/model.h"
 
 /* Dofs to condense to. contact: (side * n_pairs + pair) * 3 + axis; probe: 3 for each probe. */

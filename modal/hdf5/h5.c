@@ -151,28 +151,72 @@ static shb_status write_failed(const char *path, int why) {
            strerror(why));
 }
 
-shb_status h5_create(const char *path, hid_t *file) {
-  *file = H5I_INVALID_HID;
+/* A missing folder is reported before the computation. */
+static shb_status make_empty(const char *path) {
   H5Eset_auto2(H5E_DEFAULT, NULL, NULL);
-  int fd =
-      /* a missing folder is reported before the computation */
-      open(path, O_WRONLY | O_CREAT | O_TRUNC, 0666);
+  int fd = open(path, O_WRONLY | O_CREAT | O_TRUNC, 0666);
   if (fd < 0) return write_failed(path, errno);
   close(fd);
-  hid_t list = access_list(true);
-  if (list >= 0) {
-    *file = H5Fcreate(path, H5F_ACC_TRUNC, H5P_DEFAULT, list);
-    if (*file < 0) {
-      char reason[H5_LABEL];
-      h5_reason(reason, sizeof reason);
-      H5Pclose(list);
-      remove_file(path);
-      SHB_FAIL(SHB_ERR_IO, "%s: cannot be created: %s", path, reason);
-    }
-    H5Pclose(list);
-  }
-  SHB_CHECK(*file >= 0, SHB_ERR_IO, "%s: cannot be created: HDF5 failed to start", path);
   return SHB_OK;
+}
+
+/* Of a file that HDF5 could not create. */
+static shb_status create_failed(const char *path) {
+  char reason[H5_LABEL];
+  h5_reason(reason, sizeof reason);
+  remove_file(path);
+  SHB_FAIL(SHB_ERR_IO, "%s: cannot be created: %s", path, reason);
+}
+
+shb_status h5_create(const char *path, hid_t *file) {
+  *file = H5I_INVALID_HID;
+  SHB_TRY(make_empty(path));
+  hid_t list = access_list(true);
+  if (list >= 0) *file = H5Fcreate(path, H5F_ACC_TRUNC, H5P_DEFAULT, list);
+  shb_status status = *file < 0 ? create_failed(path) : SHB_OK;
+  if (list >= 0) H5Pclose(list);
+  return status;
+}
+
+/* The bytes behind the stamp, malloc'ed. */
+static shb_status read_image(const char *path, char **image, size_t *size) {
+  *image     = NULL;
+  *size      = 0;
+  FILE *file = fopen(path, "rb");
+  SHB_CHECK(file, SHB_ERR_IO, "%s: cannot be opened: %s", path, strerror(errno));
+  const bool known = fseek(file, 0, SEEK_END) == 0;
+  const long end   = known ? ftell(file) : -1;
+  *size            = end > H5_STAMP ? (size_t)(end - H5_STAMP) : 0;
+  *image           = malloc(*size + 1);
+  const bool whole = *image && *size > 0 && fseek(file, H5_STAMP, SEEK_SET) == 0 &&
+                     fread(*image, 1, *size, file) == *size;
+  fclose(file);
+  SHB_CHECK(whole, SHB_ERR_IO, "%s: cannot be read", path);
+  return SHB_OK;
+}
+
+/* HDF5 copies the image, and refuses a path where a file is. */
+static shb_status create_from(const char *path, char *image, size_t size, hid_t *file) {
+  SHB_TRY(make_empty(path));
+  remove_file(path);
+  hid_t list = access_list(true);
+  if (list >= 0 && H5Pset_file_image(list, image, size) >= 0)
+    *file = H5Fopen(path, H5F_ACC_RDWR, list);
+  shb_status status = *file < 0 ? create_failed(path) : SHB_OK;
+  if (list >= 0) H5Pclose(list);
+  return status;
+}
+
+shb_status h5_create_like(const char *earlier, const char *path, hid_t *file) {
+  *file = H5I_INVALID_HID;
+  SHB_CHECK(h5_stamp_check(earlier) == H5_INTACT, SHB_ERR_INPUT,
+            "%s: was changed since it was written, or by another program", earlier);
+  char      *image;
+  size_t     size;
+  shb_status status = read_image(earlier, &image, &size);
+  if (status == SHB_OK) status = create_from(path, image, size, file);
+  free(image);
+  return status;
 }
 
 /* HDF5 reports a short file either as truncated or as one without a superblock. */

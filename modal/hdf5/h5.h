@@ -34,6 +34,9 @@ size_t h5_count(h5_shape shape); /* number of elements */
  * unreadable, not HDF5, or truncated. */
 shb_status h5_create(const char *path, hid_t *file);
 shb_status h5_open(const char *path, hid_t *file);
+/* Create a file that begins with the content of an earlier one, which this program wrote and nobody
+ * changed since. Errors: as h5_create; SHB_ERR_INPUT if the earlier file is not intact. */
+shb_status h5_create_like(const char *earlier, const char *path, hid_t *file);
 /* Whether an earlier result at path can be opened without a crash. It fits its stamp
  * (modal/hdf5/stamp.h), or has none and a child process could read it. SHB_OK too if there is no
  * file. SHB_ERR_IO: it is damaged, or was changed. */
@@ -62,6 +65,11 @@ shb_status h5_write_complex(hid_t at, const char *path, h5_shape shape, const do
                             const char *units, const char *long_name);
 shb_status h5_write_int(hid_t at, const char *path, h5_shape shape, const int *data,
                         const char *units, const char *long_name);
+/* Replace the values of a dataset of a created file. Its shape stays. Errors: as above; SHB_ERR_IO
+ * if it is missing or has another shape. */
+shb_status h5_replace_double(hid_t at, const char *path, h5_shape shape, const double *data);
+shb_status h5_replace_complex(hid_t at, const char *path, h5_shape shape,
+                              const double complex *data);
 /* Write the numbers 0 .. n - 1, a dimension scale without data of its own. */
 shb_status h5_write_counter(hid_t at, const char *path, hsize_t n, const char *long_name);
 shb_status h5_write_strings(hid_t at, const char *path, int n, const char *const *text,

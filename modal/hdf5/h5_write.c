@@ -106,6 +106,37 @@ shb_status h5_write_strings(hid_t at, const char *path, int n, const char *const
   return describe(at, path, "-", long_name);
 }
 
+static shb_status replace(hid_t at, const char *path, h5_shape shape, hid_t type,
+                          const void *data) {
+  char     label[H5_LABEL];
+  h5_shape found;
+  SHB_TRY(h5_shape_of(at, path, &found));
+  SHB_CHECK(found.rank == shape.rank &&
+                memcmp(found.dim, shape.dim, (size_t)shape.rank * sizeof *shape.dim) == 0,
+            SHB_ERR_IO, "%s: has another shape", h5_label(at, path, label));
+  hid_t      set    = H5Dopen2(at, path, H5P_DEFAULT);
+  shb_status status = SHB_OK;
+  if (set < 0 || H5Dwrite(set, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, data) < 0)
+    status = h5_failed(SHB_ERR_IO, at, path, "cannot be replaced");
+  if (set >= 0) H5Dclose(set);
+  return status;
+}
+
+shb_status h5_replace_double(hid_t at, const char *path, h5_shape shape, const double *data) {
+  SHB_TRY(check_values(at, path, shape, data, 1));
+  return replace(at, path, shape, H5T_NATIVE_DOUBLE, data);
+}
+
+shb_status h5_replace_complex(hid_t at, const char *path, h5_shape shape,
+                              const double complex *data) {
+  SHB_TRY(check_values(at, path, shape, data, 2));
+  hid_t type = h5_complex_type("r", "i");
+  if (type < 0) return h5_failed(SHB_ERR_IO, at, path, "cannot be replaced");
+  shb_status status = replace(at, path, shape, type, data);
+  H5Tclose(type);
+  return status;
+}
+
 static shb_status check_scale(hid_t at, const char *path, int dim, const char *scale_path) {
   h5_shape shape, scale;
   char     label[H5_LABEL];

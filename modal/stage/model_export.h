@@ -25,11 +25,6 @@ shb_status modal_export_check(hid_t file, const modal_check *check);
  * /contact/coordinates [side][pair][3]. */
 shb_status modal_export_contact(hid_t file, const modal_patches *patches);
 
-/* Write /receptance/frequency [201 + m] Hz: even steps from 0 to 1.1 times the highest mode, and
- * the modes' own. Write /receptance/contact [201 + m][n_contact][n_contact], and error [201 + m].
- * Nothing is written above 64 MB. */
-shb_status modal_export_receptance(hid_t file, const modal_model *model);
-
 /* Write /VTKHDF, an UnstructuredGrid of quadratic cells. Its points link to /mesh/nodes. Point data
  * "mode_001 116.684 Hz", ... are views of /modes/shape, which must exist. static_displacement and
  * static_von_mises link to /static where that exists. Source: VTKHDF file format, version 1.0. */

@@ -7,12 +7,12 @@
 #include "fem/element/load.h"
 #include "fem/element/material.h"
 #include "mesh/base/progress.h"
-#include "modal/common/damping.h"
 #include "modal/condense/contact_patches.h"
 #include "modal/condense/residual_shapes.h"
 #include "modal/condense/static_deflection.h"
 #include "modal/eigen/eigen.h"
 #include "modal/eigen/participation.h"
+#include "modal/model/damping.h"
 #include "modal/model/model.h"
 
 typedef struct {

@@ -15,6 +15,7 @@ endforeach()
 
 shb_test(cases/contact hysteresis_picture shb_cases_contact)
 shb_test(cases/commands up_to_date shb_cases_commands)
+shb_test(cases/commands modal_changes shb_cases_commands)
 shb_test(cases/commands contact_points shb_cases_commands tests_models)
 target_sources(test_cases_commands_contact_points PRIVATE bench/shroud_face.c)
 add_test(NAME cases.commands.commands
@@ -37,6 +38,10 @@ if(SHROUDHB_PYTHON)
             $<TARGET_FILE:shroudhb> ${PROJECT_SOURCE_DIR}/cases/bring_your_own
             ${PROJECT_SOURCE_DIR}/docs/user/summary.md)
   set_tests_properties(cases.commands.json PROPERTIES SKIP_RETURN_CODE 77)
+  add_test(NAME cases.commands.revision
+    COMMAND ${SHROUDHB_PYTHON} -B ${CMAKE_CURRENT_SOURCE_DIR}/cases/commands/test_revision.py
+            $<TARGET_FILE:shroudhb> ${PROJECT_SOURCE_DIR}/cases/first_case/case.yaml)
+  set_tests_properties(cases.commands.revision PROPERTIES SKIP_RETURN_CODE 77)
   add_test(NAME cases.commands.integrate
     COMMAND sh ${CMAKE_CURRENT_SOURCE_DIR}/cases/commands/test_integrate.sh
             $<TARGET_FILE_DIR:shroudhb-integrate> ${PROJECT_SOURCE_DIR}/cases/bring_your_own

@@ -3,6 +3,8 @@
 Usage: test_blade_study.py BIN, with the programs in BIN.
 """
 import csv
+import glob
+import json
 import os
 import shutil
 import sys
@@ -71,6 +73,30 @@ def check_values():
         near(row['g1'], min((g for g in gauge if g['n0_N']), key=distance)['amplitude'], 1e-3)
 
 
+def check_common_modes():
+    """Damping and pressure keep the modes: one solution for all, and the peaks of whole runs."""
+    write('load.yaml', 'case: case.yaml\nvary: {modal.damping: [0.004, 0.01], '
+          'excitation.pressure: [2 kPa, 3 kPa]}\noutputs: [peak, stress]\n')
+    before = set(glob.glob('*.study.d/*.modal.h5'))
+    run(program('shroudhb-study'), '--quiet', 'load.yaml')
+    table = rows('load.study.csv')
+    assert len(table) == 4, table
+    new = set(glob.glob('*.study.d/*.modal.h5')) - before
+    said = [run(program('shroudhb'), 'inspect', '--verbose', name) for name in new]
+    solved = [text for text in said if 'shroudhb-modal' in text]
+    assert len(new) - len(solved) == 4 and len(solved) <= 1, (new, solved)
+    os.mkdir('whole')
+    for row in table[1], table[3]:
+        run(program('shroudhb'), 'run', '--quiet', 'case.yaml', '--into', 'whole', '--force',
+            '--set', f'modal.damping={row["modal.damping"]}',
+            '--set', f'excitation.pressure={row["excitation.pressure"]} Pa')
+        with open('whole/short.summary.json') as source:
+            whole = max(one['peak']['amplitude'] for one in json.load(source)['curves']
+                        if one['kind'] == 'nonlinear')
+        print(row['peak'], whole)
+        near(row['peak'], whole, 1e-5)
+
+
 def check_limit():
     """A limit of the stress holds at the optimum, and the safety may be one too."""
     write('best.yaml', 'case: case.yaml\nvary: {contact.n0: {from: 20 N, to: 60 N}}\n'
@@ -115,7 +141,7 @@ def main():
     os.chdir(folder)
     try:
         write('case.yaml', CASE)
-        for check in (check_values, check_limit, check_digest, check_faults):
+        for check in (check_values, check_common_modes, check_limit, check_digest, check_faults):
             check()
             print(check.__name__, 'passed')
     finally:

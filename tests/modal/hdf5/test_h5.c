@@ -531,6 +531,53 @@ static void test_no_open_handles(void **state) {
   assert_int_equal(H5Fget_obj_count(H5F_OBJ_ALL, H5F_OBJ_ALL), 0);
 }
 
+/* The earlier file stays as it is; a changed one is refused. */
+static void test_created_like_another(void **state) {
+  (void)state;
+  static const double         doubled[2][3] = {{1, 2, 3}, {4, 5, 6}};
+  static const double complex turned[2]     = {I, -I};
+  hid_t                       file;
+  double                     *real;
+  double complex             *wave;
+  char                      **text;
+  int                         n;
+  size_t                      size;
+  write_sample("first.h5");
+  assert_ok(h5_create_like(scratch("first.h5"), scratch("second.h5"), &file));
+  assert_ok(h5_replace_double(file, "/a/b/real", H5_SHAPE(2, 3), *doubled));
+  assert_ok(h5_replace_complex(file, "/a/wave", H5_SHAPE(2), turned));
+  assert_int_equal(h5_replace_double(file, "/a/b/real", H5_SHAPE(3, 2), *doubled), SHB_ERR_IO);
+  assert_has(shb_message(), "second.h5: /a/b/real: has another shape");
+  assert_true(h5_replace_double(file, "/gone", H5_SHAPE(1), *doubled) != SHB_OK);
+  assert_ok(h5_close(file));
+  file           = reopen("second.h5");
+  h5_shape shape = H5_SHAPE(2, 3);
+  assert_ok(h5_read_double(file, "/a/b/real", &shape, &real));
+  assert_memory_equal(real, doubled, sizeof doubled);
+  shape = H5_SHAPE(2);
+  assert_ok(h5_read_complex(file, "/a/wave", &shape, &wave));
+  assert_memory_equal(wave, turned, sizeof turned);
+  assert_ok(h5_read_strings(file, "/name", &n, &text));
+  assert_string_equal(text[1], names[1]);
+  for (int i = 0; i < n; i++) free(text[i]);
+  free(text);
+  free(real);
+  free(wave);
+  h5_close(file);
+  file  = reopen("first.h5");
+  shape = H5_SHAPE(2, 3);
+  assert_ok(h5_read_double(file, "/a/b/real", &shape, &real));
+  assert_memory_equal(real, reals, sizeof reals);
+  free(real);
+  h5_close(file);
+  char *data = slurp(scratch("first.h5"), &size);
+  data[size - 1] ^= 1;
+  spill(scratch("first.h5"), data, size);
+  free(data);
+  assert_int_equal(h5_create_like(scratch("first.h5"), scratch("third.h5"), &file), SHB_ERR_INPUT);
+  assert_has(shb_message(), "first.h5: was changed since it was written");
+}
+
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(test_round_trip),
@@ -551,6 +598,7 @@ int main(void) {
       cmocka_unit_test(test_no_folder),
       cmocka_unit_test(test_disk_full),
       cmocka_unit_test(test_abandoned),
+      cmocka_unit_test(test_created_like_another),
       cmocka_unit_test(test_no_open_handles),
   };
   return cmocka_run_group_tests(tests, scratch_make, scratch_remove);

@@ -1,4 +1,4 @@
-#include "modal/common/damping.h"
+#include "modal/model/damping.h"
 
 #include <math.h>
 

@@ -1,6 +1,6 @@
 /* Modal damping of a case: one ratio, one a mode, a loss factor, or Rayleigh's two constants. */
-#ifndef MODAL_COMMON_DAMPING_H
-#define MODAL_COMMON_DAMPING_H
+#ifndef MODAL_MODEL_DAMPING_H
+#define MODAL_MODEL_DAMPING_H
 
 #include "mesh/base/status.h"
 

@@ -1,5 +1,5 @@
 /* Damping ratios from every kind of law. */
-#include "modal/common/damping.h"
+#include "modal/model/damping.h"
 
 #include <math.h>
 #include <setjmp.h>
