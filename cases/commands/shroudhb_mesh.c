@@ -90,13 +90,11 @@ static shb_status read_mesh(const case_file *file, const char *path, mesh_fe *me
 
 /* Warns if coordinates seem to be in mm and not in m; the mesh itself is in order. */
 static void warn_size(const case_file *file, const mesh_fe *mesh) {
-  static const double least = 2e-3, most = 10; /* m */
-  const double        size = mesh_fe_extent(mesh);
-  if (size >= least && size <= most) return;
-  fprintf(stderr,
-          "shroudhb: warning: %s: the body measures %.3g m; are its coordinates in %s? Say so with "
-          "mesh.unit\n",
-          file->mesh_file, size, size > most ? "mm" : "m");
+  const double size  = mesh_fe_extent(mesh);
+  const char  *doubt = mesh_unit_hint(size);
+  if (*doubt)
+    fprintf(stderr, "shroudhb: warning: %s: the body measures %.3g m%s\n", file->mesh_file, size,
+            doubt);
 }
 
 /* Checks that the mesh file of the case is readable, complete and usable for its contact. */

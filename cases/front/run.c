@@ -100,7 +100,7 @@ static void describe_source(const case_file *file, FILE *out) {
   else
     fprintf(out, "  modes     as a tolerance of %g up to %g Hz needs, damping ratio ",
             file->tolerance, file->band);
-  case_damping_print(out, &file->damping, 6);
+  case_damping_print(out, &file->damping);
   fputc('\n', out);
 }
 

@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include "cases/parse/units.h"
+#include "mesh/base/shortest.h"
 
 static const char expected[] =
     "a ratio, a list of ratios, {loss_factor: eta} or {rayleigh: [alpha, beta]}";
@@ -91,11 +92,26 @@ bool case_damping_read(case_issues *issues, const char *path, const case_node *n
   }
 }
 
-void case_damping_print(FILE *out, const modal_damping *damping, int digits) {
-  if (damping->kind == MODAL_DAMPING_LOSS) fprintf(out, "loss_factor %.*g", digits, damping->loss);
-  if (damping->kind == MODAL_DAMPING_RAYLEIGH)
-    fprintf(out, "rayleigh %.*g %.*g", digits, damping->alpha, digits, damping->beta);
-  if (damping->kind == MODAL_DAMPING_ALL) fprintf(out, "%.*g", digits, damping->ratio);
-  for (int i = 0; damping->kind == MODAL_DAMPING_EACH && i < damping->n; i++)
-    fprintf(out, "%s%.*g", i ? " " : "", digits, damping->each[i]);
+static void print_list(FILE *out, int n, const double *value) {
+  char text[SHB_SHORTEST];
+  for (int i = 0; i < n; i++) fprintf(out, "%s%s", i ? " " : "", shb_shortest(value[i], text));
+}
+
+void case_damping_print(FILE *out, const modal_damping *damping) {
+  const double rayleigh[2] = {damping->alpha, damping->beta};
+  switch (damping->kind) {
+    case MODAL_DAMPING_LOSS:
+      fputs("loss_factor ", out);
+      print_list(out, 1, &damping->loss);
+      break;
+    case MODAL_DAMPING_RAYLEIGH:
+      fputs("rayleigh ", out);
+      print_list(out, 2, rayleigh);
+      break;
+    case MODAL_DAMPING_EACH:
+      print_list(out, damping->n, damping->each);
+      break;
+    default:
+      print_list(out, 1, &damping->ratio);
+  }
 }

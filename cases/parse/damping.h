@@ -12,7 +12,7 @@
 bool case_damping_read(case_issues *issues, const char *path, const case_node *node,
                        modal_damping *damping);
 
-/* Print the value in SI units with this number of digits and without an end of line. */
-void case_damping_print(FILE *out, const modal_damping *damping, int digits);
+/* Print the value in SI units without an end of line. */
+void case_damping_print(FILE *out, const modal_damping *damping);
 
 #endif

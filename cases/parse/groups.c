@@ -3,6 +3,7 @@
 #include <string.h>
 
 #include "cases/parse/units.h"
+#include "mesh/base/shortest.h"
 
 static const char *const group_name[MESH_N_SETS] = {"root", "contact_right", "contact_left",
                                                     "load", "cyclic_right",  "cyclic_left"};
@@ -162,18 +163,24 @@ bool case_groups_read(case_issues *issues, const char *path, const case_node *no
   return good;
 }
 
+static void print_numbers(FILE *out, const char *word, int n, const double *value) {
+  char text[SHB_SHORTEST];
+  fputs(word, out);
+  for (int i = 0; i < n; i++) fprintf(out, " %s", shb_shortest(value[i], text));
+}
+
 static void print_rule(FILE *out, const char *path, const char *name, const mesh_rule *r) {
   if (r->kind == MESH_RULE_NONE) return;
   fprintf(out, "%s.%s = ", path, name);
   if (r->kind == MESH_RULE_NAME) fprintf(out, "name %s", r->name);
-  if (r->kind == MESH_RULE_PLANE)
-    fprintf(out, "plane %.17g %.17g %.17g normal %.17g %.17g %.17g", r->at[0], r->at[1], r->at[2],
-            r->normal[0], r->normal[1], r->normal[2]);
-  if (r->kind == MESH_RULE_RADIUS) fprintf(out, "radius %.17g", r->radius);
-  if (r->kind == MESH_RULE_NEAREST)
-    fprintf(out, "nearest %.17g %.17g %.17g", r->at[0], r->at[1], r->at[2]);
+  if (r->kind == MESH_RULE_PLANE) {
+    print_numbers(out, "plane", 3, r->at);
+    print_numbers(out, " normal", 3, r->normal);
+  }
+  if (r->kind == MESH_RULE_RADIUS) print_numbers(out, "radius", 1, &r->radius);
+  if (r->kind == MESH_RULE_NEAREST) print_numbers(out, "nearest", 3, r->at);
   if (r->kind == MESH_RULE_PLANE || r->kind == MESH_RULE_RADIUS)
-    fprintf(out, " tolerance %.17g", r->tolerance);
+    print_numbers(out, " tolerance", 1, &r->tolerance);
   fputc('\n', out);
 }
 

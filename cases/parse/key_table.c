@@ -151,10 +151,10 @@ static const case_key table[] = {
     {"materials[].rho", CASE_NUMBER, "kg/m3", 10, 1e5, .required = true, MATERIAL(material.rho),
      .stages = CASE_MODAL,
      .help = "density"},
-    {"materials[].endurance", CASE_NUMBER, "Pa", 0, 1e12, true, MATERIAL(endurance),
+    {"materials[].fatigue.endurance", CASE_NUMBER, "Pa", 0, 1e12, true, MATERIAL(endurance),
      .stages = CASE_POST,
      .help = "as material.fatigue.endurance, of this material"},
-    {"materials[].ultimate", CASE_NUMBER, "Pa", 0, 1e12, true, MATERIAL(ultimate),
+    {"materials[].fatigue.ultimate", CASE_NUMBER, "Pa", 0, 1e12, true, MATERIAL(ultimate),
      .stages = CASE_POST,
      .help = "as material.fatigue.ultimate, of this material"},
 

@@ -56,13 +56,14 @@ static void check_fatigue(case_reader *r) {
 }
 
 static void check_element_fatigue(case_reader *r, const case_node *element, int index) {
-  static const char *const end[2] = {"endurance", "ultimate"};
-  for (int i = 0; i < 2; i++) {
+  static const char *const end[2]  = {"endurance", "ultimate"};
+  const case_node         *fatigue = case_node_find(element, "fatigue");
+  for (int i = 0; fatigue && i < 2; i++) {
     char path[CASE_PATH];
-    if (!case_node_find(element, end[i]) || case_node_find(element, end[1 - i])) continue;
-    case_path(path, "materials[%d].%s", index, end[1 - i]);
-    case_issue_add(r->issues, element->line, element->column, path,
-                   "missing; Goodman's line needs endurance and ultimate");
+    if (!case_node_find(fatigue, end[i]) || case_node_find(fatigue, end[1 - i])) continue;
+    case_path(path, "materials[%d].fatigue.%s", index, end[1 - i]);
+    case_issue_add(r->issues, fatigue->line, fatigue->column, path,
+                   "missing; fatigue is {endurance, ultimate}");
   }
 }
 

@@ -9,9 +9,11 @@
 #include "cases/parse/groups.h"
 #include "cases/parse/key_table.h"
 #include "cases/parse/keys.h"
+#include "mesh/base/shortest.h"
 
 static void print_numbers(FILE *out, int n, const double *value) {
-  for (int i = 0; i < n; i++) fprintf(out, "%s%.17g", i ? " " : "", value[i]);
+  char text[SHB_SHORTEST];
+  for (int i = 0; i < n; i++) fprintf(out, "%s%s", i ? " " : "", shb_shortest(value[i], text));
 }
 
 static void print_word(FILE *out, const char *words, int index) {
@@ -26,10 +28,13 @@ static const char *inside(const case_file *file, const char *path) {
 }
 
 static void print_factors(FILE *out, const char *path, const fem_load *load) {
-  for (int k = 0; k <= load->n_harmonics; k++)
-    if (load->factor[k] != 0)
-      fprintf(out, "%s.%d = %.17g %.17g\n", path, k, creal(load->factor[k]),
-              cimag(load->factor[k]));
+  for (int k = 0; k <= load->n_harmonics; k++) {
+    const double parts[2] = {creal(load->factor[k]), cimag(load->factor[k])};
+    if (load->factor[k] == 0) continue;
+    fprintf(out, "%s.%d = ", path, k);
+    print_numbers(out, 2, parts);
+    fputc('\n', out);
+  }
 }
 
 static void print_probes(FILE *out, const char *path, const case_file *file) {
@@ -64,10 +69,11 @@ static void print_saved(FILE *out, const case_key *key, const mhb_save_settings 
 
 /* Of a file its content counts, not its name. */
 static void print_mistuning(FILE *out, const case_file *file, const case_mistuning *m) {
-  char fingerprint[17] = "-";
+  char fingerprint[17] = "-", deviation[SHB_SHORTEST];
   if (m->kind == CASE_MISTUNED_LIST) print_numbers(out, m->n, m->each);
   if (m->kind == CASE_MISTUNED_RANDOM)
-    fprintf(out, "deviation %.17g seed %d samples %d", m->deviation, m->seed, m->samples);
+    fprintf(out, "deviation %s seed %d samples %d", shb_shortest(m->deviation, deviation), m->seed,
+            m->samples);
   if (m->kind != CASE_MISTUNED_FILE) return;
   if (shb_fingerprint(m->file, fingerprint) != SHB_OK) strcpy(fingerprint, "-");
   fprintf(out, "file %s %s", inside(file, m->file), fingerprint);
@@ -125,7 +131,7 @@ static void print_scalar(FILE *out, const case_key *key, const case_file *file, 
       print_numbers(out, 2, slot);
       break;
     case CASE_DAMPING:
-      case_damping_print(out, slot, 17);
+      case_damping_print(out, slot);
       break;
     case CASE_TRIPLE:
       print_triple(out, slot);

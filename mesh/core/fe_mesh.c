@@ -131,14 +131,21 @@ double mesh_fe_extent(const mesh_fe *mesh) {
   return vec3_distance(high, low);
 }
 
+const char *mesh_unit_hint(double extent) {
+  static const double least = 2e-3, most = 10; /* m */
+  if (extent > most) return "; are its coordinates in mm? Say so with mesh.unit";
+  return extent < least ? "; are its coordinates in m? Say so with mesh.unit" : "";
+}
+
 shb_status mesh_fe_near(const mesh_fe *mesh, const double point[3], const char *what, int *node) {
   *node                  = mesh_fe_nearest(mesh, point);
   const double *x        = mesh->coordinates + 3 * (size_t)*node;
   const double  distance = vec3_distance(x, point), extent = mesh_fe_extent(mesh);
   SHB_CHECK(distance <= MESH_FE_NEAR * extent, SHB_ERR_INPUT,
             "%s: (%g, %g, %g) m is %.3g m off the nearest node of the body, which measures %.3g m; "
-            "give a point on it, in mesh axes (that node is at (%.4g, %.4g, %.4g) m)",
-            what, point[0], point[1], point[2], distance, extent, x[0], x[1], x[2]);
+            "give a point on it, in mesh axes (that node is at (%.4g, %.4g, %.4g) m)%s",
+            what, point[0], point[1], point[2], distance, extent, x[0], x[1], x[2],
+            mesh_unit_hint(extent));
   return SHB_OK;
 }
 

@@ -106,6 +106,10 @@ int mesh_fe_nearest(const mesh_fe *mesh, const double point[3]);
 /* Diagonal of the box around all nodes, m. */
 double mesh_fe_extent(const mesh_fe *mesh);
 
+/* End of a message about a place, "" for a body of usual extent in m. Otherwise it asks whether the
+ * coordinates are in mm. */
+const char *mesh_unit_hint(double extent);
+
 /* Node nearest to point.
  *   what  in  heads the message, e.g. "probe.tip"
  * Errors: SHB_ERR_INPUT if its distance exceeds MESH_FE_NEAR times the extent of the body: another

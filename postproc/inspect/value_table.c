@@ -4,9 +4,10 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "mesh/base/shortest.h"
 #include "modal/hdf5/h5.h"
 
-enum { LABEL = 160, PLACE = 400, DIGITS = 40 };
+enum { LABEL = 160, PLACE = 400 };
 
 /* Indices from, from + 1, ... below to; or those of the marked points. */
 typedef struct {
@@ -335,13 +336,11 @@ static shb_status fill(table *t) {
 
 /* ---------------------------------------------------------------- text */
 
-static void format_cell(const column *c, int row, bool csv, char out[DIGITS]) {
-  double x = c->value[row];
-  snprintf(out, DIGITS, "%.9g", x);
-  for (int digits = 15; csv && digits <= 17; digits++) {
-    snprintf(out, DIGITS, "%.*g", digits, x);
-    if (strtod(out, NULL) == x) break;
-  }
+static void format_cell(const column *c, int row, bool csv, char out[SHB_SHORTEST]) {
+  if (csv)
+    shb_shortest(c->value[row], out);
+  else
+    snprintf(out, SHB_SHORTEST, "%.9g", c->value[row]);
 }
 
 static void put_csv(const table *t, post_buffer *out) {
@@ -354,7 +353,7 @@ static void put_csv(const table *t, post_buffer *out) {
   for (int i = 0; i < t->n_rows; i++) {
     post_put(out, "%d", t->row[i]);
     for (int c = 0; c < t->n; c++) {
-      char cell[DIGITS];
+      char cell[SHB_SHORTEST];
       post_put(out, ",");
       if (t->column[c].text) post_put_csv(out, t->column[c].text[i]);
       if (t->column[c].value) format_cell(&t->column[c], i, true, cell);
@@ -376,7 +375,7 @@ static void put_aligned(const table *t, post_buffer *out) {
   for (int i = 0; i < t->n_rows; i++) {
     post_put(out, "%7d", t->row[i]);
     for (int c = 0; c < t->n; c++) {
-      char cell[DIGITS];
+      char cell[SHB_SHORTEST];
       int  width = (int)strlen(t->column[c].label);
       if (width < NUMBER_WIDTH) width = NUMBER_WIDTH;
       post_put(out, "  ");

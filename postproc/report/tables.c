@@ -6,6 +6,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "mesh/base/shortest.h"
 #include "postproc/draw/number_format.h"
 
 /* Bounds of the verdict on the largest error estimate of a curve. */
@@ -242,17 +243,11 @@ void post_table_modes(const mhb_response *response, post_buffer *out) {
 /* A number with the fewest digits that give it back: 0.3, not 0.29999999999999999. Other words are
  * unchanged. */
 static void put_word(const char *word, size_t n, post_buffer *out) {
-  char text[512], shortest[40], *end;
+  char text[512], shortest[SHB_SHORTEST], *end;
   snprintf(text, sizeof text, "%.*s", (int)n, word);
-  double value = strtod(text, &end);
-  if (n > 15 && *end == '\0' && isfinite(value)) {
-    for (int digits = 15; digits <= 17; digits++) {
-      snprintf(shortest, sizeof shortest, "%.*g", digits, value);
-      if (strtod(shortest, NULL) == value) break;
-    }
-    snprintf(text, sizeof text, "%s", shortest);
-  }
-  post_put_escaped(out, text);
+  double     value     = strtod(text, &end);
+  const bool is_number = n > 15 && *end == '\0' && isfinite(value);
+  post_put_escaped(out, is_number ? shb_shortest(value, shortest) : text);
 }
 
 static void put_words(const char *text, post_buffer *out) {

@@ -4,6 +4,8 @@
 #include <stdio.h>
 #include <stdlib.h>
 
+#include "mesh/base/shortest.h"
+
 /* Comma, line, indentation and key before a value. */
 static void begin(post_json *j, const char *key) {
   if (j->depth > 0) {
@@ -43,16 +45,8 @@ void post_json_end(post_json *json) {
 }
 
 static void put_number(post_buffer *out, double value) {
-  char text[32];
-  if (!isfinite(value)) {
-    post_put(out, "null");
-    return;
-  }
-  for (int digits = 15; digits <= 17; digits++) {
-    snprintf(text, sizeof text, "%.*g", digits, value);
-    if (strtod(text, NULL) == value) break;
-  }
-  post_put(out, "%s", text);
+  char text[SHB_SHORTEST];
+  post_put(out, "%s", isfinite(value) ? shb_shortest(value, text) : "null");
 }
 
 void post_json_number(post_json *json, const char *key, double value) {

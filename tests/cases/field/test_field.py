@@ -334,8 +334,8 @@ def check_materials():
     """The summary has the safety of the table, by the line of each material."""
     begin, end = CASE.index('mesh:'), CASE.index('rotor:')
     case = CASE[:begin] + 'mesh: {file: blade.msh}\n' + CASE[end:]
-    lines = ('materials:\n  - {group: body, E: 205 GPa, nu: 0.3, rho: 7850, endurance: 300 MPa, '
-             'ultimate: 900 MPa}')
+    lines = ('materials:\n  - {group: body, E: 205 GPa, nu: 0.3, rho: 7850, '
+             'fatigue: {endurance: 300 MPa, ultimate: 900 MPa}}')
     write('list.yaml', case.replace('name: blade', 'name: list')
           .replace('material: {E: 205 GPa, nu: 0.3, rho: 7850}', lines))
     run('shroudhb', 'run', '--quiet', '--no-report', 'list.yaml')

@@ -263,8 +263,8 @@ static void damping_laws(void **state) {
   static const struct {
     const char *text, *setting;
   } rows[] = {
-      {"damping: 0.25 %", "modal.damping = 0.0025000000000000001\n"},
-      {"damping: [0.125, 0.25 %, 0.5]", "modal.damping = 0.125 0.0025000000000000001 0.5\n"},
+      {"damping: 0.25 %", "modal.damping = 0.0025\n"},
+      {"damping: [0.125, 0.25 %, 0.5]", "modal.damping = 0.125 0.0025 0.5\n"},
       {"damping: {loss_factor: 0.25}", "modal.damping = loss_factor 0.25\n"},
       {"damping: {rayleigh: [12.5, 0.25 s]}", "modal.damping = rayleigh 12.5 0.25\n"},
   };

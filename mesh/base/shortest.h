@@ -1,0 +1,10 @@
+/* A number as text with the fewest digits that give it back: 0.3, not 0.29999999999999999. */
+#ifndef MESH_BASE_SHORTEST_H
+#define MESH_BASE_SHORTEST_H
+
+enum { SHB_SHORTEST = 32 };
+
+/* At least 15 digits are tried, so that zeros at the end fall away. Returns out. */
+const char *shb_shortest(double value, char out[SHB_SHORTEST]);
+
+#endif
