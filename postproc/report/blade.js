@@ -30,13 +30,13 @@ const Blade = (() => {
     }`;
 
   const decode = (text, Type) => {
-    const bytes = Uint8Array.from(atob(text), c => c.charCodeAt(0));
+    const bytes = Plot.bytes(text);
     return new Type(bytes.buffer, 0, Math.floor(bytes.length / Type.BYTES_PER_ELEMENT));
   };
-  /* von Mises stress of components xx, yy, zz, xy, yz, xz from i on */
-  const mises = (s, i) => Math.sqrt(
+  /* square of the von Mises stress of components xx, yy, zz, xy, yz, xz from i on */
+  const mises = (s, i) =>
       ((s[i] - s[i + 1]) ** 2 + (s[i + 1] - s[i + 2]) ** 2 + (s[i + 2] - s[i]) ** 2) / 2 +
-      3 * (s[i + 3] ** 2 + s[i + 4] ** 2 + s[i + 5] ** 2));
+      3 * (s[i + 3] ** 2 + s[i + 4] ** 2 + s[i + 5] ** 2);
 
   if (!$("blade-data") || !$("blade-canvas")) return null;
   const D = JSON.parse($("blade-data").textContent), canvas = $("blade-canvas");
@@ -75,25 +75,31 @@ const Blade = (() => {
     });
     return {re, im};
   }
-  /* The greatest of a measure over the period at every node. */
-  function greatest(list, ks, width, measure) {
-    const most = new Float32Array(n), x = new Float64Array(6);
-    for (let t = 0; t < INSTANTS; t++) {
-      const phase = ks.map(k => 2 * Math.PI * k * t / INSTANTS);
-      for (let v = 0; v < n; v++) {
-        x.fill(0);
-        list.forEach((h, j) => {
-          const c = Math.cos(phase[j]), s = Math.sin(phase[j]);
-          for (let d = 0; d < width; d++)
-            x[d] += h.re[width * v + d] * c - h.im[width * v + d] * s;
-        });
-        const value = measure(x, 0);
-        if (value > most[v]) most[v] = value;
+  /* The greatest over the period at every node of the root of a quadratic form. One harmonic has it
+   * in closed form: form(re c - im s) = (a + b)/2 + (a - b)/2 cos 2t - mixed sin 2t. */
+  function greatest(list, ks, width, form) {
+    const most = new Float32Array(n);
+    if (list.length === 1) {
+      const {re, im} = list[0], both = new Float32Array(width * n);
+      for (let i = 0; i < both.length; i++) both[i] = re[i] + im[i];
+      for (let v = 0, i = 0; v < n; v++, i += width) {
+        const a = form(re, i), b = form(im, i), mixed = (form(both, i) - a - b) / 2;
+        most[v] = Math.sqrt(Math.max(0, (a + b) / 2 + Math.hypot((a - b) / 2, mixed)));
       }
+      return most;
     }
-    return most;
+    const x = new Float32Array(width * n);
+    for (let t = 0; t < INSTANTS; t++) {
+      x.fill(0);
+      list.forEach(({re, im}, j) => {
+        const angle = 2 * Math.PI * ks[j] * t / INSTANTS, c = Math.cos(angle), s = Math.sin(angle);
+        for (let i = 0; i < x.length; i++) x[i] += re[i] * c - im[i] * s;
+      });
+      for (let v = 0, i = 0; v < n; v++, i += width) most[v] = Math.max(most[v], form(x, i));
+    }
+    return most.map(Math.sqrt);
   }
-  const length3 = x => Math.hypot(x[0], x[1], x[2]);
+  const square = (x, i) => x[i] ** 2 + x[i + 1] ** 2 + x[i + 2] ** 2;
   let point = null; /* chosen on the curves */
   function load() {
     const key = $("blade-shown").value, colour = $("blade-colour").value;
@@ -109,7 +115,7 @@ const Blade = (() => {
       qs = [q];
       name = `Mode ${+key + 1}, ${number(D.modes[+key].f, 5)}${NBSP}Hz, the contact free`;
     }
-    const motion = qs.map(q => sum(q, 0, 3)), u = greatest(motion, ks, 3, length3);
+    const motion = qs.map(q => sum(q, 0, 3)), u = greatest(motion, ks, 3, square);
     const value = colour === "motion" ? u : greatest(qs.map(q => sum(q, 3, 6)), ks, 6, mises);
     shown.most = u.reduce((a, b) => Math.max(a, b), 0) || 1;
     const top = value.reduce((a, b) => Math.max(a, b), 0) || 1;
@@ -345,7 +351,7 @@ const Blade = (() => {
   $("blade-bar").querySelector("i").style.background =
       `linear-gradient(90deg,${RAMP.map(c => `rgb(${c})`).join()})`;
   fill(0);
-  load();
+  queueMicrotask(() => shown.name || load()); /* unless the page chooses a point at once */
   return {
     draw,
     /* The kept point of branch b nearest to abscissa x and amplitude a becomes the chosen one. */

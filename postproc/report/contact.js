@@ -71,8 +71,7 @@ const Contact = (() => {
   }
   /* All contacts at stored point j of a branch: [{law, top, at}] and the data they lie in. */
   function unpack(contact, pairs) {
-    const bytes = Uint8Array.from(atob(contact.data), c => c.charCodeAt(0));
-    const data = new Float32Array(bytes.buffer), start = [];
+    const data = new Float32Array(Plot.bytes(contact.data).buffer), start = [];
     let at = 0;
     for (const k of contact.k) {
       start.push(at);

@@ -8,8 +8,7 @@
 
   /* ---------------------------------------------------------------- data */
   for (const b of D.branches) {
-    const bytes = Uint8Array.from(atob(b.data), c => c.charCodeAt(0));
-    const all = new Float32Array(bytes.buffer);
+    const all = new Float32Array(Plot.bytes(b.data).buffer);
     b.row = r => all.subarray(r * b.n, (r + 1) * b.n);
     b.f = b.row(ROW.f);
     delete b.data;

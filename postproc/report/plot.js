@@ -29,6 +29,13 @@ const Plot = (() => {
   const percent = x => Number.isFinite(x) ? number(100 * x, 2, false) + NBSP + "%" : "–";
   const escape = s => s.replace(/[&<>"']/g, c => "&#" + c.charCodeAt(0) + ";");
 
+  /* The bytes of a text in base64. */
+  function bytes(text) {
+    const all = atob(text), out = new Uint8Array(all.length);
+    for (let i = 0; i < all.length; i++) out[i] = all.charCodeAt(i);
+    return out;
+  }
+
   /* ---------------------------------------------------------------- axes */
   function evenTicks(lo, hi, wanted) {
     const raw = (hi - lo) / wanted, power = 10 ** Math.floor(Math.log10(raw)), m = raw / power;
@@ -307,6 +314,6 @@ const Plot = (() => {
 
   return {
     $, NBSP, number, LENGTH, ENERGY, unit, percent, escape, linearTicks, logTicks, signed, around,
-    axis, Panel, show, widthOf, extent, offer, save, table, picture, raster
+    axis, Panel, show, widthOf, extent, offer, save, table, picture, raster, bytes
   };
 })();
