@@ -3,8 +3,9 @@
 
     bench_page.py SHROUDHB CHROMIUM [SIZE]
 
-SIZE is mesh.blade.size of the example, 2.9 mm by default (58 000 nodes); 36 preloads. A row holds the
-median of five loads, to the second frame after the load event, beside that of an empty page.
+SIZE is mesh.blade.size of the example, 2.9 mm by default (58 000 nodes); 36 preloads.
+A row holds the median of five loads, to the second frame after the load event, beside that of an
+empty page.
 """
 import json
 import re

@@ -145,8 +145,7 @@ static void the_text_itself(void **state) {
                       "mhb.save = peaks\n"
                       "mhb.flips = follow\n"
                       "mhb.search.starts = auto\n");
-  assert_non_null(
-      strstr(settings[0], "mesh.blade.sections[1].thickness = 0.0029\n"));
+  assert_non_null(strstr(settings[0], "mesh.blade.sections[1].thickness = 0.0029\n"));
   assert_non_null(strstr(settings[0], "contact.psi = 0.61086523819801"));
   assert_null(strstr(settings[0], "material"));
   assert_non_null(strstr(settings[1], "excitation.harmonics.1 = 1 0\n"));
