@@ -123,7 +123,16 @@ shb_status case_model_judge_points(case_model *m) {
   return SHB_OK;
 }
 
+shb_status case_model_face(case_model *m, const char *path) {
+  if (m->run_up || m->ring) return SHB_OK;
+  SHB_TRY(modal_contact_face_read(path, &m->face));
+  if (m->points && m->points->pairs.finer) modal_contact_face_join(&m->face, &m->points->joining);
+  if (m->face.n_nodes > 0) m->settings.face = &m->face;
+  return SHB_OK;
+}
+
 void case_model_free(case_model *m) {
+  modal_contact_face_free(&m->face);
   if (!m->run_up && !m->ring) modal_model_free(&m->model);
   mhb_mistuned_ring_destroy(m->ring);
   modal_model_free(&m->tuned);

@@ -6,6 +6,7 @@
 #include "cases/parse/case_file.h"
 #include "mhb/mistuning/mistuned_ring.h"
 #include "mhb/structure/speed_model.h"
+#include "modal/model/contact_face.h"
 
 typedef struct {
   modal_model  model; /* in a run-up the one at the upper end of mhb.frequency; owned. Of a ring of
@@ -15,6 +16,7 @@ typedef struct {
   mhb_mistuned_ring *ring;   /* NULL: equal blades */
   mhb_speed_table   *run_up; /* NULL: one speed */
   mhb_speed_model   *top;    /* owner of the model in a run-up */
+  modal_contact_face face;   /* for maps; without nodes: none */
   contact_points    *points; /* the model's finer or coarser one; NULL: none */
 } case_model;
 
@@ -35,6 +37,9 @@ shb_status case_model_join(case_model *model, int patches);
 
 /* Estimate the spatial error from half as many pairs, where no finer model does. */
 shb_status case_model_judge_points(case_model *model);
+
+/* Maps of the contact at peaks: the face of the modal file at path, if it holds one. */
+shb_status case_model_face(case_model *model, const char *path);
 
 void case_model_free(case_model *model);
 

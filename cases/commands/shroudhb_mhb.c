@@ -108,6 +108,7 @@ static shb_status solve(const case_file *file, const char *modal, char *settings
   if (status == SHB_OK && model.run_up) note_run_up(progress, &model);
   if (status == SHB_OK && file->points < 0) note_points(progress, file, &model);
   if (status == SHB_OK && !file->modal_file) status = case_model_judge_points(&model);
+  if (status == SHB_OK) status = case_model_face(&model, modal);
   if (status == SHB_OK && model.settings.track != MHB_TRACK_NOTHING)
     status = mhb_tracked_response(&model.model, &model.settings, output, &provenance, progress,
                                   &response);

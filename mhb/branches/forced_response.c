@@ -12,6 +12,7 @@
 #include "mhb/branches/peak_search.h"
 #include "mhb/branches/secondary_branches.h"
 #include "mhb/response/describe.h"
+#include "mhb/response/face_wear.h"
 #include "mhb/response/modal_motion.h"
 #include "mhb/response/publisher.h"
 #include "mhb/structure/stiffness_check.h"
@@ -498,6 +499,10 @@ shb_status mhb_forced_response(const modal_model *model, const mhb_settings *ask
   if (status == SHB_OK) s.response->unfinished = shb_interrupted();
   if (status == SHB_OK) status = take_curves(&s);
   if (status == SHB_OK) status = mhb_modal_motion_keep(model, settings, s.response);
+  if (status == SHB_OK && settings->face) {
+    s.response->face = settings->face;
+    status           = mhb_face_wear_keep(model, settings, s.response);
+  }
   if (status == SHB_OK) status = mhb_publisher_write(&s.publisher, s.response);
   mhb_publisher_stop(&s.publisher);
   for (int i = 0; s.preload && i < settings->n_preloads; i++) {

@@ -5,6 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "mhb/response/face_wear.h"
 #include "mhb/response/response_fields.h"
 
 enum { FIRST_POINTS = 64 };
@@ -57,6 +58,7 @@ static void free_branch(mhb_branch *branch) {
   free(branch->lasting);
   free_curve(&branch->lasting_curve);
   free_modal(&branch->modal);
+  mhb_face_wear_free(&branch->wear);
 }
 
 const char *mhb_branch_kind_name(mhb_branch_kind kind) {

@@ -5,6 +5,7 @@
 
 #include "mesh/base/constants.h"
 #include "mhb/problem/parameter.h"
+#include "mhb/response/face_wear.h"
 #include "mhb/response/response.h"
 #include "mhb/response/response_fields.h"
 #include "modal/hdf5/h5.h"
@@ -355,6 +356,8 @@ static shb_status fill_branch(hid_t group, const mhb_response *response, const m
   SHB_TRY(write_lasting(group, branch));
   SHB_TRY(write_amplification(group, branch));
   SHB_TRY(write_modal(group, response, branch));
+  if (response->face)
+    SHB_TRY(mhb_face_wear_write(group, response->face, response->n_pairs, &branch->wear));
   return write_speed(group, response, branch);
 }
 
@@ -378,6 +381,7 @@ static shb_status write_parts(hid_t file, const void *context) {
   const mhb_response *response = c->response;
   SHB_TRY(h5_write_provenance(file, response_format, RESPONSE_VERSION, c->provenance));
   SHB_TRY(write_root(file, response));
+  if (response->face) SHB_TRY(mhb_contact_face_write(file, response->face));
   for (int i = 0; i < response->n_branches; i++) SHB_TRY(write_branch(file, response, i));
   return SHB_OK;
 }

@@ -9,6 +9,7 @@
 #include "mesh/base/status.h"
 #include "mhb/problem/settings.h"
 #include "mhb/response/response_samples.h"
+#include "modal/model/contact_face.h"
 
 /* Solutions of the balance, its linear limits, and single points by time integration. */
 typedef enum {
@@ -96,6 +97,17 @@ typedef struct {
   double         *scale; /* [n] of the excitation */
 } mhb_modal_motion;
 
+/* What friction does at the contact pairs, at the peaks of a branch. Of a whole period of the
+ * motion. */
+typedef struct {
+  int     n;
+  int    *point;       /* [n] ascending */
+  double *pressure;    /* [n][pair] Pa, mean */
+  double *slip;        /* [n][pair] m, way */
+  double *dissipation; /* [n][pair] J/m2 */
+  double *state;       /* [n][pair][3] share of the period stuck, slipping, open */
+} mhb_face_wear;
+
 /* Where the highest tracked peak is least. */
 typedef enum {
   MHB_OPTIMUM_NONE,     /* not looked for, or no branch */
@@ -170,6 +182,7 @@ typedef struct {
   char   *lasting;                        /* what was computed, or why not; NULL: not yet */
   mhb_lasting_curve lasting_curve;
   mhb_modal_motion  modal;
+  mhb_face_wear     wear;
   mhb_amplification amplification;
   /* integration branches only */
   int    *multiple; /* [point] periods of the fundamental until the motion repeats; 0: never */
@@ -199,8 +212,9 @@ typedef struct {
   bool    run_up; /* the speed follows the frequency on the engine order; modes of the top speed */
   double  psi, phi;       /* rad, mean of the pairs */
   char   *track, *output; /* with mhb.track: what is followed, of which output; else NULL */
-  mhb_optimum  optimum;
-  mhb_samples *samples; /* of a mistuned ring; NULL: none were drawn */
+  mhb_optimum               optimum;
+  mhb_samples              *samples; /* of a mistuned ring; NULL: none were drawn */
+  const modal_contact_face *face;    /* that the maps are written on; NULL: no maps; not owned */
 } mhb_response;
 
 #endif

@@ -30,6 +30,7 @@ shb_test(mhb/response response shb_mhb_response)
 shb_test(mhb/response publisher shb_mhb_response)
 shb_test(mhb/response response_samples shb_mhb_response)
 shb_test(mhb/response modal_motion tests_models)
+shb_test(mhb/response face_wear tests_models)
 shb_test(mhb/response direct_stress tests_fem tests_models shb_modal)
 foreach(noun balance stick_stiffness condensation multistart newton ring_system subharmonics
     truncation_error modal_error spatial_error)
