@@ -4,7 +4,7 @@
 
 #include "mhb/contact/time_history.h"
 #include "mhb/problem/settings.h"
-#include "mhb/response/response.h"
+#include "mhb/response/response_types.h"
 #include "modal/model/model.h"
 
 /* Way that a pair slips in a period, m, and the work of friction along it, J.

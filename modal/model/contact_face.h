@@ -1,4 +1,5 @@
-/* The right contact face of a modal file as a surface of its own, for maps of what friction does. */
+/* The right contact face of a modal file as a surface of its own, for maps of what friction
+ * does. */
 #ifndef MODAL_MODEL_CONTACT_FACE_H
 #define MODAL_MODEL_CONTACT_FACE_H
 
