@@ -16,6 +16,7 @@
 #include "mesh/base/progress.h"
 #include "postproc/comparison/comparison_page.h"
 #include "postproc/comparison/comparison_text.h"
+#include "postproc/field/contact_section.h"
 #include "postproc/field/strain_gauge.h"
 #include "postproc/field/stress_section.h"
 #include "postproc/field/stress_table.h"
@@ -158,7 +159,8 @@ static shb_status stress_read(const case_file *file, const char *modal, const ch
   SHB_TRY(post_blade_field_match(&s->field, s->response, modal));
   SHB_TRY(case_fatigue_read(file, modal, s->field.n_nodes, &s->lines));
   if (!page) return SHB_OK;
-  return post_stress_section(&s->field, s->response, &s->lines.fatigue, &s->section);
+  SHB_TRY(post_stress_section(&s->field, s->response, &s->lines.fatigue, &s->section));
+  return post_contact_section(response, s->response, file->axis, &s->section);
 }
 
 /* Write NAME.stress.csv. It is made for cases with material.fatigue only: a point takes a few

@@ -137,20 +137,9 @@ static shb_status gather(const field_options *o, const char *modal, material *m)
   return SHB_OK;
 }
 
-/* Length of NAME in NAME.response.h5 or NAME.h5. */
-static int stem_of(const char *path) {
-  static const char *const ending[] = {".response.h5", ".h5"};
-  const size_t             n        = strlen(path);
-  for (int i = 0; i < 2; i++) {
-    const size_t m = strlen(ending[i]);
-    if (n > m && strcmp(path + n - m, ending[i]) == 0) return (int)(n - m);
-  }
-  return (int)n;
-}
-
 static void output_path(const field_options *o, const post_period *p, const char *ending,
                         char out[PATH]) {
-  const int stem      = stem_of(o->response);
+  const int stem      = field_stem(o->response);
   char      point[40] = "";
   if (o->point >= 0 || o->peak > 0 || o->branch >= 0)
     snprintf(point, sizeof point, "_%d_%d", p->branch, p->point);
@@ -190,7 +179,8 @@ static shb_status publish(const field_options *o, const material *m, FILE *out) 
 shb_status field_command(const field_options *options, FILE *out) {
   char     beside[PATH];
   material m = {0};
-  snprintf(beside, sizeof beside, "%.*s.modal.h5", stem_of(options->response), options->response);
+  snprintf(beside, sizeof beside, "%.*s.modal.h5", field_stem(options->response),
+           options->response);
   shb_status status = gather(options, options->modal ? options->modal : beside, &m);
   if (status == SHB_OK) status = publish(options, &m, out);
   release(&m);

@@ -66,6 +66,8 @@ int field_options_take(int *argc, char **argv, field_options *out) {
     const char *value = i + 1 < *argc ? argv[i + 1] : NULL;
     if (strcmp(argv[i], "--ring") == 0) {
       out->ring = true;
+    } else if (strcmp(argv[i], "--face") == 0) {
+      out->face = true;
     } else if (!is_bare_peak(argv[i], value)) {
       const int taken = take(argv[i], value, out);
       if (taken < 0) return SHB_ERR_INPUT;
@@ -76,5 +78,16 @@ int field_options_take(int *argc, char **argv, field_options *out) {
   *argc = n;
   if (out->point >= 0 && out->branch < 0) return refuse("--point", "--branch");
   if (out->point >= 0 && out->peak >= 0) return refuse("--peak", "no --point");
+  if (out->face && out->ring) return refuse("--face", "no --ring");
   return -1;
+}
+
+int field_stem(const char *path) {
+  static const char *const ending[] = {".response.h5", ".h5"};
+  const size_t             n        = strlen(path);
+  for (int i = 0; i < 2; i++) {
+    const size_t m = strlen(ending[i]);
+    if (n > m && strcmp(path + n - m, ending[i]) == 0) return (int)(n - m);
+  }
+  return (int)n;
 }

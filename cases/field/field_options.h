@@ -12,11 +12,14 @@ typedef struct {
   int         peak;          /* rank by height, from 1 */
   int         steps;         /* of the period */
   double      scale;         /* of the picture */
-  bool        ring;
+  bool        ring, face;
 } field_options;
 
 /* Take the options with values out of argv; *argc is what is left for command_parse. Returns a
  * value below 0 to go on, else the exit code, after a message. */
 int field_options_take(int *argc, char **argv, field_options *out);
+
+/* Length of NAME in NAME.response.h5 or NAME.h5. */
+int field_stem(const char *path);
 
 #endif

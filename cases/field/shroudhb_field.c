@@ -3,12 +3,13 @@
 #include <stdio.h>
 
 #include "cases/commands/command.h"
+#include "cases/field/face_command.h"
 #include "cases/field/field_command.h"
 #include "mesh/base/progress.h"
 
 static const char usage[] =
-    "usage: shroudhb-field [--quiet] [--branch B [--point P]] [--peak N] [--ring] [--steps N]\n"
-    "                      [--scale S] [--modal FILE] NAME.response.h5\n"
+    "usage: shroudhb-field [--quiet] [--branch B [--point P]] [--peak N] [--ring | --face]\n"
+    "                      [--steps N] [--scale S] [--modal FILE] NAME.response.h5\n"
     "\n"
     "Writes one period of the motion and stress of the whole blade at a point of the response:\n"
     "NAME.field.vtkhdf  for ParaView 5.12 and VTK 9.3 or later\n"
@@ -18,6 +19,7 @@ static const char usage[] =
     "  --point P     a kept point of it; default: the highest peak\n"
     "  --peak N      the N-th highest of the kept peaks, from 1\n"
     "  --ring        all blades at their phases: NAME.ring.vtkhdf, NAME.ring.glb\n"
+    "  --face        the contact face at a peak, what friction does there: NAME.face.vtkhdf\n"
     "  --steps N     instants of the period, 2 to 1000; default: 24\n"
     "  --scale S     of the displacement in the .glb; default: the greatest is 5 % of the blade\n"
     "  --modal FILE  default: NAME.modal.h5 beside the response\n"
@@ -34,5 +36,6 @@ int main(int argc, char **argv) {
   field.response = options.path;
   openblas_set_num_threads(1);
   shb_interrupt_catch();
-  return command_finish(field_command(&field, options.quiet ? NULL : stdout));
+  FILE *out = options.quiet ? NULL : stdout;
+  return command_finish(field.face ? face_command(&field, out) : field_command(&field, out));
 }

@@ -6,6 +6,7 @@
 
 #include "modal/hdf5/h5.h"
 #include "postproc/field/peak_stress.h"
+#include "postproc/field/vtk_file.h"
 
 static const double MOST_BYTES = 2e9;
 
@@ -16,23 +17,6 @@ typedef struct {
   hid_t                 group; /* VTKHDF */
   double               *displacement, *stress, *mises;
 } writer;
-
-static shb_status failed(const char *what) {
-  SHB_FAIL(SHB_ERR_IO, "VTKHDF/%s cannot be written", what);
-}
-
-/* A dataset [rows] or [rows][columns]; groups in between are created. */
-static hid_t create(hid_t at, const char *name, hid_t type, hsize_t rows, hsize_t columns) {
-  const hsize_t dim[2] = {rows, columns};
-  hid_t         space = H5Screate_simple(columns ? 2 : 1, dim, NULL), set = -1;
-  hid_t         links = H5Pcreate(H5P_LINK_CREATE), layout = H5Pcreate(H5P_DATASET_CREATE);
-  if (H5Pset_create_intermediate_group(links, 1) >= 0 && H5Pset_obj_track_times(layout, 0) >= 0)
-    set = H5Dcreate2(at, name, type, space, links, layout, H5P_DEFAULT);
-  H5Pclose(links);
-  H5Pclose(layout);
-  H5Sclose(space);
-  return set;
-}
 
 /* Rows from start on; HDF5 converts the type of memory to that of the file. */
 static herr_t put_rows(hid_t set, hid_t memory, hsize_t start, hsize_t rows, hsize_t columns,
@@ -45,41 +29,6 @@ static herr_t put_rows(hid_t set, hid_t memory, hsize_t start, hsize_t rows, hsi
   H5Sclose(space);
   H5Sclose(file);
   return error;
-}
-
-static shb_status put_array(hid_t at, const char *name, hid_t type, hsize_t rows, hsize_t columns,
-                            const void *data) {
-  hid_t  set   = create(at, name, type, rows, columns);
-  herr_t error = set < 0 ? -1 : H5Dwrite(set, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, data);
-  if (set >= 0) H5Dclose(set);
-  return error < 0 ? failed(name) : SHB_OK;
-}
-
-static shb_status put_count(hid_t at, const char *name, long long count) {
-  return put_array(at, name, H5T_NATIVE_LLONG, 1, 0, &count);
-}
-
-static shb_status put_attribute(hid_t at, const char *name, hid_t type, hsize_t n,
-                                const void *data) {
-  hid_t  space     = n ? H5Screate_simple(1, &n, NULL) : H5Screate(H5S_SCALAR);
-  hid_t  attribute = H5Acreate2(at, name, type, space, H5P_DEFAULT, H5P_DEFAULT);
-  herr_t error     = attribute < 0 ? -1 : H5Awrite(attribute, type, data);
-  if (attribute >= 0) H5Aclose(attribute);
-  H5Sclose(space);
-  return error < 0 ? failed(name) : SHB_OK;
-}
-
-/* Type must be a string of fixed length, ASCII. */
-static shb_status put_header(const writer *w) {
-  static const char kind[]     = "UnstructuredGrid";
-  const long long   version[2] = {2, 0};
-  hid_t             text       = H5Tcopy(H5T_C_S1);
-  H5Tset_size(text, sizeof kind - 1);
-  H5Tset_strpad(text, H5T_STR_NULLPAD);
-  shb_status status = put_attribute(w->group, "Version", H5T_NATIVE_LLONG, 2, version);
-  if (status == SHB_OK) status = put_attribute(w->group, "Type", text, 0, kind);
-  H5Tclose(text);
-  return status;
 }
 
 typedef struct {
@@ -106,11 +55,11 @@ static void set_cells(const writer *w, const cells *c) {
 }
 
 static shb_status put_cell_arrays(const writer *w, const cells *c, hsize_t n, hsize_t each) {
-  SHB_TRY(put_array(w->group, "Connectivity", H5T_NATIVE_LLONG, n * each, 0, c->connectivity));
-  SHB_TRY(put_array(w->group, "Offsets", H5T_NATIVE_LLONG, n + 1, 0, c->offset));
-  SHB_TRY(put_array(w->group, "Types", H5T_NATIVE_UCHAR, n, 0, c->type));
+  SHB_TRY(post_vtk_array(w->group, "Connectivity", H5T_NATIVE_LLONG, n * each, 0, c->connectivity));
+  SHB_TRY(post_vtk_array(w->group, "Offsets", H5T_NATIVE_LLONG, n + 1, 0, c->offset));
+  SHB_TRY(post_vtk_array(w->group, "Types", H5T_NATIVE_UCHAR, n, 0, c->type));
   if (w->copies == 1) return SHB_OK;
-  return put_array(w->group, "CellData/blade", H5T_NATIVE_INT, n, 0, c->blade);
+  return post_vtk_array(w->group, "CellData/blade", H5T_NATIVE_INT, n, 0, c->blade);
 }
 
 static shb_status put_cells(const writer *w) {
@@ -125,7 +74,7 @@ static shb_status put_cells(const writer *w) {
     set_cells(w, &c);
     status = put_cell_arrays(w, &c, n, each);
   } else {
-    status = failed("Connectivity");
+    status = post_vtk_failed("Connectivity");
   }
   free(c.connectivity);
   free(c.offset);
@@ -138,7 +87,8 @@ static shb_status put_cells(const writer *w) {
 static shb_status put_turned(const writer *w, const char *name, int columns, const double *blade0) {
   const size_t n   = (size_t)w->period->field->n_nodes;
   double      *own = columns == 3 ? w->displacement : w->stress;
-  hid_t  set   = create(w->group, name, H5T_NATIVE_DOUBLE, n * (size_t)w->copies, (hsize_t)columns);
+  hid_t        set =
+      post_vtk_dataset(w->group, name, H5T_NATIVE_DOUBLE, n * (size_t)w->copies, (hsize_t)columns);
   herr_t error = set < 0 ? -1 : 0;
   for (int b = 0; b < w->copies && error >= 0; b++) {
     memcpy(own, blade0, n * (size_t)columns * sizeof *own);
@@ -150,17 +100,17 @@ static shb_status put_turned(const writer *w, const char *name, int columns, con
     error = put_rows(set, H5T_NATIVE_DOUBLE, n * (hsize_t)b, n, (hsize_t)columns, own);
   }
   if (set >= 0) H5Dclose(set);
-  return error < 0 ? failed(name) : SHB_OK;
+  return error < 0 ? post_vtk_failed(name) : SHB_OK;
 }
 
 static shb_status put_mesh(const writer *w) {
   const post_blade_field *f        = w->period->field;
   const long long         elements = (long long)f->mesh.n_elements * w->copies;
-  SHB_TRY(put_header(w));
-  SHB_TRY(put_count(w->group, "NumberOfPoints", (long long)f->n_nodes * w->copies));
-  SHB_TRY(put_count(w->group, "NumberOfCells", elements));
-  SHB_TRY(put_count(w->group, "NumberOfConnectivityIds",
-                    elements * mesh_topology_of(f->mesh.kind)->nodes));
+  SHB_TRY(post_vtk_header(w->group, 2, 0));
+  SHB_TRY(post_vtk_count(w->group, "NumberOfPoints", (long long)f->n_nodes * w->copies));
+  SHB_TRY(post_vtk_count(w->group, "NumberOfCells", elements));
+  SHB_TRY(post_vtk_count(w->group, "NumberOfConnectivityIds",
+                         elements * mesh_topology_of(f->mesh.kind)->nodes));
   SHB_TRY(put_turned(w, "Points", 3, f->nodes));
   SHB_TRY(put_cells(w));
   if (f->static_displacement)
@@ -179,22 +129,23 @@ static shb_status put_offsets(const writer *w, hid_t steps, double *value, long 
   const hsize_t            n        = (hsize_t)w->steps;
   char                     name[64];
   for (int i = 0; i < w->steps; i++) value[i] = post_period_seconds(w->period) * i / w->steps;
-  SHB_TRY(put_array(steps, "Values", H5T_NATIVE_DOUBLE, n, 0, value));
+  SHB_TRY(post_vtk_array(steps, "Values", H5T_NATIVE_DOUBLE, n, 0, value));
   for (int i = 0; i < w->steps; i++) at[i] = 0;
   for (int i = 0; i < 2; i++) {
-    SHB_TRY(put_array(steps, fixed[i], H5T_NATIVE_LLONG, n, 0, at));
-    SHB_TRY(put_array(steps, cell[i], H5T_NATIVE_LLONG, n, 1, at));
+    SHB_TRY(post_vtk_array(steps, fixed[i], H5T_NATIVE_LLONG, n, 0, at));
+    SHB_TRY(post_vtk_array(steps, cell[i], H5T_NATIVE_LLONG, n, 1, at));
     snprintf(name, sizeof name, "PointDataOffsets/%s", once[i]);
     if (i == 0 ? f->static_displacement : f->static_stress)
-      SHB_TRY(put_array(steps, name, H5T_NATIVE_LLONG, n, 0, at));
+      SHB_TRY(post_vtk_array(steps, name, H5T_NATIVE_LLONG, n, 0, at));
   }
-  if (w->copies > 1) SHB_TRY(put_array(steps, "CellDataOffsets/blade", H5T_NATIVE_LLONG, n, 0, at));
+  if (w->copies > 1)
+    SHB_TRY(post_vtk_array(steps, "CellDataOffsets/blade", H5T_NATIVE_LLONG, n, 0, at));
   for (int i = 0; i < w->steps; i++) at[i] = 1;
-  SHB_TRY(put_array(steps, "NumberOfParts", H5T_NATIVE_LLONG, n, 0, at));
+  SHB_TRY(post_vtk_array(steps, "NumberOfParts", H5T_NATIVE_LLONG, n, 0, at));
   for (int i = 0; i < w->steps; i++) at[i] = (long long)i * f->n_nodes * w->copies;
   for (int i = 0; i < 3; i++) {
     snprintf(name, sizeof name, "PointDataOffsets/%s", moving[i]);
-    if (i != 1 || w->copies == 1) SHB_TRY(put_array(steps, name, H5T_NATIVE_LLONG, n, 0, at));
+    if (i != 1 || w->copies == 1) SHB_TRY(post_vtk_array(steps, name, H5T_NATIVE_LLONG, n, 0, at));
   }
   return SHB_OK;
 }
@@ -206,10 +157,10 @@ static shb_status put_steps(const writer *w) {
   long long      *at    = malloc((size_t)n * sizeof *at);
   shb_status      status;
   if (steps >= 0 && value && at) {
-    status = put_attribute(steps, "NSteps", H5T_NATIVE_LLONG, 0, &n);
+    status = post_vtk_attribute(steps, "NSteps", H5T_NATIVE_LLONG, 0, &n);
     if (status == SHB_OK) status = put_offsets(w, steps, value, at);
   } else {
-    status = failed("Steps");
+    status = post_vtk_failed("Steps");
   }
   free(value);
   free(at);
@@ -233,15 +184,17 @@ static shb_status put_motion(const writer *w) {
   const bool    ring = w->copies > 1;
   const hsize_t rows = (hsize_t)w->period->field->n_nodes * (hsize_t)w->copies * (hsize_t)w->steps;
   const hid_t   wide = ring ? H5T_NATIVE_FLOAT : H5T_NATIVE_DOUBLE;
-  hid_t         set[3] = {create(w->group, "PointData/displacement", wide, rows, 3), -1,
-                          create(w->group, "PointData/von_mises", H5T_NATIVE_FLOAT, rows, 0)};
-  if (!ring) set[1] = create(w->group, "PointData/stress", H5T_NATIVE_FLOAT, rows, POST_STRESSES);
+  hid_t         set[3] = {-1, -1, -1};
+  set[0]               = post_vtk_dataset(w->group, "PointData/displacement", wide, rows, 3);
+  set[2] = post_vtk_dataset(w->group, "PointData/von_mises", H5T_NATIVE_FLOAT, rows, 0);
+  if (!ring)
+    set[1] = post_vtk_dataset(w->group, "PointData/stress", H5T_NATIVE_FLOAT, rows, POST_STRESSES);
   herr_t error = set[0] < 0 || set[2] < 0 || (!ring && set[1] < 0) ? -1 : 0;
   for (int s = 0; s < w->steps; s++)
     for (int b = 0; b < w->copies && error >= 0; b++) error = put_step(w, s, b, set);
   for (int i = 0; i < 3; i++)
     if (set[i] >= 0) H5Dclose(set[i]);
-  return error < 0 ? failed("PointData") : SHB_OK;
+  return error < 0 ? post_vtk_failed("PointData") : SHB_OK;
 }
 
 static shb_status describe(const writer *w) {
@@ -261,12 +214,7 @@ static shb_status describe(const writer *w) {
       {"PointData/static_displacement", "m", "static displacement at speed, to be added"},
       {"PointData/static_stress", "Pa", "static stress at speed, to be added"},
   };
-  for (size_t i = 0; i < sizeof text / sizeof *text; i++) {
-    if (!h5_exists(w->group, text[i][0])) continue;
-    SHB_TRY(h5_write_attribute_text(w->group, text[i][0], "units", text[i][1]));
-    SHB_TRY(h5_write_attribute_text(w->group, text[i][0], "long_name", text[i][2]));
-  }
-  return SHB_OK;
+  return post_vtk_describe(w->group, sizeof text / sizeof *text, text);
 }
 
 static shb_status put_all(hid_t file, const writer *w) {
@@ -285,14 +233,14 @@ static shb_status put_all(hid_t file, const writer *w) {
 }
 
 static shb_status fill(hid_t file, const void *context) {
-  writer       w = *(const writer *)context;
-  const size_t n = (size_t)w.period->field->n_nodes;
-  w.group        = H5Gcreate2(file, "VTKHDF", H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT);
-  w.displacement = malloc(3 * n * sizeof(double) + 1);
-  w.stress       = malloc(POST_STRESSES * n * sizeof(double) + 1);
-  w.mises        = malloc(n * sizeof(double) + 1);
-  shb_status status =
-      w.group < 0 || !w.displacement || !w.stress || !w.mises ? failed("") : put_all(file, &w);
+  writer       w    = *(const writer *)context;
+  const size_t n    = (size_t)w.period->field->n_nodes;
+  w.group           = H5Gcreate2(file, "VTKHDF", H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT);
+  w.displacement    = malloc(3 * n * sizeof(double) + 1);
+  w.stress          = malloc(POST_STRESSES * n * sizeof(double) + 1);
+  w.mises           = malloc(n * sizeof(double) + 1);
+  shb_status status = w.group < 0 || !w.displacement || !w.stress || !w.mises ? post_vtk_failed("")
+                                                                              : put_all(file, &w);
   if (w.group >= 0) H5Gclose(w.group);
   free(w.displacement);
   free(w.stress);

@@ -349,6 +349,54 @@ def check_materials():
     check('safety', worst, 1e-11)
 
 
+def check_face():
+    """NAME.face.vtkhdf is a row of the maps in the response; the page shows uneven ones."""
+    run('shroudhb', 'run', '--quiet', 'blade.yaml', '--set', 'contact.points=all', '--set',
+        'name=face', '--set', 'contact.n0=60 N')
+    with open('face.html') as page:
+        pictures = page.read().count('<svg xmlns="http://www.w3.org/2000/svg" id="face-')
+    assert pictures > 0
+    told = run('shroudhb', 'field', '--face', 'face.response.h5')
+    with h5py.File('face.face.vtkhdf') as file, h5py.File('face.response.h5') as r:
+        branch, point, g = file.attrs['branch'], file.attrs['point'], file['VTKHDF']
+        assert f'branch {branch}, point {point}: {file.attrs["frequency"]:.6g} Hz' in told, told
+        maps, data = r[f'branch_{branch}/face'], g['PointData']
+        row = list(maps['point'][:]).index(point)
+        for name in 'pressure', 'slip', 'dissipation':
+            assert (data[name][:] == maps[name][row]).all(), name
+        for i, name in enumerate(('stuck', 'slipping', 'open')):
+            assert (data[name][:] == maps['state'][row][:, i]).all(), name
+        assert (g['Points'][:] == r['contact_face/nodes'][:]).all()
+        work = r['contact_face/area'][:] @ data['dissipation'][:]
+        check('work on the face', abs(work / r[f'branch_{branch}/dissipation'][point].sum() - 1),
+              1e-12)
+        nodes, cells = int(g['NumberOfPoints'][0]), int(g['NumberOfCells'][0])
+        others = [i for i in range(max(maps['point'][:]) + 2) if i not in maps['point'][:]]
+    refused(['shroudhb', 'field', '--face', '--branch', str(branch), '--point', str(others[0]),
+             'face.response.h5'], 'is no peak; the nearest is')
+    refused(['shroudhb', 'field', '--face', '--ring', 'face.response.h5'], '--face needs no --ring')
+    refused(['shroudhb', 'field', '--face', '--branch', '0', 'face.response.h5'],
+            'no peak of this branch has maps')
+    refused(['shroudhb', 'field', '--face', '--peak', '99', 'face.response.h5'], 'there are')
+    refused(['shroudhb', 'field', '--face', 'own.response.h5'], 'no peak has maps')
+    try:
+        import vtk
+    except ImportError:
+        return
+    reader = vtk.vtkHDFReader()
+    reader.SetFileName('face.face.vtkhdf')
+    reader.Update()
+    grid = reader.GetOutput()
+    assert (grid.GetNumberOfPoints(), grid.GetNumberOfCells()) == (nodes, cells)
+    size = vtk.vtkCellSizeFilter()
+    size.SetInputData(grid)
+    size.Update()
+    area = size.GetOutput().GetCellData().GetArray('Area')
+    total = sum(area.GetValue(i) for i in range(cells))
+    with h5py.File('face.response.h5') as r:
+        check('area by VTK', abs(total / r['contact_face/area'][:].sum() - 1), 1e-6)
+
+
 def main():
     write('blade.yaml', CASE)
     write('own.yaml', OWN)
@@ -382,6 +430,7 @@ def main():
     check_ring('own', branch, highest, 'own.ring.vtkhdf', 14, BLADES, ORDER)
     check_scene('own', branch, highest, 'own.ring.glb', 14, BLADES)
 
+    check_face()
     free = next(i for i in range(10**6) if i not in points)
     refused(['shroudhb', 'field', '--branch', '2', '--point', str(free), 'blade.response.h5'],
             'was not kept, the nearest is')
