@@ -107,6 +107,10 @@ static shb_status copy_curves(const mhb_response *own, mhb_response **out) {
       status = mhb_response_note_search(to, &from->search[i]);
     to->reason = from->reason ? strdup(from->reason) : NULL;
     if (status == SHB_OK) status = mhb_response_copy_lasting(to, from);
+    const mhb_unfinished *under_way = from->unfinished;
+    if (status == SHB_OK && under_way)
+      status =
+          mhb_unfinished_copy(under_way->segments, under_way->n, under_way->state, &to->unfinished);
     if (status == SHB_OK && from->n_points > 0)
       status = mhb_response_copy_points(copy, index, own, k, 0, from->n_points - 1);
   }
@@ -313,9 +317,9 @@ static taken_part what_to_take(const sweep *s, hid_t file) {
 static preload_curves *wanted_for(sweep *s, const mhb_response *old, int branch, taken_part part) {
   const mhb_branch *b = &old->branch[branch];
   int               n = s->settings->n_preloads;
-  if (b->main != branch || !b->complete) return NULL;
+  if (b->main != branch || !(b->complete || b->unfinished)) return NULL;
   if (part == TAKE_ALL) return branch >= 2 && branch < 2 + n ? &s->preload[branch - 2] : NULL;
-  for (int i = 0; i < n && b->kind == MHB_BRANCH_NONLINEAR; i++)
+  for (int i = 0; i < n && b->kind == MHB_BRANCH_NONLINEAR && b->n_points > 0; i++)
     if (s->settings->n0[i] == b->n0[0] && !s->preload[i].own->branch[0].complete)
       return &s->preload[i];
   return NULL;
@@ -340,8 +344,23 @@ static shb_status take_beside(preload_curves *p, mhb_response *old, int main, bo
   return SHB_OK;
 }
 
-/* Take over the curves that an earlier run finished: an interrupted one of the same settings, or
- * one with other preloads. Each preload's curves depend on no other preload. */
+/* Take a main branch that an earlier run did not finish. It stays in the file until more of it is
+ * there. */
+static shb_status take_unfinished(preload_curves *p, mhb_branch *old) {
+  const mhb_unfinished *u = old->unfinished;
+  int                   index;
+  if (p->handed) return SHB_OK;
+  SHB_TRY(mhb_unfinished_copy(u->segments, u->n, u->state, &p->own->branch[0].unfinished));
+  p->handed = mhb_response_like(p->own);
+  SHB_CHECK(p->handed, SHB_ERR_IO, "out of memory");
+  SHB_TRY(mhb_response_branch(p->handed, MHB_BRANCH_NONLINEAR, &index));
+  take(&p->handed->branch[0], old);
+  p->handed->branch[0].main = 0;
+  return SHB_OK;
+}
+
+/* Take over the curves of an earlier run: an interrupted one of the same settings, or one with
+ * other preloads. Each preload's curves depend on no other preload. */
 static shb_status resume(sweep *s) {
   const char   *path  = s->publisher.path;
   bool          peaks = s->settings->search.starts == MHB_SEARCH_PEAKS;
@@ -358,11 +377,16 @@ static shb_status resume(sweep *s) {
   for (int i = 2; fits && i < old->n_branches && status == SHB_OK; i++) {
     preload_curves *p = wanted_for(s, old, i, part);
     if (!p) continue;
+    if (!old->branch[i].complete) {
+      status = take_unfinished(p, &old->branch[i]);
+      continue;
+    }
     take(&p->own->branch[0], &old->branch[i]);
     p->own->branch[0].main = 0;
     old->branch[i].main    = i; /* the empty branch is in its place */
     p->done                = p->own->branch[0].searched ? 1 : s->main_share;
     status                 = take_beside(p, old, i, peaks && part == TAKE_EQUAL_PRELOADS);
+    if (status == SHB_OK) status = copy_curves(p->own, &p->handed); /* they stay in the file */
   }
   mhb_response_destroy(old);
   return status;
@@ -390,10 +414,13 @@ static shb_status all_preloads(sweep *s, const modal_model *model) {
   }
   SHB_TRY(mhb_publisher_status(&s->publisher));
   for (int i = 0; i < n; i++) {
-    if (!s->preload[i].own) continue; /* not begun */
-    mhb_response_destroy(s->preload[i].handed);
-    s->preload[i].handed = s->preload[i].own;
-    s->preload[i].own    = NULL;
+    preload_curves *p = &s->preload[i];
+    if (!p->own) continue;
+    if (p->handed) /* not begun: the curves of an earlier run stay */
+      mhb_response_destroy(p->own);
+    else
+      p->handed = p->own;
+    p->own = NULL;
   }
   bool searches = s->settings->search.starts == MHB_SEARCH_PEAKS && !shb_interrupted();
   return searches ? search_peaks(s, model) : SHB_OK;

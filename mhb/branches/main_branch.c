@@ -261,6 +261,17 @@ static shb_status trace_returns(main_branch *m, int end) {
   return SHB_OK;
 }
 
+/* The branch gets what a later run needs to go on with it. */
+static void forget_unfinished(main_branch *m) {
+  mhb_unfinished_destroy(m->response->branch[0].unfinished);
+  m->response->branch[0].unfinished = NULL;
+}
+
+static shb_status note_unfinished(main_branch *m) {
+  forget_unfinished(m);
+  return mhb_tracer_unfinished(m->tracer, &m->response->branch[0].unfinished);
+}
+
 /* Publish the curves so far. */
 static shb_status publish(void *context) {
   main_branch *m = context;
@@ -277,6 +288,7 @@ static shb_status publish(void *context) {
     status = mhb_chain_insert(&chain, chain.n, (mhb_link){.segment = m->tracer->segment});
   if (status == SHB_OK)
     status = mhb_chain_join(&chain, m->tracer->store, m->response, 0, begins, &n_begins);
+  if (status == SHB_OK) status = note_unfinished(m);
   if (status == SHB_OK) status = m->monitor->publish(m->monitor, m->response);
   mhb_chain_free(&chain);
   return status;
@@ -304,6 +316,7 @@ static shb_status complete(main_branch *m, mhb_end end, int stable_at) {
     own.interrupted = own.interrupted || detached.interrupted;
   }
   m->response->branch[0].complete = covers && !own.interrupted;
+  if (!own.interrupted) forget_unfinished(m);
   return SHB_OK;
 }
 
@@ -313,8 +326,11 @@ shb_status mhb_trace_main_branch(mhb_balance *balance, mhb_response *response,
   mhb_end     end       = MHB_END_NO_START;
   int         stable_at = 0;
   SHB_TRY(mhb_tracer_create(balance, response, 0, false, monitor, &m.tracer));
-  m.tracer->publish = publish;
-  m.tracer->context = &m;
+  mhb_unfinished *earlier        = response->branch[0].unfinished;
+  response->branch[0].unfinished = NULL;
+  m.tracer->earlier              = earlier;
+  m.tracer->publish              = publish;
+  m.tracer->context              = &m;
   m.x = calloc((size_t)mhb_harmonic_levels_most_unknowns(m.tracer->levels), sizeof *m.x);
   shb_status status = m.x ? SHB_OK : shb_fail(SHB_ERR_IO, __FILE__, __LINE__, "out of memory");
   if (status == SHB_OK) status = trace_across_range(&m, &end);
@@ -326,8 +342,10 @@ shb_status mhb_trace_main_branch(mhb_balance *balance, mhb_response *response,
     stable_at = n_points(&m) - before;
     if (m.stopped) end = MHB_END_INTERRUPTED;
   }
+  if (status == SHB_OK) status = note_unfinished(&m);
   if (status == SHB_OK) status = complete(&m, end, stable_at);
   mhb_tracer_destroy(m.tracer);
+  mhb_unfinished_destroy(earlier);
   mhb_chain_free(&m.chain);
   for (int i = 0; i < MAX_DETACHED; i++) mhb_chain_free(&m.detached[i]);
   free(m.x);

@@ -154,8 +154,16 @@ static shb_status record(mhb_segment_host *host, mhb_curve_point *point, int spe
   const mhb_branch *branch                    = &t->store->branch[t->segment];
   branch->error_spatial[branch->n_points - 1] = mhb_harmonic_levels_spatial(t->levels, point);
   if (special == MHB_ORDINARY) t->farthest = fmax(t->farthest, point->value);
-  *go_on = t->monitor->point(t->monitor, t->store, t->segment, branch->n_points - 1);
-  if (t->publish) SHB_TRY(t->publish(t->context));
+  if (!t->monitor->point(t->monitor, t->store, t->segment, branch->n_points - 1)) *go_on = false;
+  t->clock = shb_seconds();
+  return SHB_OK;
+}
+
+static shb_status before_step(mhb_segment_host *host) {
+  mhb_tracer *t   = of(host);
+  t->host.reached = MHB_END_NONE;
+  if (!t->publish) return SHB_OK;
+  SHB_TRY(t->publish(t->context));
   t->clock = shb_seconds();
   return SHB_OK;
 }
@@ -251,6 +259,140 @@ static shb_status make_tests(mhb_tracer *t, const mhb_balance *b) {
   return SHB_OK;
 }
 
+/* ---- states of segments ---- */
+
+static void pass_place(mhb_trace_state *s, mhb_curve_place *p) {
+  enum { MOST = 10000000 };
+  int rows = p->rows, length = p->row_length, copies = p->copies;
+  mhb_trace_state_code(s, &rows, 0, MOST);
+  mhb_trace_state_code(s, &length, 0, MOST);
+  mhb_trace_state_code(s, &copies, 0, MOST);
+  size_t n = (size_t)rows * (size_t)length * (size_t)copies;
+  if (s->reads) {
+    mhb_curve_place_free(p);
+    if (n > s->n) s->failed = true;
+    if (s->failed || n == 0) return;
+    *p = (mhb_curve_place){.rows       = rows,
+                           .row_length = length,
+                           .copies     = copies,
+                           .x          = calloc(n, sizeof(double)),
+                           .tangent    = calloc(n, sizeof(double))};
+    if (!p->x || !p->tangent) {
+      mhb_curve_place_free(p);
+      s->failed = true;
+      return;
+    }
+  }
+  if (n == 0) return;
+  mhb_trace_state_numbers(s, p->x, n);
+  mhb_trace_state_numbers(s, p->tangent, n);
+  mhb_trace_state_numbers(s, &p->value, 1);
+  mhb_trace_state_numbers(s, &p->rate, 1);
+  mhb_trace_state_numbers(s, &p->size, 1);
+  mhb_trace_state_numbers(s, &p->tolerance, 1);
+}
+
+/* What a curve keeps from one segment to the next. */
+static void pass_memory(mhb_trace_state *s, mhb_arclength *curve) {
+  mhb_resonances *resonances = &mhb_balance_curve_of(curve)->resonances;
+  mhb_trace_state_numbers(s, &curve->amplitude_at_rest, 1);
+  mhb_trace_state_numbers(s, &curve->parameter_scale, 1);
+  for (int i = 0; i < resonances->n; i++) mhb_trace_state_flag(s, &resonances->at[i].significant);
+}
+
+static void pass_current(mhb_trace_state *s, mhb_arclength *curve) {
+  mhb_curve_point *p = &curve->current;
+  mhb_trace_state_numbers(s, &curve->step, 1);
+  mhb_trace_state_whole(s, &curve->orientation);
+  mhb_trace_state_whole(s, &curve->n_reversed);
+  mhb_trace_state_numbers(s, p->x, (size_t)curve->n);
+  mhb_trace_state_numbers(s, &p->value, 1);
+  mhb_trace_state_numbers(s, p->tangent, (size_t)curve->n + 1);
+  mhb_trace_state_whole(s, &p->orientation);
+  mhb_trace_state_whole(s, &p->iterations);
+  mhb_trace_state_numbers(s, &p->residual, 1);
+  mhb_trace_state_numbers(s, &p->truncation, 1);
+  mhb_trace_state_numbers(s, &p->modal, 1);
+  mhb_trace_state_whole(s, &p->truncation_kind);
+}
+
+static shb_status pass_levels(mhb_trace_state *s, mhb_harmonic_levels *h) {
+  int at = h->at, highest = h->highest;
+  for (int i = 0; i < h->n && !s->failed; i++) {
+    bool made = h->level[i] != NULL;
+    mhb_trace_state_flag(s, &made);
+    if (!made || s->failed) continue;
+    SHB_TRY(mhb_harmonic_levels_use(h, i)); /* makes it */
+    pass_memory(s, h->level[i]->curve);
+  }
+  mhb_trace_state_code(s, &at, 0, h->n - 1);
+  mhb_trace_state_code(s, &highest, 0, h->n - 1);
+  mhb_trace_state_code(s, &h->wanted, 0, h->n - 1);
+  mhb_trace_state_flag(s, &h->linear);
+  mhb_trace_state_flag(s, &h->from_linear);
+  mhb_trace_state_whole(s, &h->n_lower_wanted);
+  SHB_TRY(mhb_harmonic_levels_use(h, at));
+  h->highest = highest;
+  return SHB_OK;
+}
+
+/* All that determines what follows the last point of the segment in use. */
+static shb_status pass_state(mhb_trace_state *s, mhb_tracer *t) {
+  int end = (int)t->host.reached;
+  SHB_TRY(pass_levels(s, t->levels));
+  use_level(t);
+  pass_current(s, t->host.curve);
+  pass_place(s, &t->start);
+  mhb_trace_state_flag(s, &t->returns_to_start);
+  mhb_trace_state_numbers(s, &t->farthest, 1);
+  for (int i = 0; i < t->host.n_tests; i++)
+    mhb_trace_state_numbers(s, &t->host.test[i].value_current, 1);
+  mhb_trace_state_whole(s, &t->host.n_points);
+  mhb_trace_state_whole(s, &t->host.n_tiny);
+  mhb_trace_state_code(s, &end, 0, MHB_N_ENDS - 1);
+  t->host.reached = (mhb_end)end;
+  return SHB_OK;
+}
+
+/* The state of the last segment. */
+static shb_status keep_state(mhb_tracer *t) {
+  mhb_trace_state *more = realloc(t->state, sizeof *more * ((size_t)t->n_states + 1));
+  SHB_CHECK(more, SHB_ERR_IO, "out of memory");
+  t->state               = more;
+  mhb_trace_state *state = &t->state[t->n_states++];
+  *state                 = (mhb_trace_state){0};
+  SHB_TRY(pass_state(state, t));
+  SHB_CHECK(!state->failed, SHB_ERR_IO, "out of memory");
+  return SHB_OK;
+}
+
+/* The points and the state of a segment of the earlier run. */
+static shb_status take_segment(mhb_tracer *t, int i) {
+  const mhb_response *segments = t->earlier->segments;
+  const mhb_branch   *from     = &segments->branch[i];
+  mhb_trace_state     state    = t->earlier->state[i];
+  bool                fits     = from->n_harmonics == t->store->n_harmonics;
+  state.at                     = 0;
+  state.reads                  = true;
+  if (fits && from->n_points > 0)
+    SHB_TRY(mhb_response_copy_points(t->store, i, segments, i, 0, from->n_points - 1));
+  if (fits) SHB_TRY(pass_state(&state, t));
+  SHB_CHECK(fits && !state.failed && state.at == state.n, SHB_ERR_INPUT,
+            "the curve under way of the earlier response file does not fit; run with --force");
+  return SHB_OK;
+}
+
+/* A segment goes on from the curve's current point: what a state leaves out. */
+static shb_status go_on_from_current(mhb_tracer *t) {
+  mhb_arclength         *curve = t->host.curve;
+  const mhb_curve_place *place = t->plan.target   ? t->plan.target
+                                 : t->plan.closes ? &t->start
+                                                  : NULL;
+  curve->system->linearise(curve->system, &curve->current);
+  return_to(t, place && place->x ? place : NULL);
+  return SHB_OK;
+}
+
 /* ---- the tracer ---- */
 
 shb_status mhb_tracer_create(mhb_balance *balance, const mhb_response *response, int branch,
@@ -261,6 +403,7 @@ shb_status mhb_tracer_create(mhb_balance *balance, const mhb_response *response,
                                          .estimate_event = estimate_event,
                                          .accept         = accept,
                                          .started        = started,
+                                         .before_step    = before_step,
                                          .record         = record};
   t->monitor        = monitor;
   t->segment        = -1;
@@ -287,6 +430,8 @@ void mhb_tracer_destroy(mhb_tracer *t) {
   mhb_harmonic_levels_destroy(t->levels);
   mhb_response_destroy(t->store);
   mhb_curve_place_free(&t->start);
+  for (int i = 0; i < t->n_states; i++) mhb_trace_state_free(&t->state[i]);
+  free(t->state);
   free(t->returns);
   free(t->output);
   free(t->host.test);
@@ -302,7 +447,24 @@ shb_status mhb_tracer_trace(mhb_tracer *t, const mhb_segment_plan *plan, int *se
   t->plan            = *plan;
   t->segment         = *segment;
   t->host.max_points = settings->max_points - plan->recorded;
-  return mhb_trace_segment(&t->host, &t->plan.seed, end);
+  mhb_seed seed      = plan->seed;
+  if (t->earlier && *segment < t->earlier->n) {
+    SHB_TRY(take_segment(t, *segment));
+    *end      = t->host.reached;
+    seed.kind = MHB_SEED_UNDER_WAY;
+    if (*end == MHB_END_NONE) SHB_TRY(go_on_from_current(t));
+  }
+  bool traced = seed.kind == MHB_SEED_UNDER_WAY && *end != MHB_END_NONE;
+  if (!traced) SHB_TRY(mhb_trace_segment(&t->host, &seed, end));
+  return keep_state(t);
+}
+
+shb_status mhb_tracer_unfinished(mhb_tracer *t, mhb_unfinished **out) {
+  bool under_way = t->n_states <= t->segment;
+  if (under_way) SHB_TRY(keep_state(t));
+  shb_status status = mhb_unfinished_copy(t->store, t->n_states, t->state, out);
+  if (under_way) mhb_trace_state_free(&t->state[--t->n_states]);
+  return status;
 }
 
 void mhb_tracer_forget(mhb_tracer *t, int segment) {

@@ -1,7 +1,11 @@
 /* Traces segments of a balance's curves. It chooses the harmonics, has the table of folds, peaks
  * and ends, and records each point with its forces, states and error estimates.
  *
- * Segments become branches of the tracer's own store. A chain joins them (chain.h). */
+ * Segments become branches of the tracer's own store. A chain joins them (chain.h).
+ *
+ * The state after each segment is kept, and that of the segment under way on demand. A later run
+ * with these segments and states asks for the same segments in the same order. It gets the same
+ * points, the last segment goes on where it stopped, and all that follows agrees to the bit. */
 #ifndef MHB_BRANCHES_TRACER_H
 #define MHB_BRANCHES_TRACER_H
 
@@ -37,7 +41,10 @@ struct mhb_tracer {
   int              *output;           /* [outputs] contexts of the tests of peaks */
   double            clock;            /* s, when the last point was recorded */
   double            farthest;         /* highest value of a point so far */
-  /* Called after each point, to publish the curves so far; NULL: never. */
+  int               n_states;         /* of segments that have ended or stopped */
+  mhb_trace_state  *state;            /* [n_states] */
+  const mhb_unfinished *earlier;      /* segments of an earlier run, not traced again; or NULL */
+  /* Called before each step, to publish the curves so far; NULL: never. */
   shb_status (*publish)(void *context);
   void *context;
 };
@@ -53,6 +60,10 @@ void       mhb_tracer_destroy(mhb_tracer *tracer);
  * SHB_ERR_IO: no memory. */
 shb_status mhb_tracer_trace(mhb_tracer *tracer, const mhb_segment_plan *plan, int *segment,
                             mhb_end *end);
+
+/* The segments so far with their states, for a later run; also from t->publish. SHB_ERR_IO: no
+ * memory. */
+shb_status mhb_tracer_unfinished(mhb_tracer *tracer, mhb_unfinished **unfinished);
 
 /* The curve under way, at the last point of the last segment. */
 mhb_arclength *mhb_tracer_curve(const mhb_tracer *tracer);

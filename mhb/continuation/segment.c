@@ -28,6 +28,9 @@ static void start(mhb_segment_host *host, const mhb_seed *seed, mhb_end *end) {
       found = found && mhb_arclength_excursion(curve, out, seed->reach);
       if (found) mhb_arclength_advance(curve);
       break;
+    case MHB_SEED_UNDER_WAY:
+      found = true;
+      break;
   }
   *end = found ? MHB_END_NONE : MHB_END_NO_START;
 }
@@ -95,40 +98,46 @@ static shb_status step_with_events(mhb_segment_host *host, mhb_end *end) {
 }
 
 /* Record the events of the step, and then next. */
-static shb_status record_step(mhb_segment_host *host, int *n_points, bool *go_on) {
+static shb_status record_step(mhb_segment_host *host, bool *go_on) {
   const mhb_events *events = host->events;
-  for (int i = 0; i < events->n && *go_on; i++) {
+  for (int i = 0; i < events->n; i++) {
     host->estimate_event(host, events->event[i].point);
     SHB_TRY(host->record(host, events->event[i].point, events->event[i].test->special, go_on));
-    ++*n_points;
+    host->n_points++;
   }
   int special = events->fold_not_located ? MHB_FOLD : MHB_ORDINARY; /* as near as it is known */
-  ++*n_points;
-  return *go_on ? host->record(host, &host->curve->next, special, go_on) : SHB_OK;
+  host->n_points++;
+  return host->record(host, &host->curve->next, special, go_on);
 }
 
 shb_status mhb_trace_segment(mhb_segment_host *host, const mhb_seed *seed, mhb_end *end) {
-  bool go_on  = true;
-  int  n_tiny = 0, n_points = seed->skip_first ? 0 : seed->kind == MHB_SEED_CROSSING ? 2 : 1;
-  SHB_TRY(begin_segment(host, seed, end, &go_on));
+  bool go_on = true;
+  *end       = MHB_END_NONE;
+  if (seed->kind != MHB_SEED_UNDER_WAY) {
+    host->n_tiny   = 0;
+    host->n_points = seed->skip_first ? 0 : seed->kind == MHB_SEED_CROSSING ? 2 : 1;
+    SHB_TRY(begin_segment(host, seed, end, &go_on));
+  }
   while (*end == MHB_END_NONE && go_on) {
-    if (n_points >= host->max_points) {
+    if (host->n_points >= host->max_points) {
       *end = MHB_END_MAX_POINTS;
       break;
     }
+    if (host->before_step) SHB_TRY(host->before_step(host));
     if (host->limit_step) host->limit_step(host);
     SHB_TRY(step_with_events(host, end));
     if (*end == MHB_END_STALLED) break;
-    SHB_TRY(record_step(host, &n_points, &go_on));
+    SHB_TRY(record_step(host, &go_on));
     mhb_arclength_advance(host->curve);
     mhb_events_advance(host->n_tests, host->test);
-    n_tiny = host->curve->step < TINY_STEP ? n_tiny + 1 : 0;
-    if (*end == MHB_END_NONE && n_tiny > MAX_TINY_STEPS) *end = MHB_END_TINY_STEPS;
-    if (*end != MHB_END_NONE || !go_on) break;
-    bool moved;
+    host->n_tiny = host->curve->step < TINY_STEP ? host->n_tiny + 1 : 0;
+    if (*end == MHB_END_NONE && host->n_tiny > MAX_TINY_STEPS) *end = MHB_END_TINY_STEPS;
+    if (*end != MHB_END_NONE) break;
+    bool moved; /* also when interrupted: a later run goes on from here */
     SHB_TRY(host->accept(host, &moved));
     if (moved) mhb_events_begin(host->curve, host->n_tests, host->test);
   }
+  host->reached = *end;
   if (!go_on) *end = MHB_END_INTERRUPTED;
   return SHB_OK;
 }

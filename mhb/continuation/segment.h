@@ -8,10 +8,12 @@
 
 /* Where a segment starts. */
 typedef enum {
-  MHB_SEED_SOLUTION, /* at a solution x, towards rising or falling values */
-  MHB_SEED_CROSSING, /* at a solution x of another curve, which the segment leaves along `along` */
-  MHB_SEED_EXCURSION /* where the curve through x, on an end of the range and heading outwards,
-                      * comes back to that end */
+  MHB_SEED_SOLUTION,  /* at a solution x, towards rising or falling values */
+  MHB_SEED_CROSSING,  /* at a solution x of another curve, which the segment leaves along `along` */
+  MHB_SEED_EXCURSION, /* where the curve through x, on an end of the range and heading outwards,
+                       * comes back to that end */
+  MHB_SEED_UNDER_WAY  /* host->curve, the tests' values and the counts are those of a segment under
+                      * way, before a step: it goes on */
 } mhb_seed_kind;
 
 typedef struct {
@@ -33,6 +35,9 @@ struct mhb_segment_host {
   mhb_event_test *test;       /* [n_tests] */
   mhb_events     *events;     /* of the level in use */
   int             max_points; /* of the segment */
+  int             n_points;   /* of the segment so far, each step's last point and its events */
+  int             n_tiny;     /* tiny steps in a row */
+  mhb_end         reached;    /* out: why the segment ended; MHB_END_NONE: under way when stopped */
 
   /* Estimate the errors of a point just corrected. At first or next: *raised tells that the level
    * does not suffice there, and that the host has moved curve->current to a higher level. */
@@ -44,9 +49,12 @@ struct mhb_segment_host {
   /* The segment has found its first point, curve->current; the host may refuse it by an *end.
    * NULL: nothing to do. */
   shb_status (*started)(mhb_segment_host *host, const mhb_seed *seed, mhb_end *end);
+  /* All points so far are recorded, and the next step is to begin. NULL: nothing to do. */
+  shb_status (*before_step)(mhb_segment_host *host);
   /* Shorten curve->step; NULL: never. */
   void (*limit_step)(mhb_segment_host *host);
-  /* Append a point to the segment. *go_on false: interrupted. */
+  /* Append a point to the segment. *go_on false: interrupted; the segment stops before its next
+   * step. */
   shb_status (*record)(mhb_segment_host *host, mhb_curve_point *point, int special, bool *go_on);
 };
 

@@ -53,6 +53,7 @@ static void free_modal(mhb_modal_motion *modal) {
 
 static void free_branch(mhb_branch *branch) {
   for (int i = 0; i < MHB_N_FIELDS; i++) free(mhb_field_get(branch, &mhb_fields[i]));
+  mhb_unfinished_destroy(branch->unfinished);
   free(branch->reason);
   free(branch->search);
   free(branch->lasting);
@@ -316,5 +317,52 @@ shb_status mhb_response_merge(mhb_response *response, mhb_response *other) {
   }
   other->n_branches = 0;
   if (other->n_lines > response->n_lines) response->n_lines = other->n_lines;
+  return SHB_OK;
+}
+
+/* ---- a curve under way ---- */
+
+mhb_unfinished *mhb_unfinished_create(const mhb_response *like) {
+  mhb_unfinished *u = calloc(1, sizeof *u);
+  if (u) u->segments = mhb_response_like(like);
+  if (u && u->segments) return u;
+  free(u);
+  return NULL;
+}
+
+void mhb_unfinished_destroy(mhb_unfinished *u) {
+  if (!u) return;
+  for (int i = 0; i < u->n; i++) mhb_trace_state_free(&u->state[i]);
+  free(u->state);
+  mhb_response_destroy(u->segments);
+  free(u);
+}
+
+static shb_status copy_segment(mhb_unfinished *u, const mhb_response *segments, int i,
+                               const mhb_trace_state *state) {
+  int               index = 0;
+  const mhb_branch *from  = &segments->branch[i];
+  SHB_TRY(mhb_response_branch(u->segments, from->kind, &index));
+  if (from->n_points > 0)
+    SHB_TRY(mhb_response_copy_points(u->segments, index, segments, i, 0, from->n_points - 1));
+  mhb_trace_state *to = &u->state[u->n++];
+  mhb_trace_state_numbers(to, state->number, state->n);
+  SHB_CHECK(!to->failed, SHB_ERR_IO, "no memory for the state of a curve");
+  return SHB_OK;
+}
+
+shb_status mhb_unfinished_copy(const mhb_response *segments, int n, const mhb_trace_state *state,
+                               mhb_unfinished **out) {
+  mhb_unfinished *u = mhb_unfinished_create(segments);
+  if (u) u->state = calloc((size_t)n + 1, sizeof *u->state);
+  shb_status status = u && u->state ? SHB_OK
+                                    : shb_fail(SHB_ERR_IO, __FILE__, __LINE__,
+                                               "no memory for the state of a curve");
+  for (int i = 0; i < n && status == SHB_OK; i++) status = copy_segment(u, segments, i, &state[i]);
+  if (status != SHB_OK) {
+    mhb_unfinished_destroy(u);
+    return status;
+  }
+  *out = u;
   return SHB_OK;
 }

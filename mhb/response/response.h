@@ -60,6 +60,13 @@ void mhb_response_sort(mhb_response *response);
  * probes, subharmonics, interfaces or parameter. */
 shb_status mhb_response_merge(mhb_response *response, mhb_response *other);
 
+/* A curve under way without segments, for those of a response. NULL: no memory. */
+mhb_unfinished *mhb_unfinished_create(const mhb_response *like);
+void            mhb_unfinished_destroy(mhb_unfinished *unfinished);
+/* The first n segments with their points, and a copy of their states. SHB_ERR_IO: no memory. */
+shb_status mhb_unfinished_copy(const mhb_response *segments, int n, const mhb_trace_state *state,
+                               mhb_unfinished **unfinished);
+
 /* Writes by a temporary file, fsync and rename; reads back with full checks. SHB_ERR_IO,
  * SHB_ERR_INPUT. */
 shb_status mhb_response_write(const mhb_response *response, const char *path,

@@ -335,6 +335,60 @@ static shb_status write_modal(hid_t group, const mhb_response *response, const m
   return h5_attach_scale(group, "modal/amplitude", 2, "/modes/frequency");
 }
 
+/* group/name, made or opened. *group < 0 after an error. */
+static shb_status make_group(hid_t at, const char *name, hid_t *group) {
+  *group = H5Gcreate2(at, name, H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT);
+  SHB_CHECK(*group >= 0, SHB_ERR_IO, "%s of the response cannot be written", name);
+  return SHB_OK;
+}
+
+static shb_status open_group(hid_t at, const char *path, const char *name, hid_t *group) {
+  *group = H5Gopen2(at, name, H5P_DEFAULT);
+  SHB_CHECK(*group >= 0, SHB_ERR_INPUT, "%s: %s is not a readable group", path, name);
+  return SHB_OK;
+}
+
+static shb_status write_fields(hid_t group, const mhb_response *response,
+                               const mhb_branch *branch) {
+  for (int i = 0; i < MHB_N_FIELDS; i++)
+    if (mhb_field_kept(response, branch, &mhb_fields[i]))
+      SHB_TRY(write_field(group, response, branch, &mhb_fields[i]));
+  return SHB_OK;
+}
+
+static shb_status fill_segment(hid_t group, const mhb_response *response,
+                               const mhb_unfinished *unfinished, int i) {
+  const mhb_branch      *segment = &unfinished->segments->branch[i];
+  const mhb_trace_state *state   = &unfinished->state[i];
+  SHB_TRY(h5_write_double(group, "numbers", H5_SHAPE(state->n), state->number, "-",
+                          "what determines how the curve goes on from its last point"));
+  if (has_own_scale(response, segment))
+    SHB_TRY(h5_write_counter(group, "harmonic", (hsize_t)segment->n_harmonics + 1,
+                             "harmonic k of omega / order"));
+  return write_fields(group, response, segment);
+}
+
+/* A curve under way, for a run that takes it up again. */
+static shb_status write_unfinished(hid_t group, const mhb_response *response,
+                                   const mhb_unfinished *unfinished) {
+  hid_t resume;
+  if (!unfinished) return SHB_OK;
+  SHB_TRY(make_group(group, "resume", &resume));
+  shb_status status = h5_write_attribute_int(resume, ".", "version", MHB_TRACE_STATE_VERSION);
+  if (status == SHB_OK) status = h5_write_attribute_int(resume, ".", "segments", unfinished->n);
+  for (int i = 0; i < unfinished->n && status == SHB_OK; i++) {
+    char  name[32];
+    hid_t segment;
+    snprintf(name, sizeof name, "segment_%d", i);
+    status = make_group(resume, name, &segment);
+    if (status != SHB_OK) break;
+    status = fill_segment(segment, response, unfinished, i);
+    H5Gclose(segment);
+  }
+  H5Gclose(resume);
+  return status;
+}
+
 static shb_status fill_branch(hid_t group, const mhb_response *response, const mhb_branch *branch) {
   SHB_TRY(h5_write_attribute_text(group, ".", "kind", mhb_branch_kind_name(branch->kind)));
   SHB_TRY(h5_write_attribute_text(group, ".", "reason", branch->reason));
@@ -349,9 +403,8 @@ static shb_status fill_branch(hid_t group, const mhb_response *response, const m
     SHB_TRY(h5_write_counter(
         group, "harmonic", (hsize_t)branch->n_harmonics + 1,
         "harmonic k of omega / order; x(t) = Re sum_k A_k exp(j k omega t / order)"));
-  for (int i = 0; i < MHB_N_FIELDS; i++)
-    if (mhb_field_kept(response, branch, &mhb_fields[i]))
-      SHB_TRY(write_field(group, response, branch, &mhb_fields[i]));
+  SHB_TRY(write_fields(group, response, branch));
+  SHB_TRY(write_unfinished(group, response, branch->unfinished));
   SHB_TRY(write_searches(group, response, branch));
   SHB_TRY(write_lasting(group, branch));
   SHB_TRY(write_amplification(group, branch));
@@ -362,10 +415,10 @@ static shb_status fill_branch(hid_t group, const mhb_response *response, const m
 }
 
 static shb_status write_branch(hid_t file, const mhb_response *response, int index) {
-  char name[32];
+  char  name[32];
+  hid_t group;
   snprintf(name, sizeof name, "/branch_%d", index);
-  hid_t group = H5Gcreate2(file, name, H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT);
-  SHB_CHECK(group >= 0, SHB_ERR_IO, "%s of the response cannot be written", name);
+  SHB_TRY(make_group(file, name, &group));
   shb_status status = fill_branch(group, response, &response->branch[index]);
   H5Gclose(group);
   return status;
@@ -665,14 +718,9 @@ static shb_status read_modal(hid_t group, const char *path, int index, const mhb
   return SHB_OK;
 }
 
-static shb_status fill_from(hid_t group, const char *path, int index, mhb_response *response) {
-  mhb_branch *branch = &response->branch[index];
-  int         complete;
-  SHB_TRY(read_kind(group, path, index, branch));
-  SHB_TRY(h5_read_attribute_text(group, ".", "reason", &branch->reason));
-  SHB_TRY(h5_read_attribute_int(group, ".", "complete", 0, &complete));
-  branch->complete = complete != 0;
-  SHB_TRY(read_descent(group, path, index, branch));
+/* The points of a branch whose kind, order and harmonics are known. */
+static shb_status read_points(hid_t group, const char *path, int index,
+                              const mhb_response *response, mhb_branch *branch) {
   h5_shape points;
   SHB_TRY(h5_shape_of(group, mhb_fields[0].name, &points));
   SHB_CHECK(points.rank == 1, SHB_ERR_INPUT, "%s: /branch_%d/frequency must be a list", path,
@@ -681,11 +729,72 @@ static shb_status fill_from(hid_t group, const char *path, int index, mhb_respon
   for (int i = 0; i < MHB_N_FIELDS; i++)
     if (mhb_field_kept(response, branch, &mhb_fields[i]))
       SHB_TRY(read_field(group, response, branch, &mhb_fields[i]));
+  return check_points(path, index, branch);
+}
+
+static shb_status read_segment(hid_t resume, const char *path, int index,
+                               mhb_unfinished *unfinished) {
+  char            name[32];
+  hid_t           group;
+  int             at;
+  h5_shape        numbers = H5_SHAPE(0);
+  mhb_trace_state state   = {0};
+  snprintf(name, sizeof name, "segment_%d", unfinished->n);
+  SHB_TRY(open_group(resume, path, name, &group));
+  shb_status status = h5_read_double(group, "numbers", &numbers, &state.number);
+  if (status == SHB_OK) {
+    state.n = state.room               = (size_t)numbers.dim[0];
+    unfinished->state[unfinished->n++] = state;
+    status = mhb_response_branch(unfinished->segments, MHB_BRANCH_NONLINEAR, &at);
+  }
+  if (status == SHB_OK)
+    status =
+        read_points(group, path, index, unfinished->segments, &unfinished->segments->branch[at]);
+  H5Gclose(group);
+  return status;
+}
+
+static shb_status read_segments(hid_t resume, const char *path, int index, int n,
+                                mhb_unfinished *unfinished) {
+  unfinished->state = calloc((size_t)n + 1, sizeof *unfinished->state);
+  SHB_CHECK(unfinished->state, SHB_ERR_IO, "%s: no memory", path);
+  for (int i = 0; i < n; i++) SHB_TRY(read_segment(resume, path, index, unfinished));
+  return SHB_OK;
+}
+
+/* A curve under way. That of another version is left out: it is traced anew. */
+static shb_status read_unfinished(hid_t group, const char *path, int index,
+                                  const mhb_response *response, mhb_branch *branch) {
+  int   version = 0, n = 0;
+  hid_t resume;
+  if (!h5_exists(group, "resume")) return SHB_OK;
+  SHB_TRY(h5_read_attribute_int(group, "resume", "version", 0, &version));
+  SHB_TRY(h5_read_attribute_int(group, "resume", "segments", 0, &n));
+  if (version != MHB_TRACE_STATE_VERSION || n < 1 || n > MAX_COUNT) return SHB_OK;
+  branch->unfinished = mhb_unfinished_create(response);
+  SHB_CHECK(branch->unfinished, SHB_ERR_IO, "%s: no memory", path);
+  branch->unfinished->segments->n_harmonics  = branch->n_harmonics;
+  branch->unfinished->segments->subharmonics = branch->order;
+  SHB_TRY(open_group(group, path, "resume", &resume));
+  shb_status status = read_segments(resume, path, index, n, branch->unfinished);
+  H5Gclose(resume);
+  return status;
+}
+
+static shb_status fill_from(hid_t group, const char *path, int index, mhb_response *response) {
+  mhb_branch *branch = &response->branch[index];
+  int         complete;
+  SHB_TRY(read_kind(group, path, index, branch));
+  SHB_TRY(h5_read_attribute_text(group, ".", "reason", &branch->reason));
+  SHB_TRY(h5_read_attribute_int(group, ".", "complete", 0, &complete));
+  branch->complete = complete != 0;
+  SHB_TRY(read_descent(group, path, index, branch));
+  SHB_TRY(read_points(group, path, index, response, branch));
+  SHB_TRY(read_unfinished(group, path, index, response, branch));
   SHB_TRY(read_searches(group, path, index, branch));
   SHB_TRY(read_lasting(group, branch));
   SHB_TRY(read_amplification(group, branch));
-  SHB_TRY(read_modal(group, path, index, response, branch));
-  return check_points(path, index, branch);
+  return read_modal(group, path, index, response, branch);
 }
 
 static shb_status read_branch(hid_t file, const char *path, mhb_response *response) {
@@ -694,8 +803,8 @@ static shb_status read_branch(hid_t file, const char *path, mhb_response *respon
   SHB_TRY(mhb_response_branch(response, MHB_BRANCH_NONLINEAR, &index));
   snprintf(name, sizeof name, "/branch_%d", index);
   SHB_CHECK(h5_exists(file, name), SHB_ERR_INPUT, "%s: %s is missing", path, name);
-  hid_t group = H5Gopen2(file, name, H5P_DEFAULT);
-  SHB_CHECK(group >= 0, SHB_ERR_INPUT, "%s: %s is not a readable group", path, name);
+  hid_t group;
+  SHB_TRY(open_group(file, path, name, &group));
   shb_status status = fill_from(group, path, index, response);
   H5Gclose(group);
   return status;

@@ -9,6 +9,7 @@
 #include "mesh/base/status.h"
 #include "mhb/problem/settings.h"
 #include "mhb/response/response_samples.h"
+#include "mhb/response/trace_state.h"
 #include "modal/model/contact_face.h"
 
 /* Solutions of the balance, its linear limits, and single points by time integration. */
@@ -136,6 +137,11 @@ typedef struct {
   double tuned, tuned_at; /* m, Hz: the ring with equal blades */
 } mhb_amplification;
 
+/* A curve under way: what a later run needs to go on from its last point as if it had never
+ * stopped. The curve consists of segments, in the order in which they were traced. Each has its
+ * points and a state. mhb/branches/tracer knows the meaning of the numbers. */
+typedef struct mhb_unfinished mhb_unfinished;
+
 /* One curve. Array layouts:
  *   motion, force  [point][pair][3 (v, u, w)][k = 0..m]
  *   probe          [point][probe][3 (tangential, axial, radial)][k]
@@ -150,8 +156,9 @@ typedef struct {
   bool            searched;           /* main branch: the search beside it is done, if wanted */
   int             n_searches;         /* main branch; 0: none was made */
   mhb_search     *search;             /* [n_searches] */
-  char           *reason;   /* end of the branch: "end of range", or why it ended before */
-  bool            complete; /* the range was covered */
+  char           *reason;     /* end of the branch: "end of range", or why it ended before */
+  bool            complete;   /* the range was covered */
+  mhb_unfinished *unfinished; /* main branch under way or interrupted; else NULL */
   int             n_points, capacity;
   double         *frequency;    /* [point] Hz, of the excitation's first harmonic */
   double         *n0;           /* [point] N, total of the interface, or of the leading one */
@@ -216,5 +223,11 @@ typedef struct {
   mhb_samples              *samples; /* of a mistuned ring; NULL: none were drawn */
   const modal_contact_face *face;    /* that the maps are written on; NULL: no maps; not owned */
 } mhb_response;
+
+struct mhb_unfinished {
+  mhb_response    *segments; /* a branch each */
+  int              n;        /* states, a segment each; at most as many as segments */
+  mhb_trace_state *state;    /* [n] */
+};
 
 #endif

@@ -288,6 +288,8 @@ void mhb_receptance_update(mhb_receptance *r, int k) {
   double w = frequency_of(r, k);
   if (r->updated_at[k] != w) {
     harmonic_at(r, k);
+    if (!r->ring && r->n >= MHB_WORTH_BLAS)
+      load_at(r, k); /* its last digits, not R's, everywhere */
     r->updated_at[k] = r->load_at[k] = w;
   }
   if (r->load_at[k] != w) { /* R_k is that of w, but the load went elsewhere since */

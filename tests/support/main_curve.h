@@ -18,4 +18,10 @@ shb_status main_curve(const modal_model *model, const mhb_settings *settings, in
 shb_status watched_main_curve(const modal_model *model, const mhb_settings *settings, int harmonics,
                               mhb_monitor *monitor, mhb_response **response);
 
+/* The same from where another such call was stopped; what it left for that is taken from its
+ * response. */
+shb_status continued_main_curve(const modal_model *model, const mhb_settings *settings,
+                                int harmonics, mhb_monitor *monitor, mhb_response *stopped,
+                                mhb_response **response);
+
 #endif
