@@ -7,6 +7,7 @@
 #include <limits.h>
 #include <signal.h>
 #include <stdatomic.h>
+#include <stdbool.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -14,6 +15,8 @@
 #include <unistd.h>
 
 enum { MAX_TEMPORARY = 8 };
+
+static const char MSH[] = ".msh";
 
 /* Names of temporary files that may exist. Names of published or removed files do no harm. Longer
  * names are not registered. */
@@ -43,7 +46,7 @@ static int is_distributed(void) {
   return (all && here && strcmp(all, here) != 0) || (nodes && strcmp(nodes, "1") != 0);
 }
 
-/* Remove PATH.tmp.PID of processes that are gone, such as killed ones. */
+/* Remove PATH.tmp.PID and PATH.tmp.PID.msh of processes that are gone, such as killed ones. */
 static void remove_orphans(const char *path) {
   if (is_distributed()) return;
   const char  *slash  = strrchr(path, '/');
@@ -56,22 +59,30 @@ static void remove_orphans(const char *path) {
       continue;
     char      *end;
     const long process = strtol(entry->d_name + n + 5, &end, 10);
-    if (process <= 0 || *end || process > INT_MAX || kill((pid_t)process, 0) == 0 || errno != ESRCH)
-      continue;
+    const bool ours    = process > 0 && process <= INT_MAX && (!*end || strcmp(end, MSH) == 0);
+    if (!ours || kill((pid_t)process, 0) == 0 || errno != ESRCH) continue;
     unlinkat(dirfd(list), entry->d_name, 0);
   }
   if (list) closedir(list);
   free(folder);
 }
 
+static char *temporary_name(const char *path, const char *ending) {
+  size_t size = strlen(path) + 36;
+  char  *name = malloc(size);
+  if (name) snprintf(name, size, "%s.tmp.%ld%s", path, (long)getpid(), ending);
+  if (name) register_temporary(name);
+  return name;
+}
+
 char *shb_publish_temporary(const char *path) {
   signal(SIGXFSZ, SIG_IGN); /* a write beyond the file size limit is then an error */
   remove_orphans(path);
-  size_t size = strlen(path) + 32;
-  char  *name = malloc(size);
-  if (name) snprintf(name, size, "%s.tmp.%ld", path, (long)getpid());
-  if (name) register_temporary(name);
-  return name;
+  return temporary_name(path, "");
+}
+
+char *shb_publish_temporary_msh(const char *path) {
+  return temporary_name(path, MSH);
 }
 
 static int sync_path(const char *path, int flags) {

@@ -16,6 +16,9 @@ typedef struct {
  * are gone are removed, unless the run is spread over several machines. */
 char *shb_publish_temporary(const char *path);
 
+/* Another one whose name ends in .msh, for gmsh, which chooses the format by the ending. */
+char *shb_publish_temporary_msh(const char *path);
+
 /* Remove the temporary files that are not published yet. Safe in a signal handler. */
 void shb_publish_abandon(void);
 

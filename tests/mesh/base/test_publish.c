@@ -84,7 +84,7 @@ static void abandoned_files_are_removed(void **state) {
 static void orphans_are_removed(void **state) {
   (void)state;
   char path[sizeof scratch_folder + 64], orphan[sizeof path + 32], ours[sizeof path + 32];
-  char other[sizeof path + 32];
+  char other[sizeof path + 32], msh[sizeof path + 32];
   path_of("orphaned", path);
   const pid_t child = fork();
   if (child == 0) _exit(0);
@@ -92,6 +92,8 @@ static void orphans_are_removed(void **state) {
   snprintf(orphan, sizeof orphan, "%s.tmp.%d", path, (int)child);
   snprintf(ours, sizeof ours, "%s.tmp.%d", path, (int)getppid());
   snprintf(other, sizeof other, "%s.tmp.%d.old", path, (int)child);
+  snprintf(msh, sizeof msh, "%s.tmp.%d.msh", path, (int)child);
+  write_text(msh, "half");
   write_text(orphan, "half");
   write_text(ours, "half");
   write_text(other, "half");
@@ -101,6 +103,7 @@ static void orphans_are_removed(void **state) {
   unsetenv("SLURM_NNODES");
   free(shb_publish_temporary(path));
   assert_int_not_equal(access(orphan, F_OK), 0);
+  assert_int_not_equal(access(msh, F_OK), 0);
   assert_int_equal(access(ours, F_OK), 0);
   assert_int_equal(access(other, F_OK), 0);
   unlink(ours);
