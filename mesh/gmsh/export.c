@@ -11,14 +11,16 @@
 #include "mesh/gmsh/provenance.h"
 #include "mesh/gmsh/session.h"
 
-/* Copy all lines except the $Periodic section. */
-static bool copy_lines(FILE *from, FILE *to) {
+/* Copy all lines except the $Periodic section. *whole: the elements are there to their end. gmsh
+ * does not say when it could not write them. */
+static bool copy_lines(FILE *from, FILE *to, bool *whole) {
   char  *line = NULL;
   size_t size = 0;
   bool   skip = false;
   while (getline(&line, &size, from) > 0) {
     if (strcmp(line, "$Periodic\n") == 0) skip = true;
     if (!skip) fputs(line, to);
+    if (strcmp(line, "$EndElements\n") == 0) *whole = true;
     if (strcmp(line, "$EndPeriodic\n") == 0) skip = false;
   }
   free(line);
@@ -27,11 +29,13 @@ static bool copy_lines(FILE *from, FILE *to) {
 
 static shb_status copy_file(const char *raw, const char *temporary, const char *path) {
   FILE *from = fopen(raw, "rb"), *to = fopen(temporary, "wb");
-  bool  good = from && to && copy_lines(from, to);
+  bool  whole = false, good = from && to && copy_lines(from, to, &whole);
   if (to) good = fclose(to) == 0 && good;
   int why = errno;
   if (from) fclose(from);
   SHB_CHECK(good, SHB_ERR_IO, "%s: cannot be written: %s", path, strerror(why));
+  SHB_CHECK(whole, SHB_ERR_IO,
+            "%s: cannot be written: gmsh stopped before the end; is the disk full?", path);
   return SHB_OK;
 }
 
