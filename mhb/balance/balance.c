@@ -611,11 +611,18 @@ static shb_status solve_stuck_ring(const mhb_balance *b, int k, int stuck, doubl
   return moves ? mhb_ring_linear_limit(b->receptance->ring, b->law, k, by_pair, u) : SHB_OK;
 }
 
+/* Without load a harmonic rests in a linear limit. Its receptance is not needed. */
+static bool rests(const mhb_balance *b, int k) {
+  return k > 0 && !b->receptance->driven[k];
+}
+
 /* Stuck: (I + R_k S) u_k = free_k - R_k s0, with s0 at k = 0 only. The mean friction is zero, the
  * smallest admissible one (contact/static_friction.h). */
 static shb_status linear_harmonic(const mhb_balance *b, int k, int stuck, double complex *u) {
   const int n = 3 * b->n_pairs;
-  memcpy(u, b->receptance->free + k * n, sizeof(double complex) * (size_t)n);
+  memset(u, 0, sizeof *u * (size_t)n);
+  if (rests(b, k)) return SHB_OK;
+  memcpy(u, b->receptance->free + k * n, sizeof *u * (size_t)n);
   if (!stuck) return SHB_OK;
   if (k == 0) subtract_preload(b, stuck, u);
   return b->receptance->ring ? solve_stuck_ring(b, k, stuck, u) : solve_stuck(b, k, stuck, u);
@@ -625,8 +632,7 @@ shb_status mhb_balance_linear_limit(mhb_balance *b, double value, int stuck, dou
   mhb_balance_set_value(b, value);
   mhb_receptance_set_frequency(b->receptance, b->eval->at.omega);
   for (int k = 0; k <= b->m; k++) {
-    const bool rests = b->receptance->ring && k > 0 && !b->receptance->driven[k];
-    if (!rests) mhb_receptance_update(b->receptance, k);
+    if (!rests(b, k)) mhb_receptance_update(b->receptance, k);
     SHB_TRY(linear_harmonic(b, k, stuck, b->motion_k));
     put_harmonic(b, x, k, b->motion_k);
     for (int i = 0; i < 3 * b->n_pairs; i++) b->force_k[i] = 0;

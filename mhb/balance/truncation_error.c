@@ -31,7 +31,7 @@ shb_status mhb_truncation_create(const mhb_balance *balance, mhb_truncation **ou
   t->settings           = *balance->settings;
   t->settings.harmonics = 2 * m;
   shb_status status =
-      mhb_receptance_create(balance->receptance->model, &t->settings, top, &t->receptance);
+      mhb_receptance_create_beside(balance->receptance, &t->settings, top, &t->receptance);
   if (status == SHB_OK) status = mhb_balance_create_on(t->receptance, &t->settings, &t->doubled);
   if (status == SHB_OK) {
     size_t n    = (size_t)t->doubled->n;

@@ -56,7 +56,7 @@ void mhb_modal_part_update(mhb_modal_part *b) {
 
 shb_status mhb_modal_part_create(const modal_model *model, mhb_relative relative, int nu,
                                  int n_harmonics, const double complex *phase,
-                                 mhb_modal_part **out) {
+                                 const mhb_residual_terms *like, mhb_modal_part **out) {
   mhb_modal_part *b = calloc(1, sizeof *b);
   SHB_CHECK(b, SHB_ERR_IO, "out of memory");
   *b             = (mhb_modal_part){.model       = model,
@@ -73,7 +73,7 @@ shb_status mhb_modal_part_create(const modal_model *model, mhb_relative relative
   b->driven         = shb_arena_take(&b->arena, K, sizeof *b->driven);
   shb_status status = b->arena.failed ? SHB_ERR_IO
                                       : mhb_residual_terms_create(model, relative, nu, n_harmonics,
-                                                                  phase, &b->residual_terms);
+                                                                  phase, like, &b->residual_terms);
   if (status != SHB_OK) {
     mhb_modal_part_destroy(b);
     SHB_FAIL(SHB_ERR_IO, "out of memory for the receptance");

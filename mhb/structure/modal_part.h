@@ -30,10 +30,10 @@ typedef struct {
 } mhb_modal_part;
 
 /* model, relative.T0 and phase[n_harmonics + 1] must outlive it. Load harmonic h drives harmonic nu
- * h. SHB_ERR_IO: no memory. */
+ * h. like: as of mhb_residual_terms_create, or NULL. SHB_ERR_IO: no memory. */
 shb_status mhb_modal_part_create(const modal_model *model, mhb_relative relative, int nu,
                                  int n_harmonics, const double complex *phase,
-                                 mhb_modal_part **part);
+                                 const mhb_residual_terms *like, mhb_modal_part **part);
 void       mhb_modal_part_destroy(mhb_modal_part *part);
 
 /* Anew from the model, whose arrays have other values. */

@@ -97,7 +97,8 @@ static double phase_step(const mhb_settings *s) {
 }
 
 /* Everything that does not depend on omega. */
-static shb_status set_blade(mhb_receptance *r, const mhb_settings *settings) {
+static shb_status set_blade(mhb_receptance *r, const mhb_settings *settings,
+                            const mhb_residual_terms *like) {
   const mhb_relative relative = {r->n, settings->to_ground ? 1 : 2, r->T0};
   const double       step     = settings->to_ground ? 0 : phase_step(settings);
   const int contacts = r->ring ? r->ring->blades : settings->contacts > 1 ? settings->contacts : 1;
@@ -115,7 +116,8 @@ static shb_status set_blade(mhb_receptance *r, const mhb_settings *settings) {
     r->driven = r->ring->blade[0]->driven;
     return SHB_OK;
   }
-  SHB_TRY(mhb_modal_part_create(r->model, relative, r->nu, r->n_harmonics, r->phase, &r->part));
+  SHB_TRY(
+      mhb_modal_part_create(r->model, relative, r->nu, r->n_harmonics, r->phase, like, &r->part));
   r->B              = r->part->B;
   r->F              = r->part->F;
   r->driven         = r->part->driven;
@@ -123,7 +125,8 @@ static shb_status set_blade(mhb_receptance *r, const mhb_settings *settings) {
   return SHB_OK;
 }
 
-static shb_status make(mhb_receptance *r, const modal_model *model, const mhb_settings *settings) {
+static shb_status make(mhb_receptance *r, const modal_model *model, const mhb_settings *settings,
+                       const mhb_residual_terms *like) {
   r->model = model;
   if (settings->ring) {
     SHB_TRY(mhb_ring_receptance_create(settings, r->n_harmonics, &r->ring));
@@ -136,13 +139,13 @@ static shb_status make(mhb_receptance *r, const modal_model *model, const mhb_se
   r->n       = 3 * r->model->n_pairs;
   r->n_modes = r->model->n_modes;
   SHB_CHECK(allocate(r), SHB_ERR_IO, "out of memory for the receptance");
-  SHB_TRY(set_blade(r, settings));
+  SHB_TRY(set_blade(r, settings, like));
   if (r->at) SHB_TRY(mhb_speed_derivative_create(r->at, r->part, &r->speed_derivative));
   return SHB_OK;
 }
 
-shb_status mhb_receptance_create(const modal_model *model, const mhb_settings *settings,
-                                 int n_harmonics, mhb_receptance **out) {
+static shb_status create(const modal_model *model, const mhb_settings *settings, int n_harmonics,
+                         const mhb_residual_terms *like, mhb_receptance **out) {
   SHB_CHECK(settings->to_ground || model->has_left, SHB_ERR_INPUT,
             "contact.to is neighbour, but the modal file has no /contact/left; set it to ground");
   SHB_CHECK(settings->to_ground || mhb_wave_shift(settings) >= 0, SHB_ERR_INPUT,
@@ -154,13 +157,24 @@ shb_status mhb_receptance_create(const modal_model *model, const mhb_settings *s
   r->n_harmonics    = n_harmonics;
   r->nu             = settings->subharmonics;
   r->scale          = settings->scale;
-  shb_status status = make(r, model, settings);
+  shb_status status = make(r, model, settings, like);
   if (status != SHB_OK) {
     mhb_receptance_destroy(r);
     return status;
   }
   *out = r;
   return SHB_OK;
+}
+
+shb_status mhb_receptance_create(const modal_model *model, const mhb_settings *settings,
+                                 int n_harmonics, mhb_receptance **out) {
+  return create(model, settings, n_harmonics, NULL, out);
+}
+
+shb_status mhb_receptance_create_beside(const mhb_receptance *other, const mhb_settings *settings,
+                                        int n_harmonics, mhb_receptance **out) {
+  const int own = other->ring || other->at;
+  return create(other->model, settings, n_harmonics, own ? NULL : other->residual_terms, out);
 }
 
 void mhb_receptance_destroy(mhb_receptance *r) {

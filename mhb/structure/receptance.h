@@ -63,6 +63,11 @@ typedef struct mhb_receptance {
  *   SHB_ERR_IO     no memory */
 shb_status mhb_receptance_create(const modal_model *model, const mhb_settings *settings,
                                  int n_harmonics, mhb_receptance **receptance);
+
+/* The same of the model of another receptance, with settings that differ in harmonics only. It uses
+ * that one's residual matrices, which must outlive it, but in a run-up and of a ring. */
+shb_status mhb_receptance_create_beside(const mhb_receptance *other, const mhb_settings *settings,
+                                        int n_harmonics, mhb_receptance **receptance);
 void       mhb_receptance_destroy(mhb_receptance *receptance);
 
 /* Go to the excitation frequency omega (rad/s). lambda, R and free are made when they are

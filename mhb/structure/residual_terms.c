@@ -85,7 +85,7 @@ static void set_probe(const mhb_residual_terms *l, int k, const double *matrix,
 void mhb_residual_terms_update(mhb_residual_terms *l) {
   const terms from = terms_of(l->model);
   for (int t = 0; t < MODAL_TERMS; t++)
-    if (l->contact[t])
+    if (l->contact[t] && !l->borrowed)
       mhb_cyclic_flexibility_set(l->contact[t], from.contact[t], n_contact(l->model),
                                  l->relative.T0);
   for (int k = 0; k <= l->n_harmonics; k++) {
@@ -96,10 +96,12 @@ void mhb_residual_terms_update(mhb_residual_terms *l) {
   }
 }
 
-static shb_status make(mhb_residual_terms *l) {
+static shb_status make(mhb_residual_terms *l, const mhb_residual_terms *like) {
   const terms from = terms_of(l->model);
   SHB_CHECK(take_arrays(l, &from), SHB_ERR_IO, "out of memory for the residual terms");
-  for (int t = 0; t < MODAL_TERMS; t++)
+  l->borrowed = like != NULL;
+  for (int t = 0; t < MODAL_TERMS && like; t++) l->contact[t] = like->contact[t];
+  for (int t = 0; t < MODAL_TERMS && !like; t++)
     if (from.contact[t])
       SHB_TRY(mhb_cyclic_flexibility_create(from.contact[t], n_contact(l->model), l->relative.T0,
                                             l->model->n_pairs, l->relative.sides, &l->contact[t]));
@@ -109,7 +111,7 @@ static shb_status make(mhb_residual_terms *l) {
 
 shb_status mhb_residual_terms_create(const modal_model *model, mhb_relative relative, int nu,
                                      int n_harmonics, const double complex *phase,
-                                     mhb_residual_terms **out) {
+                                     const mhb_residual_terms *like, mhb_residual_terms **out) {
   mhb_residual_terms *l = calloc(1, sizeof *l);
   SHB_CHECK(l, SHB_ERR_IO, "out of memory");
   l->model          = model;
@@ -117,7 +119,7 @@ shb_status mhb_residual_terms_create(const modal_model *model, mhb_relative rela
   l->nu             = nu;
   l->n_harmonics    = n_harmonics;
   l->phase          = phase;
-  shb_status status = make(l);
+  shb_status status = make(l, like);
   if (status == SHB_OK)
     *out = l;
   else
@@ -127,7 +129,8 @@ shb_status mhb_residual_terms_create(const modal_model *model, mhb_relative rela
 
 void mhb_residual_terms_destroy(mhb_residual_terms *l) {
   if (!l) return;
-  for (int t = 0; t < MODAL_TERMS; t++) mhb_cyclic_flexibility_destroy(l->contact[t]);
+  for (int t = 0; t < MODAL_TERMS && !l->borrowed; t++)
+    mhb_cyclic_flexibility_destroy(l->contact[t]);
   shb_arena_free(&l->arena);
   free(l);
 }

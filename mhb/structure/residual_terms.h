@@ -25,6 +25,7 @@ typedef struct {
   int                     n_harmonics, nu;
   const double complex   *phase;                      /* [k] e_k, the caller's */
   mhb_cyclic_flexibility *contact[MODAL_TERMS];       /* R, R2, R3; NULL: none, as below */
+  bool                    borrowed;                   /* contact is that of other terms */
   double complex         *load[MODAL_TERMS];          /* [k][n] */
   double complex         *probe_load[MODAL_TERMS];    /* [k][3 q] */
   double complex         *probe_contact[MODAL_TERMS]; /* [k][3 q][n] */
@@ -34,13 +35,14 @@ typedef struct {
 } mhb_residual_terms;
 
 /* model, relative.T0 and phase[n_harmonics + 1] must outlive it. Load harmonic h drives harmonic nu
- * h. SHB_ERR_IO: no memory. */
+ * h. The matrices of the contact have no harmonics: those of `like`, other terms of the same model
+ * and axes, are used and must outlive it. NULL: own ones. SHB_ERR_IO: no memory. */
 shb_status mhb_residual_terms_create(const modal_model *model, mhb_relative relative, int nu,
                                      int n_harmonics, const double complex *phase,
-                                     mhb_residual_terms **out);
+                                     const mhb_residual_terms *like, mhb_residual_terms **out);
 void       mhb_residual_terms_destroy(mhb_residual_terms *terms);
 
-/* Anew from the model, whose arrays have other values. */
+/* Anew from the model, whose arrays have other values. Not where the matrices are borrowed. */
 void mhb_residual_terms_update(mhb_residual_terms *terms);
 
 /* Whether the load has this harmonic. */

@@ -13,7 +13,7 @@ shb_status mhb_speed_derivative_create(mhb_speed_model *model, const mhb_modal_p
   d->part  = part;
   mhb_speed_model_differentiate(model);
   shb_status status = mhb_modal_part_create(&model->slope, part->relative, part->nu,
-                                            part->n_harmonics, part->phase, &d->slope);
+                                            part->n_harmonics, part->phase, NULL, &d->slope);
   if (status != SHB_OK) {
     free(d);
     return status;

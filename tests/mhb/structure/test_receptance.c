@@ -201,6 +201,32 @@ static void condensation_is_the_dense_sum(void **state) {
   }
 }
 
+/* Twice the harmonics on the same residual matrices: the same numbers, and one copy of them. */
+static void one_beside_another_has_the_same_numbers(void **state) {
+  (void)state;
+  modal_model     model;
+  mhb_receptance *one, *beside, *alone;
+  mhb_settings    s = random_settings(2);
+  random_model(3, WITH_LEFT | WITH_RESIDUAL | WITH_RESIDUAL_MODES, 31, &model);
+  assert_int_equal(mhb_receptance_create(&model, &s, 2, &one), SHB_OK);
+  s.harmonics = 4;
+  assert_int_equal(mhb_receptance_create_beside(one, &s, 4, &beside), SHB_OK);
+  assert_int_equal(mhb_receptance_create(&model, &s, 4, &alone), SHB_OK);
+  assert_ptr_equal(beside->residual_terms->contact[0], one->residual_terms->contact[0]);
+  assert_ptr_not_equal(alone->residual_terms->contact[0], one->residual_terms->contact[0]);
+  mhb_receptance_at(beside, 1.07, 4);
+  mhb_receptance_at(alone, 1.07, 4);
+  size_t n = (size_t)one->n;
+  assert_memory_equal(beside->R, alone->R, 5 * n * n * sizeof(double complex));
+  assert_memory_equal(beside->free, alone->free, 5 * n * sizeof(double complex));
+  mhb_receptance_destroy(beside);
+  mhb_receptance_at(one, 1.07, 2); /* its matrices are still there */
+  assert_memory_equal(one->R, alone->R, 3 * n * n * sizeof(double complex));
+  mhb_receptance_destroy(one);
+  mhb_receptance_destroy(alone);
+  modal_model_free(&model);
+}
+
 /* r_cc is complex symmetric, so that reversing the wave transposes R. It takes energy out:
  * Im p^H R p <= 0. */
 static void receptance_is_reciprocal_and_passive(void **state) {
@@ -385,6 +411,7 @@ static void faults_are_named(void **state) {
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(condensation_is_the_dense_sum),
+      cmocka_unit_test(one_beside_another_has_the_same_numbers),
       cmocka_unit_test(receptance_is_reciprocal_and_passive),
       cmocka_unit_test(slopes_are_derivatives),
       cmocka_unit_test(subharmonics_close_around_the_ring),
