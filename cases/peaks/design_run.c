@@ -11,7 +11,7 @@
  * the case, which may take a hundred times as long. On z_notch_blade the peaks of three harmonics
  * are within 8 % of those of 31. */
 static const int sweeps[] = {3, 7, 15, 0};
-enum { N_SWEEPS = sizeof sweeps / sizeof *sweeps };
+enum { N_SWEEPS = sizeof sweeps / sizeof *sweeps, MANY = 1000 };
 
 /* Tolerance of the contact law on these curves; the peak itself is solved with that of the case. */
 static const double OUTLINE = 1e-4;
@@ -109,14 +109,14 @@ static void put_derivatives(job *j, const exact_peak *peak) {
 }
 
 /* The peaks of other probes than the first output. */
-static shb_status put_probes(job *j, post_output first, const exact_peak *peak) {
+static shb_status put_probes(job *j, post_output first, int harmonics, const exact_peak *peak) {
   for (int i = 0; i < j->n; i++) {
     const study_output *o     = &j->output[i];
     post_output         probe = {POST_PLACE_PROBE, o->index, POST_WHOLE};
     exact_peak          own   = *peak;
     if (o->quantity != STUDY_PROBE || o->index >= j->response->n_probes) continue;
     if (first.place != probe.place || first.index != probe.index)
-      SHB_TRY(find_peak(j, probe, (exact_peak_asked){0}, &own));
+      SHB_TRY(find_peak(j, probe, (exact_peak_asked){.harmonics = harmonics}, &own));
     put(j, i, own.amplitude, own.amplitude_error);
   }
   return SHB_OK;
@@ -193,7 +193,7 @@ static void judge(job *j, const exact_peak *peak) {
 }
 
 /* Fill in all outputs from the response and the peak of its first output. */
-static shb_status fill(job *j, post_output first, const exact_peak *peak) {
+static shb_status fill(job *j, post_output first, int harmonics, const exact_peak *peak) {
   if (!peak->found) {
     fail(j->design, "the balance has no solution in mhb.frequency");
     return SHB_OK;
@@ -201,7 +201,7 @@ static shb_status fill(job *j, post_output first, const exact_peak *peak) {
   put_peak(j, peak);
   put_derivatives(j, peak);
   put_modes(j);
-  SHB_TRY(put_probes(j, first, peak));
+  SHB_TRY(put_probes(j, first, harmonics, peak));
   SHB_TRY(thin_curves(j, first));
   judge(j, peak);
   return SHB_OK;
@@ -213,18 +213,19 @@ static bool is_settled(const exact_peak *peak) {
 
 /* Sweep with more and more harmonics until the peak is exact. */
 static shb_status work(job *j) {
-  const exact_peak_asked asked = {wants(j, STUDY_STABLE), study_derivatives(j->n, j->output) > 0,
-                                  j->field};
-  exact_peak             peak  = {0};
-  post_output            first = {0};
-  shb_status             status;
+  exact_peak_asked asked = {wants(j, STUDY_STABLE), study_derivatives(j->n, j->output) > 0,
+                            j->field, 0};
+  exact_peak       peak  = {0};
+  post_output      first = {0};
+  shb_status       status;
   for (int i = 0; i < N_SWEEPS && !is_settled(&peak); i++) {
     exact_peak before = peak;
     if (sweeps[i] > 0 && !is_coarse(j, sweeps[i])) continue;
     status = sweep(j, sweeps[i]);
     if (status == SHB_ERR_INPUT && sweeps[i] > 0) continue; /* the load has more harmonics */
     if (status != SHB_OK && status != SHB_NOT_CONVERGED) return status;
-    first = post_output_primary(j->response);
+    asked.harmonics = sweeps[i] > 0 ? sweeps[i] : MANY;
+    first           = post_output_primary(j->response);
     SHB_TRY(find_peak(j, first, asked, &peak));
     /* A detached curve that this sweep has not found. */
     if (before.exact && !(peak.amplitude > before.amplitude)) {
@@ -232,7 +233,7 @@ static shb_status work(job *j) {
       peak         = before;
     }
   }
-  return fill(j, first, &peak);
+  return fill(j, first, asked.harmonics, &peak);
 }
 
 shb_status design_run(const case_file *file, const case_model *model, peak_field *field,

@@ -29,6 +29,7 @@ typedef struct {
   mhb_response       *response;
   post_output         output;
   exact_peak_asked    asked;
+  int                 first; /* of the levels: the samples' */
 } work;
 
 /* A maximum and how it is solved with one number of harmonics. */
@@ -247,11 +248,11 @@ typedef struct {
 /* With the harmonics of the case, or as many as its tolerance asks for. */
 static shb_status settle(const work *w, const fine_maximum *f, int fixed, candidate *c) {
   bool settled = false;
-  for (int level = 0; level < (fixed ? 1 : N_LEVELS) && !settled; level++) {
+  for (int level = 0; level < (fixed ? 1 : N_LEVELS - w->first) && !settled; level++) {
     maximum          m      = {.fine = f};
     exact_peak       more   = {0};
     matched_solution at     = {0};
-    shb_status       status = matcher_for(w, &m, fixed ? 0 : levels[level]);
+    shb_status       status = matcher_for(w, &m, fixed ? 0 : levels[w->first + level]);
     if (status == SHB_OK) status = solve_near_solution(w, &m, &c->solution, &more, &at);
     point_matcher_destroy(m.matcher);
     bool same = more.found && (level == 0 || fabs(more.amplitude / c->peak.amplitude - 1) < CHANGE);
@@ -287,7 +288,7 @@ static shb_status begin(const work *w, const fine_maximum *f, int fixed, candida
     c->amplitude = c->peak.amplitude;
     return SHB_OK;
   }
-  SHB_TRY(matcher_for(w, &m, fixed ? 0 : levels[0]));
+  SHB_TRY(matcher_for(w, &m, fixed ? 0 : levels[w->first]));
   shb_status status = solve_first(&m, &c->solution);
   point_matcher_destroy(m.matcher);
   if (c->solution.x) c->amplitude = m.found[1];
@@ -333,11 +334,18 @@ static shb_status choose(const work *w, const fine_maxima *maxima, candidate *c,
   return SHB_OK;
 }
 
+/* The samples have as many harmonics as the coarse curve, but one level is left for the error. */
+static int first_level(int harmonics) {
+  int level = 0;
+  while (level < N_LEVELS - 2 && harmonics > levels[level]) level++;
+  return level;
+}
+
 shb_status exact_peak_find(const modal_model *model, const mhb_settings *settings,
                            mhb_response *response, post_output output, exact_peak_asked asked,
                            exact_peak *peak) {
-  const work  w     = {model, settings, response, output, asked};
-  int         first = settings->motion_tolerance > 0 ? levels[0] : 0;
+  const work  w     = {model, settings, response, output, asked, first_level(asked.harmonics)};
+  int         first = settings->motion_tolerance > 0 ? levels[w.first] : 0;
   fine_maxima maxima;
   *peak = (exact_peak){.amplitude = -1, .stable = -1};
   no_errors(peak);

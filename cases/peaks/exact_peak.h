@@ -28,7 +28,8 @@ typedef struct {
 
 typedef struct {
   bool        multipliers, derivatives;
-  peak_field *field; /* NULL: not asked for */
+  peak_field *field;     /* NULL: not asked for */
+  int         harmonics; /* of the coarse curve at most, per period of the excitation */
 } exact_peak_asked;
 
 /* Find the highest peak of an output over all nonlinear branches of a response.
