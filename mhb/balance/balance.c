@@ -652,6 +652,13 @@ void mhb_balance_contact_force(const mhb_balance *b, int k, double complex *p) {
   get_harmonic(b, b->eval->p, k, p);
 }
 
+void mhb_balance_update_probes(const mhb_balance *b, int k) {
+  if (b->product)
+    mhb_receptance_update_load(b->receptance, k);
+  else
+    mhb_receptance_update(b->receptance, k);
+}
+
 bool mhb_balance_is_linear(const mhb_balance *b) {
   for (int a = 0; a < b->n_pairs; a++)
     if (b->eval->info[a].share[MHB_STICK] < 1 && b->eval->info[a].share[MHB_SEPARATE] < 1)

@@ -143,6 +143,10 @@ shb_status mhb_balance_linear_limit(mhb_balance *balance, double value, int stuc
 /* Forces of the evaluation in use: complex harmonic k of all pairs, p[3 pairs] N. */
 void mhb_balance_contact_force(const mhb_balance *balance, int k, double complex *p);
 
+/* What the motions of the probes at harmonic k need of the receptance. With many pairs that is not
+ * R. */
+void mhb_balance_update_probes(const mhb_balance *balance, int k);
+
 /* Whether every pair of the evaluation in use is stuck or open over the whole period. The forces
  * then have the harmonics of the motion and no others. */
 bool mhb_balance_is_linear(const mhb_balance *balance);

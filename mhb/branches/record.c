@@ -17,7 +17,7 @@ static void record_signals(mhb_response *response, mhb_branch *branch, int point
       branch->motion[at] = k == 0 ? a[0] : CMPLX(a[2 * k - 1], a[2 * k]);
       branch->force[at]  = p[row];
     }
-    mhb_receptance_update(b->receptance, k); /* it may have been at another frequency since */
+    mhb_balance_update_probes(b, k); /* it may have been at another frequency since */
     mhb_receptance_probe(b->receptance, k, p, motion);
     for (int s = 0; s < q; s++)
       branch->probe[((size_t)point * (size_t)q + (size_t)s) * (size_t)K + (size_t)k] = motion[s];

@@ -51,7 +51,7 @@ void mhb_probe_change(mhb_balance *b, const mhb_curve_point *point, int k, doubl
   double         dvalue = point->tangent[b->n];
   double complex p[b->receptance->n], dp[b->receptance->n];
   mhb_balance_use(b, point->evaluation);
-  mhb_receptance_update(b->receptance, k);
+  mhb_balance_update_probes(b, k);
   mhb_balance_contact_force(b, k, p);
   force_change(b, point->tangent, dvalue, k, dp);
   mhb_receptance_probe(b->receptance, k, p, q);

@@ -27,7 +27,7 @@ static void probe_motions(mhb_balance *b, const mhb_curve_point *point, double c
   mhb_balance_use(b, point->evaluation);
   for (int k = 1; k <= b->m; k++) {
     mhb_balance_contact_force(b, k, p);
-    mhb_receptance_update(r, k);
+    mhb_balance_update_probes(b, k);
     mhb_receptance_probe(r, k, p, q + k * n);
   }
   for (int o = 0; size && o < n / 3; o++) {
