@@ -45,19 +45,6 @@ static shb_status check_use(const char *path, const modal_model *model) {
   return SHB_OK;
 }
 
-/* A file of nodal diameters has a model for each wave, which the balance does not use yet. */
-static shb_status refuse_disc(const char *path) {
-  modal_nodal_diameters disc;
-  SHB_TRY(modal_nodal_diameters_read(path, &disc));
-  const int n = disc.n;
-  modal_nodal_diameters_free(&disc);
-  SHB_CHECK(n == 0, SHB_ERR_INPUT,
-            "%s: holds modes of a disc at %d nodal diameters, which the balance does not use yet; "
-            "leave out the groups cyclic_right and cyclic_left and clamp the sides or the blade",
-            path, n);
-  return SHB_OK;
-}
-
 /* value[n][*columns] <- the deviations of the case, to be freed. */
 static shb_status deviations(const case_file *file, int n_modes, int *columns, double **value) {
   const case_mistuning *m = &file->mistuning;
@@ -95,10 +82,42 @@ static shb_status make_ring(const case_file *file, case_model *m) {
   return SHB_OK;
 }
 
+/* With nodal diameters the model is that of 0. */
+static shb_status read_disc(const char *path, case_model *m) {
+  modal_nodal_diameters *disc = calloc(1, sizeof *disc);
+  SHB_CHECK(disc, SHB_ERR_IO, "out of memory");
+  shb_status status = modal_nodal_diameters_read(path, disc);
+  if (status != SHB_OK || disc->n == 0) {
+    free(disc);
+    return status;
+  }
+  m->disc                     = disc;
+  m->model                    = disc->model[0];
+  m->settings.nodal_diameters = disc;
+  return SHB_OK;
+}
+
+/* What the balance of a disc does not do. */
+static shb_status check_disc(const case_file *file, const char *path, int modes,
+                             const case_model *m) {
+  const char *refused = file->run_up                            ? "mhb.run_up"
+                        : file->mistuning.kind != CASE_TUNED    ? "rotor.mistuning"
+                        : file->points < 0 && !file->modal_file ? "contact.points: auto"
+                        : modes > 0                             ? "a smaller number of modes"
+                                                                : NULL;
+  SHB_CHECK(!refused, SHB_ERR_INPUT,
+            "%s: holds the modes of a disc at its nodal diameters, which %s does not know; clamp "
+            "the blade at its root instead",
+            path, refused);
+  SHB_TRY(mhb_receptance_check(&m->settings, 0));
+  return check_use(path, &m->model);
+}
+
 shb_status case_model_read(const case_file *file, const char *path, int modes, bool residuals,
                            case_model *m) {
   *m = (case_model){.settings = file->mhb};
-  SHB_TRY(refuse_disc(path));
+  SHB_TRY(read_disc(path, m));
+  if (m->disc) return check_disc(file, path, modes, m);
   if (file->run_up) return read_speeds(path, modes, residuals, m);
   SHB_TRY(modal_model_read(path, &m->model));
   SHB_TRY(check_use(path, &m->model));
@@ -117,14 +136,14 @@ shb_status case_model_join(case_model *m, int patches) {
 }
 
 shb_status case_model_judge_points(case_model *m) {
-  if (m->points || m->run_up || m->ring) return SHB_OK;
+  if (m->points || m->run_up || m->ring || m->disc) return SHB_OK;
   SHB_TRY(contact_points_halve(&m->model, &m->points));
   if (m->points) m->settings.other_pairs = &m->points->pairs;
   return SHB_OK;
 }
 
 shb_status case_model_face(case_model *m, const char *path) {
-  if (m->run_up || m->ring) return SHB_OK;
+  if (m->run_up || m->ring || m->disc) return SHB_OK;
   SHB_TRY(modal_contact_face_read(path, &m->face));
   if (m->points && m->points->pairs.finer) modal_contact_face_join(&m->face, &m->points->joining);
   if (m->face.n_nodes > 0) m->settings.face = &m->face;
@@ -133,10 +152,12 @@ shb_status case_model_face(case_model *m, const char *path) {
 
 void case_model_free(case_model *m) {
   modal_contact_face_free(&m->face);
-  if (!m->run_up && !m->ring) modal_model_free(&m->model);
+  if (!m->run_up && !m->ring && !m->disc) modal_model_free(&m->model);
   mhb_mistuned_ring_destroy(m->ring);
   modal_model_free(&m->tuned);
   contact_points_free(m->points);
+  if (m->disc) modal_nodal_diameters_free(m->disc);
+  free(m->disc);
   mhb_speed_model_destroy(m->top);
   mhb_speed_table_destroy(m->run_up);
   *m = (case_model){0};

@@ -5,19 +5,22 @@
 #include "cases/commands/contact_points.h"
 #include "cases/parse/case_file.h"
 #include "mhb/mistuning/mistuned_ring.h"
+#include "mhb/structure/receptance.h"
 #include "mhb/structure/speed_model.h"
 #include "modal/model/contact_face.h"
+#include "modal/model/nodal_diameters.h"
 
 typedef struct {
   modal_model  model; /* in a run-up the one at the upper end of mhb.frequency; owned. Of a ring of
                       * different blades that of the whole ring */
-  mhb_settings settings;     /* of the case, including the run-up and the ring */
-  modal_model  tuned;        /* with a ring: the blade of the file; owned */
-  mhb_mistuned_ring *ring;   /* NULL: equal blades */
-  mhb_speed_table   *run_up; /* NULL: one speed */
-  mhb_speed_model   *top;    /* owner of the model in a run-up */
-  modal_contact_face face;   /* for maps; without nodes: none */
-  contact_points    *points; /* the model's finer or coarser one; NULL: none */
+  mhb_settings settings;         /* of the case, including the run-up and the ring */
+  modal_model  tuned;            /* with a ring: the blade of the file; owned */
+  modal_nodal_diameters *disc;   /* NULL: a clamped blade; else model is that of its first; owned */
+  mhb_mistuned_ring     *ring;   /* NULL: equal blades */
+  mhb_speed_table       *run_up; /* NULL: one speed */
+  mhb_speed_model       *top;    /* owner of the model in a run-up */
+  modal_contact_face     face;   /* for maps; without nodes: none */
+  contact_points        *points; /* the model's finer or coarser one; NULL: none */
 } case_model;
 
 /* Read the modal file at path, with all speeds in a run-up.

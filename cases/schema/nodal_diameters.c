@@ -27,5 +27,7 @@ int case_nodal_diameters(const case_file *file, int list[CASE_MOST_DIAMETERS]) {
   if (!file->has_contact || file->engine_order == 0 || mhb->subharmonics > 1 ||
       mhb->search.starts > 0)
     return -1;
-  return of_harmonics(file, mhb->harmonics > 0 ? mhb->harmonics : file->blades, list);
+  /* The truncation estimate looks at four times as many harmonics, and at twelve. */
+  const int looked_at = mhb->harmonics > 3 ? 4 * mhb->harmonics : 12;
+  return of_harmonics(file, mhb->harmonics > 0 ? looked_at : file->blades, list);
 }

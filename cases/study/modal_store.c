@@ -288,10 +288,11 @@ shb_status modal_store_get(modal_store *s, const double *value, const case_file 
     if (at < 0) at = oldest(s);
     SHB_TRY(load(s, value, file, digest, at));
   }
-  s->entry[at].used      = ++s->clock;
-  *model                 = s->entry[at].model;
-  *field                 = s->entry[at].field;
-  model->settings        = file->mhb;
-  model->settings.run_up = s->entry[at].model.run_up;
+  s->entry[at].used               = ++s->clock;
+  *model                          = s->entry[at].model;
+  *field                          = s->entry[at].field;
+  model->settings                 = file->mhb;
+  model->settings.run_up          = s->entry[at].model.run_up;
+  model->settings.nodal_diameters = s->entry[at].model.disc;
   return SHB_OK;
 }

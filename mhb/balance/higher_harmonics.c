@@ -165,8 +165,9 @@ static void set_W(mhb_higher_harmonics *h, int k, int pair, double complex W[3][
 
 /* 1/(w_i^2 - w^2 + 2 j zeta_i w_i w) */
 static double complex modal_receptance(const mhb_receptance *r, int k, int i) {
-  double w = k * r->omega / r->nu, wi = SHB_TWO_PI * r->model->frequency[i];
-  return 1.0 / CMPLX(wi * wi - w * w, 2 * r->model->damping_ratio[i] * wi * w);
+  const modal_model *model = mhb_receptance_model(r, k);
+  double             w = k * r->omega / r->nu, wi = SHB_TWO_PI * model->frequency[i];
+  return 1.0 / CMPLX(wi * wi - w * w, 2 * model->damping_ratio[i] * wi * w);
 }
 
 /* A += B^H D W B, y += B^H D W c of a pair. */

@@ -44,16 +44,17 @@ static void set_missing_motion(const mhb_balance *b, const double *ratio, part b
                                double complex *e) {
   const mhb_receptance     *r     = b->receptance;
   const mhb_residual_terms *terms = r->residual_terms;
-  const int t = last_term((void *const *)terms->contact), u = last_term((void *const *)terms->load);
+  const int                 t     = last_term(terms->own[0] ? (void *const *)terms->own
+                                                            : (void *const *)terms->contact),
+            u                     = last_term((void *const *)terms->load);
   double complex p[r->n];
   for (int k = 1; k <= b->m; k++) {
-    const modal_series s  = modal_series_at(r->model, k * r->omega / r->nu);
+    const modal_series s  = modal_series_at(mhb_receptance_model(r, k), k * r->omega / r->nu);
     double complex    *to = e + k * r->n;
     if (by == BY_CONTACT) mhb_balance_contact_force(b, k, p);
     for (int i = 0; i < r->n; i++)
       if (by == BY_CONTACT)
-        to[i] = -ratio[k] * s.weight[t] *
-                mhb_cyclic_flexibility_row(terms->contact[t], r->phase[k], i, p);
+        to[i] = -ratio[k] * s.weight[t] * mhb_residual_terms_row(terms, t, k, i, p);
       else
         to[i] = terms->load[u]
                     ? ratio[k] * s.load_weight[u] * r->scale * terms->load[u][k * r->n + i]
@@ -109,13 +110,14 @@ double mhb_modal_error(const mhb_balance *b, const double *x, mhb_truncation *t)
   const double size   = mhb_balance_vibration(b, x);
   double       ratio[b->m + 1], sum = 0;
   int          pivot[n];
-  if (!r->residual_terms->contact[0]) return -1;
+  if (!r->residual_terms->contact[0] && !r->residual_terms->own[0]) return -1;
   double complex *e = calloc((size_t)all + (linear ? (size_t)(n * n) : 0), sizeof *e);
   if (!e || !(size > 0)) {
     free(e);
     return e ? 0 : -1;
   }
-  for (int k = 1; k <= b->m; k++) ratio[k] = series_ratio(r->model, k * r->omega / r->nu);
+  for (int k = 1; k <= b->m; k++)
+    ratio[k] = series_ratio(mhb_receptance_model(r, k), k * r->omega / r->nu);
   for (part by = 0; by < PARTS; by++) {
     set_missing_motion(b, ratio, by, e);
     if (linear) solve_by_harmonic(b, e + all, pivot, e);

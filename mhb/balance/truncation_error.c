@@ -21,11 +21,15 @@ static int most(int a, int b) {
   return a > b ? a : b;
 }
 
+int mhb_truncation_highest(int m) {
+  return most(2 * m, least(most(4 * m, MHB_LEAST_LOOKED_AT), MHB_MOST_LOOKED_AT));
+}
+
 shb_status mhb_truncation_create(const mhb_balance *balance, mhb_truncation **out) {
   mhb_truncation *t = calloc(1, sizeof *t);
   SHB_CHECK(t, SHB_ERR_IO, "out of memory");
   int m   = balance->m;
-  int top = most(2 * m, least(most(4 * m, MHB_LEAST_LOOKED_AT), MHB_MOST_LOOKED_AT));
+  int top = mhb_truncation_highest(m);
   if (balance->receptance->ring) top = 2 * m;
   t->balance            = balance;
   t->settings           = *balance->settings;

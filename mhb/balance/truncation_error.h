@@ -45,6 +45,9 @@ typedef struct {
   shb_arena             arena;
 } mhb_truncation;
 
+/* Highest harmonic that the estimate for m harmonics looks at. */
+int mhb_truncation_highest(int m);
+
 /* The balance must outlive it. Errors: as mhb_balance_create. */
 shb_status mhb_truncation_create(const mhb_balance *balance, mhb_truncation **truncation);
 void       mhb_truncation_destroy(mhb_truncation *truncation);

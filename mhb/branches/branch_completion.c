@@ -59,7 +59,7 @@ shb_status mhb_branch_complete(mhb_tracer *tracer, const mhb_chain *chain, mhb_r
   unmark_hairlines(branch, range);
   c->interrupted = c->end == MHB_END_INTERRUPTED;
   if (c->by_folds) SHB_TRY(mhb_branch_stability_by_folds(branch, begins, n_begins, c->stable_at));
-  if (settings->stability == MHB_STABILITY_NEVER || c->interrupted) return set_reason(branch, c);
+  if (!mhb_judges_stability(settings) || c->interrupted) return set_reason(branch, c);
   mhb_branch_stability *stability;
   bool                  finished = true;
   SHB_TRY(mhb_harmonic_levels_use(tracer->levels, levels->highest)); /* no point has more */

@@ -4,6 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "mhb/balance/truncation_error.h"
 #include "mhb/branches/branch_stability.h"
 #include "mhb/branches/harmonic_selection.h"
 #include "mhb/branches/lasting_motion.h"
@@ -506,6 +507,7 @@ shb_status mhb_forced_response(const modal_model *model, const mhb_settings *ask
   *out            = NULL;
   first.harmonics = m[n_levels - 1];
   SHB_TRY(check_load(model, settings));
+  SHB_TRY(mhb_receptance_check(settings, mhb_truncation_highest(first.harmonics)));
   first.harmonics = m[0];
   if (first.parameter == MHB_IN_N0) first.n_preloads = 1;
   sweep s = {

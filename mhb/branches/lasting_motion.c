@@ -66,6 +66,8 @@ static bool is_modulated(const mhb_response *r, const mhb_branch *b, int point) 
 /* Why nothing is computed for the whole case; NULL: it is. */
 static const char *refusal(const mhb_settings *s) {
   if (s->lasting == MHB_LASTING_NEVER) return "not computed: mhb.lasting is never";
+  if (s->nodal_diameters)
+    return "not computed: stability is not judged where a disc couples the blades";
   if (s->run_up) return "not computed: in a run-up each frequency has a structure of its own";
   if (s->parameter != MHB_IN_FREQUENCY)
     return "not computed: the curves are not over the frequency";

@@ -47,7 +47,7 @@ typedef struct {
 } branch_search;
 
 bool mhb_secondary_branches_wanted(const mhb_settings *s) {
-  return s->search.starts > 0 || (s->flips && s->stability != MHB_STABILITY_NEVER);
+  return s->search.starts > 0 || (s->flips && mhb_judges_stability(s));
 }
 
 static mhb_branch *branch_at(const branch_search *h, int index) {

@@ -48,8 +48,9 @@ static shb_status add_inside(const stuck_modes *w, mhb_resonances *s, mhb_resona
 
 /* The resonance of free mode i at harmonic k. */
 static mhb_resonance free_one(const mhb_receptance *r, int k, int i) {
-  double omega = SHB_TWO_PI * r->model->frequency[i], turns = (double)r->nu / k;
-  return (mhb_resonance){turns * omega, turns * omega * r->model->damping_ratio[i], k, i, false};
+  const modal_model *model = mhb_receptance_model(r, k);
+  double             omega = SHB_TWO_PI * model->frequency[i], turns = (double)r->nu / k;
+  return (mhb_resonance){turns * omega, turns * omega * model->damping_ratio[i], k, i, false};
 }
 
 /* sum + S.u, u[3] with a stride. */
@@ -94,7 +95,7 @@ static int solve(const stuck_modes *w, int k) {
   if (!stiffen(w, k)) return 0;
   for (int j = 0; j < m; j++) {
     for (int i = 0; i < m; i++) {
-      double         omega = SHB_TWO_PI * r->model->frequency[i];
+      double         omega = SHB_TWO_PI * mhb_receptance_model(r, k)->frequency[i];
       double complex sum   = i == j ? omega * omega : 0;
       for (int row = 0; row < n; row++)
         sum += conj(B[(size_t)row * (size_t)m + (size_t)i]) *
@@ -131,10 +132,11 @@ static shb_status add_between(const stuck_modes *w, mhb_resonances *s, mhb_reson
 static mhb_resonance stuck_one(const stuck_modes *w, int k, int j) {
   const mhb_receptance *r     = w->b->receptance;
   const double complex *q     = w->M + (size_t)j * (size_t)r->n_modes;
+  const modal_model    *model = mhb_receptance_model(r, k);
   double                decay = 0, turns = (double)r->nu / k;
   for (int i = 0; i < r->n_modes; i++) {
     double size = cabs(q[i]);
-    decay += size * size * r->model->damping_ratio[i] * SHB_TWO_PI * r->model->frequency[i];
+    decay += size * size * model->damping_ratio[i] * SHB_TWO_PI * model->frequency[i];
   }
   double omega = sqrt(fmax(0, w->square[j]));
   return (mhb_resonance){turns * omega, turns * decay, k, -1, false};
@@ -281,7 +283,7 @@ shb_status mhb_resonances_create(const mhb_balance *b, double low, double high,
 /* The stuck resonances of harmonic k in sections of the range. R changes little over each. */
 static shb_status add_stuck_sections(stuck_modes *w, mhb_resonances *s, int k) {
   const mhb_receptance *r     = w->b->receptance;
-  const double         *f     = r->model->frequency;
+  const double         *f     = mhb_receptance_model(r, k)->frequency;
   const double          turns = SHB_TWO_PI * r->nu / k, low = w->low, high = w->high;
   const double          first = fmax(low, 0.5 * turns * f[0]);
   const double          last  = fmin(high, 2 * turns * f[r->n_modes - 1]);

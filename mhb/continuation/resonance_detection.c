@@ -43,8 +43,8 @@ static void probe_motions(mhb_balance *b, const mhb_curve_point *point, double c
 static bool may_be_significant(const mhb_balance *b, const mhb_resonance *resonance,
                                const double *probe, double contact) {
   const mhb_receptance *r    = b->receptance;
-  const modal_model    *m    = r->model;
   int                   mode = resonance->mode, k = resonance->k;
+  const modal_model    *m = mhb_receptance_model(r, k);
   double complex        p[r->n];
   if (mode < 0) return true;
   mhb_balance_contact_force(b, k, p);
@@ -61,7 +61,7 @@ static bool may_be_significant(const mhb_balance *b, const mhb_resonance *resona
   for (int o = 0; o < m->n_probes && !significant; o++) {
     double own = 0;
     for (int axis = 0; axis < 3; axis++)
-      own += pow(m->probe[(3 * o + axis) * r->n_modes + mode], 2);
+      own += square(mhb_modal_part_probe(r->part, k, 3 * o + axis, mode, 1));
     significant = peak * sqrt(own) >= SIGNIFICANT * probe[o];
   }
   return significant;

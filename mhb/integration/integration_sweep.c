@@ -464,6 +464,9 @@ shb_status mhb_integration_sweep(const modal_model *model, const mhb_settings *s
              .harmonics = harmonics_of(model, settings, request, balance),
              .progress  = progress};
   *out    = NULL;
+  SHB_CHECK(!settings->nodal_diameters, SHB_ERR_INPUT,
+            "time integration knows no nodal diameters yet; give modal.file of a clamped blade, or "
+            "leave the integration out");
   SHB_CHECK(!settings->run_up || request->start != MHB_START_FROM_STATE, SHB_ERR_INPUT,
             "integrate.start: state takes the state of one structure to the next, but in a run-up "
             "(mhb.run_up) each frequency has its own; set it to balance or rest");

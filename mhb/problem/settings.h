@@ -101,6 +101,8 @@ typedef struct {
   char                output[MHB_NAME]; /* whose peak: a probe or "contact"; "": the first probe */
   const struct mhb_speed_table
       *run_up; /* NULL: one speed. Else the modal model follows the frequency. */
+  const struct modal_nodal_diameters
+      *nodal_diameters; /* NULL: a clamped blade. Else harmonic k has the model of its own. */
   /* NULL: equal blades that move as one wave. Else every blade has its own model, and the modal
    * model of the balance is that of the whole ring (mhb/mistuning/mistuned_ring.h). */
   const struct mhb_mistuned_ring *ring;
@@ -114,6 +116,11 @@ typedef struct {
   bool outline;
   bool resume; /* take over the finished branches of an interrupted run of equal settings */
 } mhb_settings;
+
+/* Whether points get a verdict. Blades that are coupled by their disc get none yet. */
+static inline bool mhb_judges_stability(const mhb_settings *s) {
+  return s->stability != MHB_STABILITY_NEVER && !s->nodal_diameters;
+}
 
 /* Points by time integration (mhb/integration/integration_sweep.h). */
 typedef enum {

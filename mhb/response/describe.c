@@ -5,6 +5,7 @@
 
 #include "mhb/mistuning/mistuned_ring.h"
 #include "mhb/problem/interfaces.h"
+#include "modal/model/nodal_diameters.h"
 
 /* Interfaces in the order of the case. */
 static shb_status describe_interfaces(mhb_response *response, const modal_model *model,
@@ -21,9 +22,20 @@ static shb_status describe_interfaces(mhb_response *response, const modal_model 
   return status;
 }
 
+/* The model whose frequencies are shown: with a disc that of the first harmonic. */
+static const modal_model *shown(const modal_model *model, const mhb_settings *settings) {
+  modal_wave wave;
+  int        missing;
+  if (settings->nodal_diameters &&
+      modal_nodal_diameters_wave(settings->nodal_diameters, settings->engine_order, &wave,
+                                 &missing))
+    return wave.model;
+  return model;
+}
+
 shb_status mhb_response_describe(mhb_response *response, const modal_model *model,
                                  const mhb_settings *settings) {
-  const modal_model *modes = settings->ring ? settings->ring->tuned : model;
+  const modal_model *modes = settings->ring ? settings->ring->tuned : shown(model, settings);
   size_t             m     = (size_t)modes->n_modes;
   response->n_modes        = modes->n_modes;
   response->ring           = settings->ring ? settings->ring->blades : 0;
@@ -32,7 +44,7 @@ shb_status mhb_response_describe(mhb_response *response, const modal_model *mode
   response->blades         = settings->blades;
   response->run_up         = settings->run_up != NULL;
   response->parameter      = settings->parameter;
-  response->n_multipliers  = settings->stability == MHB_STABILITY_NEVER ? 0 : MHB_KEPT_MULTIPLIERS;
+  response->n_multipliers  = mhb_judges_stability(settings) ? MHB_KEPT_MULTIPLIERS : 0;
   response->mode_frequency = malloc(sizeof(double) * m);
   response->mode_damping   = malloc(sizeof(double) * m);
   SHB_CHECK(response->mode_frequency && response->mode_damping, SHB_ERR_IO, "out of memory");

@@ -2,30 +2,42 @@
 
 #include <stdlib.h>
 
+typedef struct {
+  int row, side, axis, mode;
+} place;
+
+/* Share of one axis and side in B. */
+static double complex shape_part(const mhb_modal_part *b, const modal_wave *wave, int k, place p) {
+  const size_t at =
+      ((size_t)(p.row / 3) * 3 + (size_t)p.axis) * (size_t)b->n_modes + (size_t)p.mode;
+  const double  *re     = p.side ? wave->model->left : wave->model->right;
+  double complex weight = mhb_relative_weight(&b->relative, p.row, p.side, p.axis, b->phase[k]);
+  if (!wave->imaginary) return weight * re[at];
+  const double *im = p.side ? wave->imaginary->left : wave->imaginary->right;
+  return weight * modal_wave_value(wave, re, im, at);
+}
+
 static void set_shapes(mhb_modal_part *b, int k) {
-  const modal_model *model = b->model;
-  const int          m     = b->n_modes;
-  double complex    *B     = b->B + (size_t)k * (size_t)b->n * (size_t)m;
+  const modal_wave *wave = &b->wave[k];
+  const int         m    = b->n_modes;
+  double complex   *B    = b->B + (size_t)k * (size_t)b->n * (size_t)m;
   for (int row = 0; row < b->n; row++)
     for (int i = 0; i < m; i++) {
       double complex sum = 0;
-      for (int axis = 0; axis < 3; axis++) {
-        size_t at = ((size_t)(row / 3) * 3 + (size_t)axis) * (size_t)m + (size_t)i;
-        sum += mhb_relative_weight(&b->relative, row, 0, axis, b->phase[k]) * model->right[at];
-        if (b->relative.sides == 2)
-          sum += mhb_relative_weight(&b->relative, row, 1, axis, b->phase[k]) * model->left[at];
-      }
+      for (int axis = 0; axis < 3; axis++)
+        for (int side = 0; side < b->relative.sides; side++)
+          sum += shape_part(b, wave, k, (place){row, side, axis, i});
       B[(size_t)row * (size_t)m + (size_t)i] = sum;
     }
 }
 
 static void set_load(mhb_modal_part *b, int k) {
-  const modal_model *model = b->model;
-  const int          h = k / b->nu, m = b->n_modes;
+  const modal_wave *wave = &b->wave[k];
+  const int         h = k / b->nu, m = b->n_modes;
   b->driven[k] = mhb_residual_terms_driven(b->residual_terms, k);
-  if (k % b->nu || h > model->n_load) return;
+  if (k % b->nu || h > wave->model->n_load) return;
   for (int i = 0; i < m; i++) {
-    b->F[k * m + i] = model->modal_force[h * m + i];
+    b->F[k * m + i] = wave->loads->modal_force[h * m + i];
     b->driven[k] |= b->F[k * m + i] != 0;
   }
 }
@@ -54,27 +66,33 @@ void mhb_modal_part_update(mhb_modal_part *b) {
   set(b);
 }
 
-shb_status mhb_modal_part_create(const modal_model *model, mhb_relative relative, int nu,
-                                 int n_harmonics, const double complex *phase,
-                                 const mhb_residual_terms *like, mhb_modal_part **out) {
+static shb_status make(mhb_modal_part *b, const mhb_harmonics *harmonics) {
+  const size_t n = (size_t)b->n, m = (size_t)b->n_modes, K = (size_t)b->n_harmonics + 1;
+  b->wave   = shb_arena_take(&b->arena, K, sizeof *b->wave);
+  b->B      = shb_arena_take(&b->arena, K * n * m, sizeof *b->B);
+  b->F      = shb_arena_take(&b->arena, K * m, sizeof *b->F);
+  b->split  = shb_arena_take(&b->arena, K * 2 * (n + 1) * m, sizeof *b->split);
+  b->driven = shb_arena_take(&b->arena, K, sizeof *b->driven);
+  if (b->arena.failed) return SHB_ERR_IO;
+  for (size_t k = 0; k < K; k++)
+    b->wave[k] = harmonics->wave ? harmonics->wave[k] : modal_wave_real(b->model);
+  mhb_harmonics own = *harmonics;
+  own.wave          = b->wave;
+  return mhb_residual_terms_create(b->model, b->relative, &own, &b->residual_terms);
+}
+
+shb_status mhb_modal_part_create(const modal_model *model, mhb_relative relative,
+                                 const mhb_harmonics *harmonics, mhb_modal_part **out) {
   mhb_modal_part *b = calloc(1, sizeof *b);
   SHB_CHECK(b, SHB_ERR_IO, "out of memory");
-  *b             = (mhb_modal_part){.model       = model,
-                                    .relative    = relative,
-                                    .n           = relative.n,
-                                    .n_modes     = model->n_modes,
-                                    .n_harmonics = n_harmonics,
-                                    .nu          = nu,
-                                    .phase       = phase};
-  const size_t n = (size_t)b->n, m = (size_t)b->n_modes, K = (size_t)n_harmonics + 1;
-  b->B              = shb_arena_take(&b->arena, K * n * m, sizeof *b->B);
-  b->F              = shb_arena_take(&b->arena, K * m, sizeof *b->F);
-  b->split          = shb_arena_take(&b->arena, K * 2 * (n + 1) * m, sizeof *b->split);
-  b->driven         = shb_arena_take(&b->arena, K, sizeof *b->driven);
-  shb_status status = b->arena.failed ? SHB_ERR_IO
-                                      : mhb_residual_terms_create(model, relative, nu, n_harmonics,
-                                                                  phase, like, &b->residual_terms);
-  if (status != SHB_OK) {
+  *b = (mhb_modal_part){.model       = model,
+                        .relative    = relative,
+                        .n           = relative.n,
+                        .n_modes     = model->n_modes,
+                        .n_harmonics = harmonics->n_harmonics,
+                        .nu          = harmonics->nu,
+                        .phase       = harmonics->phase};
+  if (make(b, harmonics) != SHB_OK) {
     mhb_modal_part_destroy(b);
     SHB_FAIL(SHB_ERR_IO, "out of memory for the receptance");
   }

@@ -17,7 +17,8 @@
 #include "mhb/structure/residual_terms.h"
 
 typedef struct {
-  const modal_model    *model;
+  const modal_model    *model; /* of all harmonics, or of the mean */
+  modal_wave           *wave;  /* [k] model of each harmonic */
   mhb_relative          relative;
   int                   n, n_modes, n_harmonics, nu; /* n = 3 pairs; harmonics 0..n_harmonics */
   const double complex *phase;                       /* [k] e_k, the caller's */
@@ -29,11 +30,10 @@ typedef struct {
   shb_arena           arena;
 } mhb_modal_part;
 
-/* model, relative.T0 and phase[n_harmonics + 1] must outlive it. Load harmonic h drives harmonic nu
- * h. like: as of mhb_residual_terms_create, or NULL. SHB_ERR_IO: no memory. */
-shb_status mhb_modal_part_create(const modal_model *model, mhb_relative relative, int nu,
-                                 int n_harmonics, const double complex *phase,
-                                 const mhb_residual_terms *like, mhb_modal_part **part);
+/* model, relative.T0 and the arrays of harmonics must outlive it. harmonics->wave NULL: all have
+ * the model. SHB_ERR_IO: no memory. */
+shb_status mhb_modal_part_create(const modal_model *model, mhb_relative relative,
+                                 const mhb_harmonics *harmonics, mhb_modal_part **part);
 void       mhb_modal_part_destroy(mhb_modal_part *part);
 
 /* Anew from the model, whose arrays have other values. */
@@ -42,6 +42,15 @@ void mhb_modal_part_update(mhb_modal_part *part);
 /* Real or imaginary part of B_k and F_k: [n + 1][modes]. */
 static inline const double *mhb_modal_part_split(const mhb_modal_part *part, int k, int imaginary) {
   return part->split + (size_t)(2 * k + imaginary) * ((size_t)part->n + 1) * (size_t)part->n_modes;
+}
+
+/* Motion of probe dof row [3 q] in mode i at harmonic k times a. */
+static inline double complex mhb_modal_part_probe(const mhb_modal_part *part, int k, int row, int i,
+                                                  double complex a) {
+  const modal_wave *wave = &part->wave[k];
+  const size_t      at   = (size_t)row * (size_t)part->n_modes + (size_t)i;
+  if (!wave->imaginary) return wave->model->probe[at] * a;
+  return modal_wave_value(wave, wave->model->probe, wave->imaginary->probe, at) * a;
 }
 
 /* Force on mode i at harmonic k: load F - B^H p. */

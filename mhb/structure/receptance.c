@@ -96,11 +96,66 @@ static double phase_step(const mhb_settings *s) {
   return SHB_TWO_PI / s->subharmonics * ((double)s->engine_order / s->blades + mhb_wave_shift(s));
 }
 
+/* The model of one harmonic: that of nodal diameter k (E + N l)/nu. */
+static shb_status find_wave(const mhb_settings *s, int k, modal_wave *wave) {
+  const modal_nodal_diameters *d   = s->nodal_diameters;
+  mhb_settings                 own = {.engine_order = s->engine_order};
+  own.blades                       = d->blades;
+  own.subharmonics                 = s->subharmonics;
+  const long shift                 = mhb_wave_shift(&own);
+  int        missing;
+  SHB_CHECK(shift >= 0, SHB_ERR_INPUT,
+            "mhb.subharmonics is %d, but a wave of that many periods does not close around the %d "
+            "sectors of the modal file at engine order %d; set it to 1",
+            s->subharmonics, d->blades, s->engine_order);
+  SHB_CHECK(modal_nodal_diameters_wave(
+                d, k * ((s->engine_order + d->blades * shift) / s->subharmonics), wave, &missing),
+            SHB_ERR_INPUT,
+            "harmonic %d%s at engine order %d meets the disc at nodal diameter %d, which the modal "
+            "file does not have; add it by `shroudhb modal --set modal.nodal_diameters=all "
+            "CASE.yaml`",
+            k, s->subharmonics > 1 ? " of the fundamental" : "", s->engine_order, missing);
+  return SHB_OK;
+}
+
+shb_status mhb_receptance_check(const mhb_settings *s, int top) {
+  const modal_nodal_diameters *d = s->nodal_diameters;
+  modal_wave                   wave;
+  if (!d) return SHB_OK;
+  SHB_CHECK(s->blades == d->blades || (s->to_ground && s->blades == 0), SHB_ERR_INPUT,
+            "rotor.blades is %d, but the modal file holds one of %d sectors; set it to %d",
+            s->blades, d->blades, d->blades);
+  SHB_CHECK(s->engine_order >= 0, SHB_ERR_INPUT,
+            "excitation.engine_order is %d; the nodal diameters of the modal file need one of 0 or "
+            "more",
+            s->engine_order);
+  for (int k = 0; k <= top; k++) SHB_TRY(find_wave(s, k, &wave));
+  return SHB_OK;
+}
+
+static shb_status make_part(mhb_receptance *r, const mhb_settings *settings,
+                            const mhb_residual_terms *like) {
+  const mhb_relative relative  = {r->n, settings->to_ground ? 1 : 2, r->T0};
+  mhb_harmonics      harmonics = {
+           .nu = r->nu, .n_harmonics = r->n_harmonics, .phase = r->phase, .like = like};
+  if (!settings->nodal_diameters)
+    return mhb_modal_part_create(r->model, relative, &harmonics, &r->part);
+  modal_wave *wave = calloc((size_t)r->n_harmonics + 1, sizeof *wave);
+  SHB_CHECK(wave, SHB_ERR_IO, "out of memory for the receptance");
+  harmonics.wave            = wave;
+  harmonics.nodal_diameters = true;
+  shb_status status         = mhb_receptance_check(settings, r->n_harmonics);
+  for (int k = 0; k <= r->n_harmonics && status == SHB_OK; k++)
+    status = find_wave(settings, k, &wave[k]);
+  if (status == SHB_OK) status = mhb_modal_part_create(r->model, relative, &harmonics, &r->part);
+  free(wave);
+  return status;
+}
+
 /* Everything that does not depend on omega. */
 static shb_status set_blade(mhb_receptance *r, const mhb_settings *settings,
                             const mhb_residual_terms *like) {
-  const mhb_relative relative = {r->n, settings->to_ground ? 1 : 2, r->T0};
-  const double       step     = settings->to_ground ? 0 : phase_step(settings);
+  const double step  = settings->to_ground ? 0 : phase_step(settings);
   const int contacts = r->ring ? r->ring->blades : settings->contacts > 1 ? settings->contacts : 1;
   SHB_TRY(mhb_interfaces_match(r->model, settings, r->interface));
   for (int i = 0; i < mhb_interfaces(settings); i++) {
@@ -116,8 +171,7 @@ static shb_status set_blade(mhb_receptance *r, const mhb_settings *settings,
     r->driven = r->ring->blade[0]->driven;
     return SHB_OK;
   }
-  SHB_TRY(
-      mhb_modal_part_create(r->model, relative, r->nu, r->n_harmonics, r->phase, like, &r->part));
+  SHB_TRY(make_part(r, settings, like));
   r->B              = r->part->B;
   r->F              = r->part->F;
   r->driven         = r->part->driven;
@@ -190,9 +244,10 @@ void mhb_receptance_destroy(mhb_receptance *r) {
 
 /* L_i = 1/(w_i^2 - w^2 + 2 j zeta_i w_i w). At a resonance without damping w is moved by half of
  * NUDGE. That is far enough for the other modes to keep half of their digits in the sums. */
-MHB_HOT static void set_lambda(const mhb_receptance *r, double w, double *restrict re,
+MHB_HOT static void set_lambda(const mhb_receptance *r, int k, double w, double *restrict re,
                                double *restrict im) {
-  const double *restrict hz = r->model->frequency, *restrict zeta = r->model->damping_ratio;
+  const modal_model *model  = mhb_receptance_model(r, k);
+  const double *restrict hz = model->frequency, *restrict zeta = model->damping_ratio;
   for (int i = 0; i < r->n_modes; i++) {
     double wi = SHB_TWO_PI * hz[i], a = wi * wi - w * w, b = 2 * zeta[i] * wi * w,
            size  = a * a + b * b;
@@ -240,7 +295,7 @@ static void harmonic_at(mhb_receptance *r, int k) {
   double complex *R = r->R + (size_t)k * (size_t)n * (size_t)n, *u = r->free_response_unit + k * n;
   const double *re = mhb_modal_part_split(r->part, k, 0), *im = mhb_modal_part_split(r->part, k, 1);
   double complex *all = r->BL, one = 1;
-  set_lambda(r, w, L, L + m);
+  set_lambda(r, k, w, L, L + m);
   for (int i = 0; i < m; i++) r->lambda[k * m + i] = CMPLX(L[i], L[m + i]);
   memset(u, 0, sizeof *u * (size_t)n);
   mhb_receptance_residual_terms(r, k, w, R);
@@ -271,7 +326,7 @@ static void load_at(mhb_receptance *r, int k) {
   double complex *u = r->free_response_unit + k * n;
   const double *re = mhb_modal_part_split(r->part, k, 0), *im = mhb_modal_part_split(r->part, k, 1);
   const double *load_re = re + n * m, *load_im = im + n * m;
-  set_lambda(r, w, L, L + m);
+  set_lambda(r, k, w, L, L + m);
   for (int i = 0; i < m; i++) {
     r->lambda[k * m + i] = CMPLX(L[i], L[m + i]);
     y[i]                 = L[i] * load_re[i] - L[m + i] * load_im[i];
@@ -333,9 +388,10 @@ void mhb_receptance_scale(mhb_receptance *r, double scale) {
 
 /* dL/d omega = L^2 (2 k^2 omega - 2 j zeta w_i k), k counted in the excitation frequency. */
 static double complex lambda_slope(const mhb_receptance *r, int k, int i) {
-  double         kk = (double)k / r->nu, wi = SHB_TWO_PI * r->model->frequency[i];
+  double         kk = (double)k / r->nu, wi = SHB_TWO_PI * mhb_receptance_model(r, k)->frequency[i];
   double complex L = r->lambda[k * r->n_modes + i];
-  return L * L * (2 * kk * kk * r->omega - 2 * I * r->model->damping_ratio[i] * wi * kk);
+  return L * L *
+         (2 * kk * kk * r->omega - 2 * I * mhb_receptance_model(r, k)->damping_ratio[i] * wi * kk);
 }
 
 /* y = scale F - B^H p, by modes. */
@@ -368,7 +424,8 @@ MHB_HOT static void slope_drive(const mhb_receptance *r, int k, const double com
   for (int i = 0; i < m; i++) {
     double a = creal(lambda[i]), b = cimag(lambda[i]);
     double sr = a * a - b * b, si = 2 * a * b;
-    double loss = -4 * SHB_PI * r->model->damping_ratio[i] * r->model->frequency[i] * kk;
+    double loss = -4 * SHB_PI * mhb_receptance_model(r, k)->damping_ratio[i] *
+                  mhb_receptance_model(r, k)->frequency[i] * kk;
     double dr = sr * spring - si * loss, di = si * spring + sr * loss, x = yr[i];
     yr[i] = dr * x - di * yi[i];
     yi[i] = dr * yi[i] + di * x;
@@ -380,7 +437,7 @@ MHB_HOT static void motion_drive(const mhb_receptance *r, int k, double w, const
                                  double *restrict yr, double *restrict yi) {
   int    m = r->n_modes;
   double L[2 * m];
-  set_lambda(r, w, L, L + m);
+  set_lambda(r, k, w, L, L + m);
   drive(r, k, p, yr, yi);
   for (int i = 0; i < m; i++) {
     double x = yr[i];
@@ -470,7 +527,7 @@ void mhb_receptance_probe_change(const mhb_receptance *r, int k, const double co
     double complex a = r->lambda[k * m + i] * mhb_modal_part_force(r->part, k, dp, i, d_scale);
     if (d_omega != 0)
       a += d_omega * lambda_slope(r, k, i) * mhb_modal_part_force(r->part, k, p, i, r->scale);
-    for (int s = 0; s < q; s++) change[s] += r->model->probe[s * m + i] * a;
+    for (int s = 0; s < q; s++) change[s] += mhb_modal_part_probe(r->part, k, s, i, a);
   }
   if (r->at && d_omega != 0)
     mhb_speed_derivative_probe(r->speed_derivative, k, k * r->omega / r->nu, r->lambda + k * m,
@@ -503,11 +560,12 @@ void mhb_receptance_by_damping(const mhb_receptance *r, int k, const double comp
   drive(r, k, p, yr, yi);
   memset(probe, 0, sizeof *probe * (size_t)q);
   for (int i = 0; i < m; i++) {
-    double         b = 2 * r->model->damping_ratio[i] * SHB_TWO_PI * r->model->frequency[i] * w;
+    double b = 2 * mhb_receptance_model(r, k)->damping_ratio[i] * SHB_TWO_PI *
+               mhb_receptance_model(r, k)->frequency[i] * w;
     double complex L = r->lambda[k * m + i], y = -I * b * L * L * CMPLX(yr[i], yi[i]);
     yr[i] = creal(y);
     yi[i] = cimag(y);
-    for (int s = 0; s < q; s++) probe[s] += r->model->probe[s * m + i] * y;
+    for (int s = 0; s < q; s++) probe[s] += mhb_modal_part_probe(r->part, k, s, i, y);
   }
   modal_sums(r, k, yr, yi, motion);
 }

@@ -10,6 +10,9 @@
  * and the probes by the same with their own shapes. |L_i| is at most 1e8/w_i^2: without damping, at
  * a resonance, it is that of a frequency 5e-9 beside it.
  *
+ * With a flexible disc (settings->nodal_diameters) harmonic k is that of nodal diameter k (E + N
+ * l)/nu modulo N: its shapes, frequencies and residual terms. phi_i phi_i^H is then complex.
+ *
  * Motions are [3 pairs] in the order pair, (v, u, w). The modal part is made once; in a run-up
  * (settings->run_up), where the model depends on omega, anew at every frequency. */
 #ifndef MHB_STRUCTURE_RECEPTANCE_H
@@ -26,7 +29,7 @@
 #include "mhb/structure/speed_model.h"
 
 typedef struct mhb_receptance {
-  const modal_model    *model;            /* in a run-up the one at omega */
+  const modal_model    *model;            /* in a run-up the one at omega; of a disc that of 0 */
   mhb_speed_model      *at;               /* run-up: whose model that is; else NULL */
   mhb_speed_derivative *speed_derivative; /* run-up: d model/d omega; else NULL */
   mhb_ring_receptance  *ring; /* different blades: pairs, modes and probes are those of the whole
@@ -54,6 +57,15 @@ typedef struct mhb_receptance {
   double complex       *BL;                 /* [n][modes] B L of one harmonic */
   shb_arena             arena;
 } mhb_receptance;
+
+/* Modal model of harmonic k: that of its nodal diameter, or the only one. */
+static inline const modal_model *mhb_receptance_model(const mhb_receptance *r, int k) {
+  return r->part->wave[k].model;
+}
+
+/* The modal file has the nodal diameters of harmonics 0 to top. SHB_ERR_INPUT: it lacks one, or has
+ * another number of blades. */
+shb_status mhb_receptance_check(const mhb_settings *settings, int top);
 
 /* Load harmonics above n_harmonics are ignored. The model must outlive the receptance; with
  * settings->ring it is not looked at. Errors:

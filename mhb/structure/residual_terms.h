@@ -17,29 +17,42 @@
 #include "mesh/base/status.h"
 #include "mhb/structure/cyclic_flexibility.h"
 #include "mhb/structure/relative_motion.h"
+#include "modal/model/nodal_diameters.h"
 #include "modal/model/residual_series.h"
 
-typedef struct {
+typedef struct mhb_residual_terms {
   const modal_model      *model;
+  const modal_wave       *wave; /* [k] model of each harmonic, the caller's */
   mhb_relative            relative;
   int                     n_harmonics, nu;
-  const double complex   *phase;                      /* [k] e_k, the caller's */
-  mhb_cyclic_flexibility *contact[MODAL_TERMS];       /* R, R2, R3; NULL: none, as below */
-  bool                    borrowed;                   /* contact is that of other terms */
-  double complex         *load[MODAL_TERMS];          /* [k][n] */
-  double complex         *probe_load[MODAL_TERMS];    /* [k][3 q] */
+  const double complex   *phase;                   /* [k] e_k, the caller's */
+  mhb_cyclic_flexibility *contact[MODAL_TERMS];    /* R, R2, R3; NULL: none, as below */
+  bool                    borrowed;                /* contact is that of other terms */
+  double complex         *own[MODAL_TERMS];        /* [k][n][n] in their place: complex R, R2, R3 */
+  double complex         *load[MODAL_TERMS];       /* [k][n] */
+  double complex         *probe_load[MODAL_TERMS]; /* [k][3 q] */
   double complex         *probe_contact[MODAL_TERMS]; /* [k][3 q][n] */
+  int                     r;                          /* most residual modes of a harmonic */
   double complex         *S, *F;                      /* [k][n][r], [k][r] of r residual modes */
   double complex         *Sg;                         /* [n][r] S g of one harmonic */
   shb_arena               arena;
 } mhb_residual_terms;
 
-/* model, relative.T0 and phase[n_harmonics + 1] must outlive it. Load harmonic h drives harmonic nu
- * h. The matrices of the contact have no harmonics: those of `like`, other terms of the same model
- * and axes, are used and must outlive it. NULL: own ones. SHB_ERR_IO: no memory. */
-shb_status mhb_residual_terms_create(const modal_model *model, mhb_relative relative, int nu,
-                                     int n_harmonics, const double complex *phase,
-                                     const mhb_residual_terms *like, mhb_residual_terms **out);
+/* What the harmonics of a structure are. */
+typedef struct {
+  int                   nu, n_harmonics; /* load harmonic h drives harmonic nu h */
+  const double complex *phase;           /* [n_harmonics + 1] e_k */
+  const modal_wave     *wave;            /* [n_harmonics + 1] model of each */
+  bool                  nodal_diameters; /* the models differ: complex residual terms */
+  /* Other terms of the same model and axes. Their matrices of the contact, which have no harmonics,
+   * are used; they must outlive these. NULL: own ones. */
+  const struct mhb_residual_terms *like;
+} mhb_harmonics;
+
+/* model (of all harmonics, or of the mean), relative.T0 and the arrays of harmonics must outlive
+ * it. SHB_ERR_IO: no memory. */
+shb_status mhb_residual_terms_create(const modal_model *model, mhb_relative relative,
+                                     const mhb_harmonics *harmonics, mhb_residual_terms **out);
 void       mhb_residual_terms_destroy(mhb_residual_terms *terms);
 
 /* Anew from the model, whose arrays have other values. Not where the matrices are borrowed. */
@@ -47,6 +60,10 @@ void mhb_residual_terms_update(mhb_residual_terms *terms);
 
 /* Whether the load has this harmonic. */
 bool mhb_residual_terms_driven(const mhb_residual_terms *terms, int k);
+
+/* Row i of term t (R, R2, R3) in relative motion times p[n]; 0 without the term. */
+double complex mhb_residual_terms_row(const mhb_residual_terms *terms, int t, int k, int i,
+                                      const double complex *p);
 
 /* R[n][n] += matrix. Not for two threads at once. */
 void mhb_residual_terms_matrix(const mhb_residual_terms *terms, int k, double w, double complex *R);

@@ -12,8 +12,9 @@ shb_status mhb_speed_derivative_create(mhb_speed_model *model, const mhb_modal_p
   d->model = model;
   d->part  = part;
   mhb_speed_model_differentiate(model);
-  shb_status status = mhb_modal_part_create(&model->slope, part->relative, part->nu,
-                                            part->n_harmonics, part->phase, NULL, &d->slope);
+  const mhb_harmonics harmonics = {
+      .nu = part->nu, .n_harmonics = part->n_harmonics, .phase = part->phase};
+  shb_status status = mhb_modal_part_create(&model->slope, part->relative, &harmonics, &d->slope);
   if (status != SHB_OK) {
     free(d);
     return status;

@@ -119,10 +119,12 @@ static void corner_derivatives(const search *s, mhb_tracking *tracking, bool stu
   double              sum = 0;
   tracking->parameter     = MHB_IN_N0;
   tracking->low = tracking->high = at.n0;
-  for (int i = 0; i < 4 && !s->balance->settings->run_up; i++)
+  const mhb_settings *settings   = s->balance->settings;
+  const bool          several = settings->run_up || settings->nodal_diameters; /* not one model */
+  for (int i = 0; i < 4 && !several; i++)
     sum += weight[i] * damped(s, tracking, stuck, 1 + place[i] * DAMPING_STEP, out->omega, x) /
            (12 * DAMPING_STEP);
-  out->by[MHB_PEAK_BY_DAMPING] = s->balance->settings->run_up ? NAN : sum;
+  out->by[MHB_PEAK_BY_DAMPING] = several ? NAN : sum;
 }
 
 /* The corner (stuck false) or the stuck peak near the solution. Returns its relative distance in

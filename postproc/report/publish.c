@@ -1,4 +1,5 @@
 #include "postproc/report/publish.h"
+#include "modal/model/nodal_diameters.h"
 
 #include <stdio.h>
 #include <stdlib.h>
@@ -59,12 +60,17 @@ static shb_status add_model(const post_job *job, work *w) {
 
 /* Frequencies of the ring with stuck contacts over the nodal diameter. */
 static shb_status add_safe(const post_job *job, work *w) {
+  modal_nodal_diameters disc;
   if (!job->html || !job->modal || !job->settings || post_at_one_frequency(w->analysis))
     return SHB_OK;
-  SHB_TRY(
-      post_safe_compute(&w->model, job->settings, w->analysis->frequency, job->speed, &w->safe));
+  SHB_TRY(modal_nodal_diameters_read(job->modal, &disc));
+  mhb_settings settings    = *job->settings;
+  settings.nodal_diameters = disc.n > 0 ? &disc : NULL;
+  shb_status status =
+      post_safe_compute(&w->model, &settings, w->analysis->frequency, job->speed, &w->safe);
+  modal_nodal_diameters_free(&disc);
   w->analysis->safe = &w->safe;
-  return SHB_OK;
+  return status;
 }
 
 /* Stuck frequencies at each speed, at the nodal diameter of the excitation. */

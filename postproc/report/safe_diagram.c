@@ -27,12 +27,22 @@ static void find_driven(const modal_model *model, post_safe *s) {
     if (modal_model_is_driven(model, k)) s->driven[s->n_driven++] = k;
 }
 
+/* The model at a nodal diameter; NULL: the file of a disc lacks it. */
+static const modal_model *model_at(const modal_model *model, const mhb_settings *settings,
+                                   int diameter) {
+  const modal_nodal_diameters *disc = settings->nodal_diameters;
+  if (!disc) return model;
+  const int at = modal_nodal_diameters_find(disc, diameter);
+  return at < 0 ? NULL : &disc->model[at];
+}
+
 shb_status post_safe_compute(const modal_model *model, const mhb_settings *settings,
                              const double range[2], double speed, post_safe *s) {
   *s = (post_safe){.blades       = settings->blades,
                    .engine_order = settings->engine_order,
                    .range        = {range[0], range[1]},
-                   .speed        = speed};
+                   .speed        = speed,
+                   .disc         = settings->nodal_diameters != NULL};
   if (settings->to_ground || !model->has_left || model->n_pairs == 0 || settings->blades < 3)
     return SHB_OK;
   const int n = count_families(model, range[1]), diameters = settings->blades / 2 + 1;
@@ -41,8 +51,10 @@ shb_status post_safe_compute(const modal_model *model, const mhb_settings *setti
   shb_status status = s->open && s->stuck ? SHB_OK : SHB_ERR_IO;
   SHB_CHECK(status == SHB_OK, SHB_ERR_IO, "not enough memory for the SAFE diagram");
   for (int d = 0; d < diameters && status == SHB_OK; d++) {
-    for (int i = 0; i < n; i++) s->open[d * n + i] = model->frequency[i];
-    status = mhb_stuck_frequencies(model, settings, d, n, s->stuck + d * n);
+    const modal_model *own = model_at(model, settings, d);
+    for (int i = 0; i < n; i++) s->open[d * n + i] = own ? own->frequency[i] : NAN;
+    for (int i = 0; i < n; i++) s->stuck[d * n + i] = NAN;
+    if (own) status = mhb_stuck_frequencies(own, settings, d, n, s->stuck + d * n);
   }
   find_driven(model, s);
   s->n_families = n;
@@ -140,10 +152,12 @@ void post_safe_section(const post_safe *s, post_buffer *out) {
   post_put(out,
            "<section>\n<h2>Nodal diameters</h2>\n<p class=\"note\">SAFE diagram: natural "
            "frequencies of the ring over the nodal diameter, with open contacts (dashed) and with "
-           "stuck ones (dotted). The root is clamped, so that open blades do not know each other. "
-           "Thick: frequencies of the curves, at the nodal diameter that the excitation drives; "
+           "stuck ones (dotted). %s Thick: frequencies of the curves, at the nodal diameter that "
+           "the excitation drives; "
            "rings: its resonances there.%s</p>\n"
            "<div class=\"card\"><figure><div class=\"chart\">\n",
+           s->disc ? "The blades share a flexible disc; gaps are diameters that the file lacks."
+                   : "The root is clamped, so that open blades do not know each other.",
            s->speed > 0 ? " Thin zigzag: every engine order at the speed of the rotor." : "");
   plot_svg_open(out, "safe", WIDTH, HEIGHT, "SAFE diagram",
                 "Natural frequencies of the ring over the nodal diameter; the table has those of "

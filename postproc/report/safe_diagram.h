@@ -17,10 +17,12 @@ typedef struct post_safe {
   int     n_driven, driven[16]; /* harmonics of the load with a force */
   double  range[2];             /* of the curves, Hz */
   double  speed;                /* of the rotor, rad/s; 0: not known */
+  bool    disc;                 /* the blades share a flexible disc */
 } post_safe;
 
-/* Compute the families of a blade that is clamped at its root: the open ones have the same
- * frequency at every diameter. n_families = 0 without a neighbour or with less than three blades.
+/* Compute the families. The open ones of a blade that is clamped at its root have the same
+ * frequency at every diameter. Of a disc, settings->nodal_diameters, they are NAN at diameters that
+ * its file lacks. n_families = 0 without a neighbour or with less than three blades.
  * Errors: SHB_ERR_IO no memory. */
 shb_status post_safe_compute(const modal_model *model, const mhb_settings *settings,
                              const double range[2], double speed, post_safe *safe);

@@ -7,6 +7,7 @@
 typedef struct {
   int     n;
   double *frequency, *damping;  /* [n] Hz, - */
+  int    *diameter;             /* [n] nodal diameter of each; NULL: a clamped blade */
   double *mass_along, *inertia; /* [n][3] kg, [n] kg m2: effective; NULL: not in the file */
   double  mass;                 /* kg, of the body; NAN if unknown */
   double  speed;                /* rad/s, 0 at rest */

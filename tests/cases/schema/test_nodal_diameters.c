@@ -30,14 +30,15 @@ static void expect(const case_file *f, int n, const int *wanted) {
 
 static void harmonics_meet_the_disc(void **state) {
   (void)state;
-  /* harmonics 0 to 7 of engine order 5: 0 5 10 15 20 1 6 11, folded at 12 */
-  expect(with(24, 5, 7), 8, (const int[]){0, 1, 4, 5, 6, 9, 10, 11});
+  /* the truncation estimate looks at harmonics 0 to 12, or four times as many as the balance has */
+  expect(with(64, 5, 1), 13, (const int[]){0, 4, 5, 9, 10, 14, 15, 19, 20, 24, 25, 29, 30});
   expect(with(40, 5, 31), 5, (const int[]){0, 5, 10, 15, 20});
   expect(with(24, 2, 7), 7, (const int[]){0, 2, 4, 6, 8, 10, 12});
-  expect(with(24, 23, 1), 2, (const int[]){0, 1}); /* a wave that runs backwards */
-  expect(with(24, 24, 3), 1, (const int[]){0});    /* all blades in phase */
+  /* waves that run backwards */
+  expect(with(40, 39, 1), 13, (const int[]){0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12});
+  expect(with(24, 24, 3), 1, (const int[]){0}); /* all blades in phase */
   expect(with(2, 1, 5), 2, (const int[]){0, 1});
-  expect(with(24, 53, 1), 2, (const int[]){0, 5}); /* an engine order above N */
+  expect(with(24, 54, 1), 3, (const int[]){0, 6, 12}); /* an engine order above N */
 }
 
 /* With mhb.harmonics: auto all multiples of the engine order are there. */

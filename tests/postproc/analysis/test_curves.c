@@ -251,6 +251,7 @@ static void ripples_are_no_folds(void **state) {
     free(folds);
     assert_ok(post_find_folds(5, f, a, NULL, &folds, &n));
     assert_int_equal(n, 0);
+    free(folds);
   }
 }
 
