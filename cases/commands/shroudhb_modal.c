@@ -15,6 +15,7 @@
 #include "mesh/base/publish.h"
 #include "modal/common/session.h"
 #include "modal/hdf5/h5.h"
+#include "modal/hdf5/stamp.h"
 #include "modal/model/revision.h"
 #include "modal/stage/stage.h"
 
@@ -184,7 +185,7 @@ static task task_of(const case_file *file, bool force, const char *output, const
                     modal_revision *revision) {
   if (force || !holds_diameters(file, output)) return SOLVE;
   if (up_to_date_with(output, settings)) return NOTHING;
-  char      *earlier = h5_check_earlier(output) == SHB_OK ? up_to_date_written(output) : NULL;
+  char      *earlier = h5_stamp_check(output) == H5_INTACT ? up_to_date_written(output) : NULL;
   const bool revised = earlier && modal_changes_find(earlier, settings, revision);
   free(earlier);
   revision->damping = file->damping;

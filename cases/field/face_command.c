@@ -20,7 +20,7 @@ static int falling(const void *a, const void *b) {
 }
 
 /* Peaks with maps of the chosen curve, or of all; *list is malloc'ed. */
-static shb_status list_peaks(const field_options *o, const mhb_response *response,
+static shb_status list_peaks(const field_options *o, hid_t file, const mhb_response *response,
                              const post_contact_face *face, candidate **list, int *n) {
   *n    = 0;
   *list = NULL;
@@ -28,7 +28,7 @@ static shb_status list_peaks(const field_options *o, const mhb_response *respons
     const mhb_branch *b = &response->branch[i];
     post_contact_maps maps;
     if (o->branch >= 0 && o->branch != i) continue;
-    SHB_TRY(post_contact_maps_read(o->response, face, i, &maps));
+    SHB_TRY(post_contact_maps_read(file, face, i, &maps));
     candidate *longer = realloc(*list, (size_t)(*n + maps.n + 1) * sizeof **list);
     if (longer) *list = longer;
     for (int row = 0; longer && row < maps.n; row++)
@@ -56,7 +56,7 @@ static shb_status choose(const field_options *o, const candidate *list, int n, c
   return SHB_OK;
 }
 
-static shb_status publish(const field_options *o, const mhb_response *response,
+static shb_status publish(const field_options *o, hid_t file, const mhb_response *response,
                           const post_contact_face *face, const candidate *chosen, FILE *out) {
   char              path[PATH], point[40] = "", settings[64];
   const double      frequency = response->branch[chosen->branch].frequency[chosen->point];
@@ -66,7 +66,7 @@ static shb_status publish(const field_options *o, const mhb_response *response,
     snprintf(point, sizeof point, "_%d_%d", chosen->branch, chosen->point);
   snprintf(path, sizeof path, "%.*s.face%s.vtkhdf", field_stem(o->response), o->response, point);
   snprintf(settings, sizeof settings, "branch = %d\npoint = %d\n", chosen->branch, chosen->point);
-  shb_status status = post_contact_maps_read(o->response, face, chosen->branch, &maps);
+  shb_status status = post_contact_maps_read(file, face, chosen->branch, &maps);
   if (status == SHB_OK) status = post_origin_open(o->response, &origin);
   if (status == SHB_OK) {
     const shb_provenance from = {origin.case_path, origin.case_text, settings, "shroudhb-field"};
@@ -80,7 +80,7 @@ static shb_status publish(const field_options *o, const mhb_response *response,
   return status;
 }
 
-static shb_status work(const field_options *o, const mhb_response *response,
+static shb_status work(const field_options *o, hid_t file, const mhb_response *response,
                        const post_contact_face *face, FILE *out) {
   candidate *list = NULL, chosen;
   int        n    = 0;
@@ -90,20 +90,23 @@ static shb_status work(const field_options *o, const mhb_response *response,
   SHB_CHECK(o->branch < response->n_branches, SHB_ERR_INPUT,
             "--branch %d: the response has the branches 0 to %d", o->branch,
             response->n_branches - 1);
-  shb_status status = list_peaks(o, response, face, &list, &n);
+  shb_status status = list_peaks(o, file, response, face, &list, &n);
   if (status == SHB_OK) status = choose(o, list, n, &chosen);
-  if (status == SHB_OK) status = publish(o, response, face, &chosen, out);
+  if (status == SHB_OK) status = publish(o, file, response, face, &chosen, out);
   free(list);
   return status;
 }
 
 shb_status face_command(const field_options *options, FILE *out) {
+  hid_t             file     = H5I_INVALID_HID;
   mhb_response     *response = NULL;
   post_contact_face face     = {0};
   shb_status        status   = mhb_response_read(options->response, &response);
-  if (status == SHB_OK) status = post_contact_face_read(options->response, &face);
-  if (status == SHB_OK) status = work(options, response, &face, out);
+  if (status == SHB_OK) status = h5_open(options->response, &file);
+  if (status == SHB_OK) status = post_contact_face_read(file, &face);
+  if (status == SHB_OK) status = work(options, file, response, &face, out);
   post_contact_face_free(&face);
+  h5_close(file);
   mhb_response_destroy(response);
   return status;
 }

@@ -92,26 +92,21 @@ bool case_damping_read(case_issues *issues, const char *path, const case_node *n
   }
 }
 
-static void print_list(FILE *out, int n, const double *value) {
-  char text[SHB_SHORTEST];
-  for (int i = 0; i < n; i++) fprintf(out, "%s%s", i ? " " : "", shb_shortest(value[i], text));
-}
-
 void case_damping_print(FILE *out, const modal_damping *damping) {
   const double rayleigh[2] = {damping->alpha, damping->beta};
   switch (damping->kind) {
     case MODAL_DAMPING_LOSS:
       fputs("loss_factor ", out);
-      print_list(out, 1, &damping->loss);
+      shb_print_shortest(out, 1, &damping->loss);
       break;
     case MODAL_DAMPING_RAYLEIGH:
       fputs("rayleigh ", out);
-      print_list(out, 2, rayleigh);
+      shb_print_shortest(out, 2, rayleigh);
       break;
     case MODAL_DAMPING_EACH:
-      print_list(out, damping->n, damping->each);
+      shb_print_shortest(out, damping->n, damping->each);
       break;
     default:
-      print_list(out, 1, &damping->ratio);
+      shb_print_shortest(out, 1, &damping->ratio);
   }
 }

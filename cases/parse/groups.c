@@ -164,9 +164,8 @@ bool case_groups_read(case_issues *issues, const char *path, const case_node *no
 }
 
 static void print_numbers(FILE *out, const char *word, int n, const double *value) {
-  char text[SHB_SHORTEST];
-  fputs(word, out);
-  for (int i = 0; i < n; i++) fprintf(out, " %s", shb_shortest(value[i], text));
+  fprintf(out, "%s ", word);
+  shb_print_shortest(out, n, value);
 }
 
 static void print_rule(FILE *out, const char *path, const char *name, const mesh_rule *r) {

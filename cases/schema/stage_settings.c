@@ -11,11 +11,6 @@
 #include "cases/parse/keys.h"
 #include "mesh/base/shortest.h"
 
-static void print_numbers(FILE *out, int n, const double *value) {
-  char text[SHB_SHORTEST];
-  for (int i = 0; i < n; i++) fprintf(out, "%s%s", i ? " " : "", shb_shortest(value[i], text));
-}
-
 static void print_word(FILE *out, const char *words, int index) {
   for (; index > 0; index--) words = strchr(words, ' ') + 1;
   fprintf(out, "%.*s", (int)strcspn(words, " "), words);
@@ -32,7 +27,7 @@ static void print_factors(FILE *out, const char *path, const fem_load *load) {
     const double parts[2] = {creal(load->factor[k]), cimag(load->factor[k])};
     if (load->factor[k] == 0) continue;
     fprintf(out, "%s.%d = ", path, k);
-    print_numbers(out, 2, parts);
+    shb_print_shortest(out, 2, parts);
     fputc('\n', out);
   }
 }
@@ -40,7 +35,7 @@ static void print_factors(FILE *out, const char *path, const fem_load *load) {
 static void print_probes(FILE *out, const char *path, const case_file *file) {
   for (int i = 0; i < file->n_probes; i++) {
     fprintf(out, "%s.%s = ", path, file->probe[i].name);
-    print_numbers(out, 3, file->probe[i].at);
+    shb_print_shortest(out, 3, file->probe[i].at);
     fputc('\n', out);
   }
 }
@@ -48,21 +43,21 @@ static void print_probes(FILE *out, const char *path, const case_file *file) {
 static void print_gauges(FILE *out, const char *path, const case_file *file) {
   for (int i = 0; i < file->n_gauges; i++) {
     fprintf(out, "%s.%s = ", path, file->gauge[i].name);
-    print_numbers(out, 3, file->gauge[i].at);
+    shb_print_shortest(out, 3, file->gauge[i].at);
     fputs("; ", out);
-    print_numbers(out, 3, file->gauge[i].direction);
+    shb_print_shortest(out, 3, file->gauge[i].direction);
     fputc('\n', out);
   }
 }
 
 /* Prints one number if the three are equal. */
 static void print_triple(FILE *out, const double v[3]) {
-  print_numbers(out, v[0] == v[1] && v[1] == v[2] ? 1 : 3, v);
+  shb_print_shortest(out, v[0] == v[1] && v[1] == v[2] ? 1 : 3, v);
 }
 
 static void print_saved(FILE *out, const case_key *key, const mhb_save_settings *save) {
   if (save->what == MHB_SAVE_LISTED)
-    print_numbers(out, save->n, save->frequency);
+    shb_print_shortest(out, save->n, save->frequency);
   else
     print_word(out, key->words, (int)save->what);
 }
@@ -70,7 +65,7 @@ static void print_saved(FILE *out, const case_key *key, const mhb_save_settings 
 /* Of a file its content counts, not its name. */
 static void print_mistuning(FILE *out, const case_file *file, const case_mistuning *m) {
   char fingerprint[17] = "-", deviation[SHB_SHORTEST];
-  if (m->kind == CASE_MISTUNED_LIST) print_numbers(out, m->n, m->each);
+  if (m->kind == CASE_MISTUNED_LIST) shb_print_shortest(out, m->n, m->each);
   if (m->kind == CASE_MISTUNED_RANDOM)
     fprintf(out, "deviation %s seed %d samples %d", shb_shortest(m->deviation, deviation), m->seed,
             m->samples);
@@ -107,10 +102,10 @@ static void print_scalar(FILE *out, const case_key *key, const case_file *file, 
       fputs(*(char *const *)slot ? inside(file, *(char *const *)slot) : "-", out);
       break;
     case CASE_PRELOADS:
-      print_numbers(out, *(const int *)((const char *)slot - key->at + key->count_at), slot);
+      shb_print_shortest(out, *(const int *)((const char *)slot - key->at + key->count_at), slot);
       break;
     case CASE_PLACES:
-      print_numbers(out, file->mhb.search.n_at, slot);
+      shb_print_shortest(out, file->mhb.search.n_at, slot);
       break;
     case CASE_ORDERS:
       for (int i = 0; i < file->mhb.search.n_orders; i++)
@@ -118,7 +113,7 @@ static void print_scalar(FILE *out, const case_key *key, const case_file *file, 
       break;
     case CASE_POINTS:
       if (!file->integrate.listed) fprintf(out, "%d points", file->integrate.n_frequencies);
-      if (file->integrate.listed) print_numbers(out, file->integrate.n_frequencies, slot);
+      if (file->integrate.listed) shb_print_shortest(out, file->integrate.n_frequencies, slot);
       break;
     case CASE_SAVED:
       print_saved(out, key, slot);
@@ -128,7 +123,7 @@ static void print_scalar(FILE *out, const case_key *key, const case_file *file, 
       break;
     case CASE_INTERVAL:
     case CASE_SWEEP:
-      print_numbers(out, 2, slot);
+      shb_print_shortest(out, 2, slot);
       break;
     case CASE_DAMPING:
       case_damping_print(out, slot);
@@ -138,10 +133,10 @@ static void print_scalar(FILE *out, const case_key *key, const case_file *file, 
       break;
     case CASE_VECTOR:
     case CASE_STIFFNESS:
-      print_numbers(out, 3, slot);
+      shb_print_shortest(out, 3, slot);
       break;
     default:
-      print_numbers(out, 1, slot);
+      shb_print_shortest(out, 1, slot);
   }
 }
 

@@ -1,6 +1,5 @@
 #include "mesh/base/shortest.h"
 
-#include <stdio.h>
 #include <stdlib.h>
 
 const char *shb_shortest(double value, char out[SHB_SHORTEST]) {
@@ -9,4 +8,9 @@ const char *shb_shortest(double value, char out[SHB_SHORTEST]) {
     if (strtod(out, NULL) == value) break;
   }
   return out;
+}
+
+void shb_print_shortest(FILE *out, int n, const double *value) {
+  char text[SHB_SHORTEST];
+  for (int i = 0; i < n; i++) fprintf(out, "%s%s", i ? " " : "", shb_shortest(value[i], text));
 }

@@ -410,21 +410,27 @@ void h5_abandon(hid_t file) {
   if (ours) remove_file(path);
 }
 
-/* Write a file under a temporary name. */
-static shb_status write_file(const char *temporary, h5_fill fill, const void *context) {
+/* Write a file under a temporary name. earlier: what it begins with, or NULL. */
+static shb_status write_file(const char *earlier, const char *temporary, h5_fill fill,
+                             const void *context) {
   hid_t file;
-  SHB_TRY(h5_create(temporary, &file));
+  SHB_TRY(earlier ? h5_create_like(earlier, temporary, &file) : h5_create(temporary, &file));
   shb_status status = fill(file, context);
   if (status == SHB_OK) return h5_close(file);
   h5_abandon(file);
   return status;
 }
 
-shb_status h5_publish(const char *path, h5_fill fill, const void *context) {
+shb_status h5_publish_like(const char *earlier, const char *path, h5_fill fill,
+                           const void *context) {
   char *temporary = shb_publish_temporary(path);
   SHB_CHECK(temporary, SHB_ERR_IO, "%s: no memory", path);
-  shb_status status = write_file(temporary, fill, context);
+  shb_status status = write_file(earlier, temporary, fill, context);
   if (status == SHB_OK) status = shb_publish(temporary, path);
   free(temporary);
   return status;
+}
+
+shb_status h5_publish(const char *path, h5_fill fill, const void *context) {
+  return h5_publish_like(NULL, path, fill, context);
 }

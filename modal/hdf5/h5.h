@@ -52,6 +52,9 @@ void h5_abandon(hid_t file);
  * earlier file stays as it is after an error. Errors: of fill, h5_create, h5_close, shb_publish. */
 typedef shb_status (*h5_fill)(hid_t file, const void *context);
 shb_status h5_publish(const char *path, h5_fill fill, const void *context);
+/* The same beginning with the content of an earlier file (h5_create_like), which may be at path. */
+shb_status h5_publish_like(const char *earlier, const char *path, h5_fill fill,
+                           const void *context);
 
 /* Write dataset path below at. Groups in between are created. data: row-major, of the given shape.
  * Errors: SHB_ERR_IO; SHB_ERR_INPUT if a value is not finite, since results that overflow come from

@@ -99,32 +99,26 @@ static shb_status sample_again(hid_t file, const char *path) {
   return status;
 }
 
-static shb_status revise(hid_t file, const char *path, const modal_revision *revision,
-                         const shb_provenance *provenance) {
-  int   version;
-  visit v = {revision, SHB_OK};
+typedef struct {
+  const char           *path;
+  const modal_revision *revision;
+  const shb_provenance *provenance;
+} job;
+
+static shb_status revise(hid_t file, const void *context) {
+  const job *j = context;
+  int        version;
+  visit      v = {j->revision, SHB_OK};
   SHB_TRY(h5_read_attribute_int(file, "/", "format_version", 1, &version));
   if (H5Ovisit(file, H5_INDEX_NAME, H5_ITER_NATIVE, revise_object, &v) < 0 && v.status == SHB_OK)
-    SHB_FAIL(SHB_ERR_IO, "%s: cannot be read", path);
+    SHB_FAIL(SHB_ERR_IO, "%s: cannot be read", j->path);
   SHB_TRY(v.status);
-  SHB_TRY(sample_again(file, path));
-  return h5_write_provenance(file, "shroudhb modal model", version, provenance);
+  SHB_TRY(sample_again(file, j->path));
+  return h5_write_provenance(file, "shroudhb modal model", version, j->provenance);
 }
 
 shb_status modal_revise(const char *earlier, const char *path, const modal_revision *revision,
                         const shb_provenance *provenance) {
-  hid_t file;
-  char *temporary = shb_publish_temporary(path);
-  SHB_CHECK(temporary, SHB_ERR_IO, "out of memory");
-  shb_status status = h5_create_like(earlier, temporary, &file);
-  if (status == SHB_OK) {
-    status = revise(file, path, revision, provenance);
-    if (status == SHB_OK)
-      status = h5_close(file);
-    else
-      h5_abandon(file);
-  }
-  if (status == SHB_OK) status = shb_publish(temporary, path);
-  free(temporary);
-  return status;
+  const job j = {path, revision, provenance};
+  return h5_publish_like(earlier, path, revise, &j);
 }

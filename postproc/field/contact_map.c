@@ -21,7 +21,7 @@ void post_contact_maps_free(post_contact_maps *maps) {
   *maps = (post_contact_maps){0};
 }
 
-static shb_status read_face(hid_t file, const char *path, post_contact_face *f) {
+static shb_status read_face(hid_t file, post_contact_face *f) {
   static const char *const name[] = {
       [MESH_TET10] = "/contact_face/triangles", [MESH_HEX20] = "/contact_face/quadrangles"};
   if (!h5_exists(file, "/contact_face/nodes")) return SHB_OK;
@@ -36,17 +36,14 @@ static shb_status read_face(hid_t file, const char *path, post_contact_face *f) 
   f->n_elements = (int)elements.dim[0];
   for (int i = 0; i < f->n_elements * corners; i++)
     SHB_CHECK(f->element[i] >= 0 && f->element[i] < f->n_nodes, SHB_ERR_INPUT,
-              "%s: %s: value %d (from 0) is %d; the face has %d nodes", path, name[f->kind], i,
-              f->element[i], f->n_nodes);
+              "%s: value %d (from 0) is %d; the face has %d nodes", name[f->kind], i, f->element[i],
+              f->n_nodes);
   return SHB_OK;
 }
 
-shb_status post_contact_face_read(const char *path, post_contact_face *face) {
-  hid_t file;
-  *face = (post_contact_face){0};
-  SHB_TRY(h5_open(path, &file));
-  shb_status status = read_face(file, path, face);
-  h5_close(file);
+shb_status post_contact_face_read(hid_t file, post_contact_face *face) {
+  *face             = (post_contact_face){0};
+  shb_status status = read_face(file, face);
   if (status != SHB_OK) post_contact_face_free(face);
   return status;
 }
@@ -79,14 +76,11 @@ static shb_status read_maps(hid_t file, const post_contact_face *face, int branc
   return SHB_OK;
 }
 
-shb_status post_contact_maps_read(const char *path, const post_contact_face *face, int branch,
+shb_status post_contact_maps_read(hid_t file, const post_contact_face *face, int branch,
                                   post_contact_maps *maps) {
-  hid_t file;
   *maps = (post_contact_maps){0};
   if (face->n_nodes == 0) return SHB_OK;
-  SHB_TRY(h5_open(path, &file));
   shb_status status = read_maps(file, face, branch, maps);
-  h5_close(file);
   if (status != SHB_OK) post_contact_maps_free(maps);
   return status;
 }

@@ -4,6 +4,7 @@
 
 #include "mesh/core/element_topology.h"
 #include "mhb/response/response.h"
+#include "modal/hdf5/h5.h"
 
 /* Rows of state */
 enum { POST_STUCK, POST_SLIPPING, POST_OPEN, POST_STATES };
@@ -27,13 +28,13 @@ typedef struct {
   double *state;       /* [n][n_nodes][POST_STATES] share of the period */
 } post_contact_maps;
 
-/* Read the face of a response file; no nodes if it has none. Errors: of h5_open; SHB_ERR_INPUT
- * nodes or elements that do not fit. */
-shb_status post_contact_face_read(const char *path, post_contact_face *face);
+/* Read the face of an open response file; no nodes if it has none. Errors: SHB_ERR_INPUT nodes or
+ * elements that do not fit. */
+shb_status post_contact_face_read(hid_t file, post_contact_face *face);
 void       post_contact_face_free(post_contact_face *face); /* also on a zeroed struct */
 
 /* Read the maps of a curve of the file. Errors: as above. */
-shb_status post_contact_maps_read(const char *path, const post_contact_face *face, int branch,
+shb_status post_contact_maps_read(hid_t file, const post_contact_face *face, int branch,
                                   post_contact_maps *maps);
 void       post_contact_maps_free(post_contact_maps *maps); /* also on a zeroed struct */
 

@@ -206,10 +206,10 @@ static int by_work(const void *a, const void *b) {
 }
 
 /* Keep a curve if one of its maps is uneven. */
-static shb_status take(const char *path, const mhb_response *response, const post_contact_face *f,
+static shb_status take(hid_t file, const mhb_response *response, const post_contact_face *f,
                        int branch, curve *list, int *n) {
   curve c = {.branch = branch};
-  SHB_TRY(post_contact_maps_read(path, f, branch, &c.maps));
+  SHB_TRY(post_contact_maps_read(file, f, branch, &c.maps));
   c.row       = post_contact_highest(response, branch, &c.maps);
   bool uneven = false;
   for (int i = 0; c.row >= 0 && i < MAPS; i++)
@@ -238,7 +238,7 @@ static void put_section(const post_contact_face *f, const view *v, const mhb_res
   post_put(out, "</section>\n");
 }
 
-static shb_status compose(const char *path, const mhb_response *response, mesh_axis axis,
+static shb_status compose(hid_t file, const mhb_response *response, mesh_axis axis,
                           const post_contact_face *f, post_buffer *out) {
   int        n    = 0;
   view       v    = {0};
@@ -248,7 +248,7 @@ static shb_status compose(const char *path, const mhb_response *response, mesh_a
            : shb_fail(SHB_ERR_IO, __FILE__, __LINE__, "out of memory for the contact face");
   for (int i = 0; i < response->n_branches && status == SHB_OK; i++)
     if (response->branch[i].kind == MHB_BRANCH_NONLINEAR)
-      status = take(path, response, f, i, list, &n);
+      status = take(file, response, f, i, list, &n);
   if (status == SHB_OK && n > 0) {
     qsort(list, (size_t)n, sizeof *list, by_work);
     put_section(f, &v, response, list, n, out);
@@ -262,10 +262,12 @@ static shb_status compose(const char *path, const mhb_response *response, mesh_a
 
 shb_status post_contact_section(const char *path, const mhb_response *response, mesh_axis axis,
                                 post_buffer *out) {
-  post_contact_face face;
-  SHB_TRY(post_contact_face_read(path, &face));
-  shb_status status = SHB_OK;
-  if (face.n_elements > 0) status = compose(path, response, axis, &face, out);
+  hid_t             file;
+  post_contact_face face = {0};
+  SHB_TRY(h5_open(path, &file));
+  shb_status status = post_contact_face_read(file, &face);
+  if (status == SHB_OK && face.n_elements > 0) status = compose(file, response, axis, &face, out);
   post_contact_face_free(&face);
+  h5_close(file);
   return status;
 }
