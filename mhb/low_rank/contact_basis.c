@@ -7,16 +7,13 @@
 #include <string.h>
 
 #include "mesh/base/constants.h"
+#include "mhb/numerics/blas_room.h"
 #include "mhb/numerics/random.h"
 
 static const double FIRST_BOUND = 0.05, LAST_BOUND = 0.8;
 
 /* Candidates that depend on the others to this part are dropped. */
 static const double DEPENDENT = 1e-9;
-
-/* Numbers of room behind a matrix. zgemv_n of OpenBLAS 0.3.21 reads a strided vector, here a row,
- * beyond its end where the matrix has 4 i + 2 rows. It crashes where the heap ends there. */
-enum { BEYOND = 1024 };
 
 enum { FREQUENCIES = 5, FIRST_BLOCK = 16, POWERS = 4 };
 
@@ -139,13 +136,14 @@ static int orthonormalise(candidates *c, int n) {
   }
   cblas_zgemm(CblasRowMajor, CblasConjTrans, CblasNoTrans, q, q, n, &ONE, c->C, q, c->C, q, &ZERO,
               c->square, q);
-  if (LAPACKE_zheev(LAPACK_ROW_MAJOR, 'V', 'U', q, c->square, q, c->value) != 0) return 0;
+  if (LAPACKE_zheev(LAPACK_COL_MAJOR, 'V', 'L', q, c->square, q, c->value) != 0) return 0;
   int dropped = 0;
   while (dropped < q && c->value[dropped] < DEPENDENT * c->value[q - 1]) dropped++;
   c->kept = q - dropped;
   for (int i = 0; i < q; i++)
     for (int j = 0; j < c->kept; j++)
-      c->left[i * c->kept + j] = c->square[i * q + dropped + j] / sqrt(c->value[dropped + j]);
+      c->left[i * c->kept + j] =
+          conj(c->square[(dropped + j) * q + i]) / sqrt(c->value[dropped + j]);
   double complex *row = c->work;
   for (int i = 0; i < n; i++) {
     cblas_zgemv(CblasRowMajor, CblasTrans, q, c->kept, &ONE, c->left, c->kept, c->C + i * q, 1,
@@ -208,20 +206,17 @@ static void candidates_free(candidates *c) {
 
 static int candidates_allocate(candidates *c, const mhb_receptance *r, int blocks) {
   size_t q = (size_t)c->columns, poles = (size_t)n_poles(r) + q;
-  c->C      = calloc((size_t)r->n * q, sizeof *c->C);
-  c->square = calloc(q * q + BEYOND, sizeof *c->square);
+  c->C      = calloc((size_t)r->n * q + MHB_BLAS_ROOM, sizeof *c->C);
+  c->square = calloc(q * q + MHB_BLAS_ROOM, sizeof *c->square);
   c->G      = calloc(q * poles, sizeof *c->G);
-  c->H      = calloc(q * q * 2 * (size_t)blocks + BEYOND, sizeof *c->H);
+  c->H      = calloc(q * q * 2 * (size_t)blocks + MHB_BLAS_ROOM, sizeof *c->H);
   c->left   = calloc(q * q, sizeof *c->left);
   c->value  = calloc(q, sizeof *c->value);
   c->work   = calloc(q * poles, sizeof *c->work);
   return c->C && c->square && c->G && c->H && c->left && c->value && c->work;
 }
 
-/* C and G and H of a harmonic; right singular vectors of H to `left`, values to `value`.
- *
- * LAPACK takes H transposed, as it stands. A copy that LAPACKE makes would have no room behind it
- * (BEYOND). */
+/* C and G and H of a harmonic; right singular vectors of H to `left`, values to `value`. */
 static int decompose(mhb_contact_basis *b, int k, const leading *e, const double *w, int count,
                      candidates *c) {
   const mhb_receptance *r = b->receptance;

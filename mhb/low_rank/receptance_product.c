@@ -7,6 +7,7 @@
 #include <string.h>
 
 #include "mesh/base/constants.h"
+#include "mhb/numerics/blas_room.h"
 #include "mhb/numerics/random.h"
 
 /* Singular values below it are left out, in the norm of the contact stiffness, where I is 1. */
@@ -206,9 +207,10 @@ static void take_arrays(mhb_receptance_product *p) {
   p->weighted    = shb_arena_take(&p->arena, n * nb, sizeof(double));
   p->coefficient = shb_arena_take(&p->arena, s * nb, sizeof(double));
   p->response    = shb_arena_take(&p->arena, s * nb, sizeof(double));
-  p->force       = shb_arena_take(&p->arena, n, sizeof(double complex));
+  p->force       = shb_arena_take(&p->arena, n + MHB_BLAS_ROOM, sizeof(double complex));
   p->motion      = shb_arena_take(&p->arena, n, sizeof(double complex));
-  p->amplitude   = shb_arena_take(&p->arena, (size_t)p->n_poles, sizeof(double complex));
+  p->amplitude =
+      shb_arena_take(&p->arena, (size_t)p->n_poles + MHB_BLAS_ROOM, sizeof(double complex));
 }
 
 shb_status mhb_receptance_product_create(mhb_receptance *r, int first, int m,

@@ -1,11 +1,12 @@
 #include "modal/cyclic/wave_ritz.h"
 
 #include <cblas.h>
-#include <lapacke.h>
 #include <math.h>
 #include <stdbool.h>
 #include <stdlib.h>
 #include <string.h>
+
+#include "modal/cyclic/small_hermitian.h"
 
 enum { BLOCKS = MODAL_RESIDUAL_BLOCKS };
 
@@ -50,20 +51,23 @@ static void scale_columns(problem *p) {
     }
 }
 
-/* T [n][kept] with T^H M T = 1; M is overwritten. */
+/* T [n][kept] with T^H M T = 1; M is overwritten.
+ *
+ * By columns M is transposed, thus conjugate, and so are its eigenvectors. Room follows M and K:
+ * zgemv_n of OpenBLAS 0.3.21 reads beyond the end of a matrix. */
 static bool orthonormal(problem *p) {
   const int n = p->n;
-  if (LAPACKE_zheev(LAPACK_ROW_MAJOR, 'V', 'U', n, p->M, n, p->value) != 0) return false;
+  if (!small_hermitian_eigen(n, p->M, p->value, true)) return false;
   int first = 0;
   while (first < n && !(p->value[first] > DEPENDENT * p->value[n - 1])) first++;
   p->kept = n - first;
   for (int i = 0; i < n; i++)
     for (int k = 0; k < p->kept; k++)
-      p->T[i * p->kept + k] = p->M[i * n + first + k] / sqrt(p->value[first + k]);
+      p->T[i * p->kept + k] = conj(p->M[(first + k) * n + i]) / sqrt(p->value[first + k]);
   return true;
 }
 
-/* Eigenvalues of T^H K T into value, its eigenvectors into K [kept][kept]. */
+/* Eigenvalues of T^H K T into value; row k of K [kept][kept] is the conjugate of eigenvector k. */
 static bool reduce(problem *p) {
   const int       n = p->n, m = p->kept;
   double complex *KT = p->M, *A = p->K; /* the first product is the last use of K */
@@ -73,7 +77,7 @@ static bool reduce(problem *p) {
   cblas_zgemm(CblasRowMajor, CblasConjTrans, CblasNoTrans, m, m, n, &one, p->T, m, KT, m, &zero, A,
               m);
   wave_make_hermitian(A, m);
-  return LAPACKE_zheev(LAPACK_ROW_MAJOR, 'V', 'U', m, A, m, p->value) == 0;
+  return small_hermitian_eigen(m, A, p->value, true);
 }
 
 static shb_status store(const problem *p, wave_ritz *ritz) {
@@ -84,7 +88,7 @@ static shb_status store(const problem *p, wave_ritz *ritz) {
   SHB_CHECK(ritz->lambda && ritz->weight, SHB_ERR_IO, "out of memory for residual modes");
   memcpy(ritz->lambda, p->value, (size_t)m * sizeof *ritz->lambda);
   if (m == 0) return SHB_OK;
-  cblas_zgemm(CblasRowMajor, CblasNoTrans, CblasNoTrans, n, m, m, &one, p->T, m, p->K, m, &zero,
+  cblas_zgemm(CblasRowMajor, CblasNoTrans, CblasConjTrans, n, m, m, &one, p->T, m, p->K, m, &zero,
               ritz->weight, m);
   for (int i = 0; i < n; i++)
     for (int k = 0; k < m; k++) ritz->weight[i * m + k] *= p->scale[i];
