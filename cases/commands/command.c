@@ -75,7 +75,10 @@ static int set_override(int argc, char **argv, int *i, command_options *out) {
 
 shb_status command_read(const command_options *o, int stages, case_file *out) {
   const case_overrides overrides = {o->n_set, o->set, o->into};
-  return case_read_with(o->path, &overrides, stages, stderr, out);
+  SHB_TRY(case_read_with(o->path, &overrides, stages, stderr, out));
+  shb_status status = o->into ? shb_make_folder(o->into) : SHB_OK;
+  if (status != SHB_OK) case_free(out);
+  return status;
 }
 
 int command_forward(const command_options *o, const char **words, int n) {

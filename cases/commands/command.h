@@ -33,7 +33,8 @@ typedef struct {
  * Returns a value below 0 to go on, else the exit code. out points into argv. */
 int command_parse(int argc, char **argv, const char *usage, command_options *out);
 
-/* Read the case of a command with its overrides. Errors: as case_read. */
+/* Read the case of a command with its overrides, and make the folder of --into where it is missing.
+ * Errors: as case_read and shb_make_folder. */
 shb_status command_read(const command_options *options, int stages, case_file *out);
 
 /* Append the options that a stage passes on to another program: quiet, verbose, force, --set,

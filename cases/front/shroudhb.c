@@ -248,6 +248,7 @@ static int check_main(const char *name, int argc, char **argv, run_words end) {
   if (code >= 0) return code;
   char study[] = "--check";
   if (is_study(options.path)) return become("study", study, argc, argv, end);
+  options.into = NULL; /* nothing is written: no folder is made */
   case_file  file;
   shb_status status = command_read(&options, RUN_ALL | CASE_OR_MODES, &file);
   if (status == SHB_OK && !options.quiet) {

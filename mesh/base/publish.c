@@ -130,6 +130,23 @@ shb_status shb_publish(const char *temporary, const char *path) {
   return SHB_OK;
 }
 
+shb_status shb_make_folder(const char *path) {
+  char *part = strdup(path);
+  SHB_CHECK(part, SHB_ERR_IO, "%s: out of memory", path);
+  for (char *at = part + 1; *part && *at; at++) {
+    if (*at != '/') continue;
+    *at = '\0';
+    (void)mkdir(part, 0777); /* the last one tells */
+    *at = '/';
+  }
+  int         made = mkdir(part, 0777) == 0 || errno == EEXIST, why = errno;
+  struct stat about;
+  if (made && (stat(part, &about) != 0 || !S_ISDIR(about.st_mode))) made = 0, why = ENOTDIR;
+  free(part);
+  SHB_CHECK(made, SHB_ERR_IO, "%s: this folder cannot be made: %s", path, strerror(why));
+  return SHB_OK;
+}
+
 shb_status shb_fingerprint(const char *path, char out[17]) {
   FILE *file = fopen(path, "rb");
   SHB_CHECK(file, SHB_ERR_IO, "%s: cannot be read: %s", path, strerror(errno));

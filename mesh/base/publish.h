@@ -26,6 +26,10 @@ void shb_publish_abandon(void);
  * is removed. SHB_ERR_IO. */
 shb_status shb_publish(const char *temporary, const char *path);
 
+/* Make a folder and those above it, where they are missing. SHB_ERR_IO, also where a part of the
+ * path is a file. */
+shb_status shb_make_folder(const char *path);
+
 /* FNV-1a 64-bit hash of the contents of a file as 16 hex digits. SHB_ERR_IO if unreadable. */
 shb_status shb_fingerprint(const char *path, char out[17]);
 

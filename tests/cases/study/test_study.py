@@ -441,10 +441,11 @@ def check_faults():
 
 def check_overrides():
     """--set changes a key as the file would; --into moves the output."""
-    os.mkdir('elsewhere')
+    run(program('shroudhb'), 'check', '--quiet', '--into', 'elsewhere', 'case.yaml')
+    assert not os.path.exists('elsewhere')  # a check writes nothing
     run(program('shroudhb'), 'mhb', '--quiet', '--set', 'contact.n0=0.3 N',
-        '--set', 'mhb.harmonics=3', '--into', 'elsewhere', 'case.yaml')
-    with h5py.File('elsewhere/three_degree.response.h5') as source:
+        '--set', 'mhb.harmonics=3', '--into', 'elsewhere/first', 'case.yaml')
+    with h5py.File('elsewhere/first/three_degree.response.h5') as source:
         settings, text = source.attrs['settings'], source.attrs['case_text']
     settings, text = (t.decode() if isinstance(t, bytes) else t for t in (settings, text))
     assert 'contact.n0 = 0.3' in settings.replace('0.29999999999999999', '0.3'), settings

@@ -42,6 +42,23 @@ static void renames_over_an_earlier_file(void **state) {
   free(temporary);
 }
 
+static void a_folder_is_made_with_those_above(void **state) {
+  (void)state;
+  char path[sizeof scratch_folder + 64], file[sizeof scratch_folder + 64];
+  path_of("a/b/c", path);
+  assert_ok(shb_make_folder(path));
+  assert_ok(shb_make_folder(path)); /* it is there */
+  assert_int_equal(access(path, W_OK), 0);
+  path_of("a/b/c/", path);
+  assert_ok(shb_make_folder(path));
+  path_of("file", file);
+  write_text(file, "text");
+  assert_int_equal(shb_make_folder(file), SHB_ERR_IO);
+  assert_has(shb_message(), "file: this folder cannot be made: Not a directory");
+  path_of("file/below", path);
+  assert_int_equal(shb_make_folder(path), SHB_ERR_IO);
+}
+
 static void a_link_is_not_replaced(void **state) {
   (void)state;
   char path[sizeof scratch_folder + 64], target[sizeof scratch_folder + 64];
@@ -126,6 +143,7 @@ static void fingerprints_are_fnv_1a(void **state) {
 
 int main(void) {
   const struct CMUnitTest tests[] = {cmocka_unit_test(renames_over_an_earlier_file),
+                                     cmocka_unit_test(a_folder_is_made_with_those_above),
                                      cmocka_unit_test(a_link_is_not_replaced),
                                      cmocka_unit_test(a_folder_that_is_absent_is_told),
                                      cmocka_unit_test(abandoned_files_are_removed),
