@@ -40,7 +40,7 @@ if(SHROUDHB_CHROMIUM AND SHROUDHB_PYTHON)
   list(APPEND INTEGRATION_TESTS postproc.study.page_script postproc.report.page_script)
 endif()
 set(SLOW_TESTS
-  cases.scenes.mistuned_ring
+  cases.scenes.mistuned_ring cases.scenes.bladed_disc
   mesh.blade.blade mhb.floquet.monodromy mhb.branches.verdicts cases.converge.converge hard.gaps
   bench.elements cases.scenes.optimum_preload fuzz.libfuzzer mhb.tracking.tracked_response
   robust.fail_nth robust.kills)
