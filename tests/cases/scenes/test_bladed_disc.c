@@ -1,5 +1,5 @@
-/* cases/bladed_disc: forty blades on a disc that bends, beside the same blade with its root clamped;
- * the numbers of the README. */
+/* cases/bladed_disc: forty blades on a disc that bends, beside the same blade with its root
+ * clamped; the numbers of the README. */
 #include "modal/model/nodal_diameters.h"
 #include "tests/support/scene.h"
 
