@@ -67,7 +67,7 @@ static bool is_modulated(const mhb_response *r, const mhb_branch *b, int point) 
 static const char *refusal(const mhb_settings *s) {
   if (s->lasting == MHB_LASTING_NEVER) return "not computed: mhb.lasting is never";
   if (s->nodal_diameters)
-    return "not computed: stability is not judged where a disc couples the blades";
+    return "not computed: the fast integration knows no blades that a disc couples";
   if (s->run_up) return "not computed: in a run-up each frequency has a structure of its own";
   if (s->parameter != MHB_IN_FREQUENCY)
     return "not computed: the curves are not over the frequency";

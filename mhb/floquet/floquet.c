@@ -198,18 +198,38 @@ static int is_accurate(const mhb_multipliers *out, double most) {
   return out->change <= fmax(0.1 * MARGIN, fmin(most, DISTANCE * fabs(out->largest - 1)));
 }
 
-/* phi^T S phi of a mode of a blade: the squared frequency that sticking contacts add. */
-static double stiffening(const mhb_modal_structure *structure, const mhb_law *law, int mode) {
+/* b^T S b of a shape of a pair: the squared frequency that a sticking contact adds. */
+static double stiffening(const mhb_law *of, const double b[3]) {
+  double sum = of->kv * b[0] * b[0];
+  if (of->mu > 0)
+    sum += of->ku[0] * b[1] * b[1] + 2 * of->ku[1] * b[1] * b[2] + of->ku[2] * b[2] * b[2];
+  return sum;
+}
+
+static double stiffening_of_blade(const mhb_modal_structure *structure, const mhb_law *law,
+                                  int mode) {
   double sum = 0;
   for (int k = 0; k < structure->sides * structure->pairs; k++) {
-    int           side = k / structure->pairs, pair = k % structure->pairs;
-    const double *b = structure->shape +
-                      (size_t)(side * structure->modes + mode) * (size_t)(3 * structure->pairs) +
-                      3 * pair;
-    const mhb_law *of = &law[pair];
-    sum += of->kv * b[0] * b[0];
-    if (of->mu > 0)
-      sum += of->ku[0] * b[1] * b[1] + 2 * of->ku[1] * b[1] * b[2] + of->ku[2] * b[2] * b[2];
+    int side = k / structure->pairs, pair = k % structure->pairs;
+    sum += stiffening(
+        &law[pair], structure->shape +
+                        (size_t)(side * structure->modes + mode) * (size_t)(3 * structure->pairs) +
+                        3 * pair);
+  }
+  return sum;
+}
+
+/* The same of mode `at` of all nodal diameters. */
+static double stiffening_of_disc(const mhb_disc_modes *disc, const mhb_law *law, int at) {
+  const double complex *phi = disc->shape + (size_t)at * (size_t)disc->n;
+  double                sum = 0;
+  for (int pair = 0; 3 * pair < disc->n; pair++) {
+    double re[3], im[3];
+    for (int i = 0; i < 3; i++) {
+      re[i] = creal(phi[3 * pair + i]);
+      im[i] = cimag(phi[3 * pair + i]);
+    }
+    sum += stiffening(&law[pair], re) + stiffening(&law[pair], im);
   }
   return sum;
 }
@@ -219,8 +239,10 @@ static int first_refinement(const mhb_floquet *s, const mhb_law *law, double ome
   const mhb_modal_structure *structure  = &s->reduced;
   double                     fastest    = 0; /* squared */
   int                        refinement = 1;
-  for (int i = 0; i < structure->modes; i++) {
-    double own = structure->omega[i] * structure->omega[i], more = stiffening(structure, law, i);
+  const mhb_disc_modes      *disc       = structure->disc;
+  for (int i = 0; i < structure->modes * (disc ? disc->diameters : 1); i++) {
+    double omega_i = disc ? disc->omega[i] : structure->omega[i], own = omega_i * omega_i;
+    double more = disc ? stiffening_of_disc(disc, law, i) : stiffening_of_blade(structure, law, i);
     if (more > SHIFTED * own) fastest = fmax(fastest, own + more);
   }
   while (s->monodromy->substeps * refinement * omega < CYCLE * sqrt(fastest) &&

@@ -42,9 +42,12 @@ static void stiffness(int state, const mhb_law *law, double S[3][3]) {
 }
 
 /* B[3 pairs][mode] of nodal diameter d, into left. */
-static void relative_shapes(mhb_linear_exponents *x, double complex step) {
+static void relative_shapes(mhb_linear_exponents *x, int d, double complex step) {
   const mhb_modal_structure *s = x->structure;
   int                        m = s->modes, n3 = 3 * s->pairs;
+  for (int k = 0; s->disc && k < m * n3; k++)
+    x->left[k % n3 * m + k / n3] = s->disc->shape[(size_t)d * (size_t)(m * n3) + (size_t)k];
+  if (s->disc) return;
   for (int r = 0; r < n3; r++) {
     for (int i = 0; i < m; i++) {
       double complex sum = s->shape[i * n3 + r];
@@ -97,17 +100,19 @@ static int contact_stiffness(mhb_linear_exponents *x) {
 static int nodal_diameter(mhb_linear_exponents *x, int d) {
   const mhb_modal_structure *s  = x->structure;
   int                        n3 = 3 * s->pairs, m = s->modes, n = 2 * m;
-  double complex             step = cexp(-I * SHB_TWO_PI * d / s->blades);
-  relative_shapes(x, step);
+  double complex             step  = cexp(-I * SHB_TWO_PI * d / s->blades);
+  const double              *omega = s->disc ? s->disc->omega + d * m : s->omega;
+  const double              *zeta  = s->disc ? s->disc->zeta + d * m : s->zeta;
+  relative_shapes(x, d, step);
   relative_flexibility(x, step);
   if (!contact_stiffness(x)) return 0;
   const double complex *SB = x->S + (size_t)n3 * (size_t)n3;
   memset(x->A, 0, sizeof *x->A * (size_t)(n * n));
   for (int i = 0; i < m; i++) {
     x->A[(m + i) * n + i]     = 1;
-    x->A[(m + i) * n + m + i] = -2 * s->zeta[i] * s->omega[i];
+    x->A[(m + i) * n + m + i] = -2 * zeta[i] * omega[i];
     for (int k = 0; k < m; k++) {
-      double complex sum = i == k ? s->omega[i] * s->omega[i] : 0;
+      double complex sum = i == k ? omega[i] * omega[i] : 0;
       for (int r = 0; r < n3; r++) sum += conj(x->left[r * m + i]) * SB[k * n3 + r];
       x->A[k * n + m + i] = -sum;
     }

@@ -106,7 +106,8 @@ static void start_motion(mhb_monodromy *d, int contact, int blade, int i, double
   const mhb_modal_structure *s  = d->structure;
   int                        n3 = 3 * s->pairs, n = 3 * s->contacts;
   memset(u, 0, sizeof(double) * (size_t)n);
-  for (int side = 0; contact < 0 && side < s->sides; side++) {
+  if (contact < 0 && s->disc) mhb_disc_modes_add_motion(s->disc, blade, i, u);
+  for (int side = 0; contact < 0 && !s->disc && side < s->sides; side++) {
     int first = 3 * mhb_modal_structure_contact(s, blade, side);
     for (int r = 0; r < n3; r++)
       u[first + r] += s->shape[(size_t)(side * s->modes + i) * (size_t)n3 + (size_t)r];
@@ -167,6 +168,7 @@ static int start_columns(mhb_monodromy *d) {
       put_motion(d, d->column[j] + i, d->u);
       *mhb_variational_at(d->variational, first + 2 * j + i, d->column[j] + i) = 1;
     }
+  mhb_variational_begin(d->variational);
   return 1;
 }
 

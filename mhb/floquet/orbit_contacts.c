@@ -35,7 +35,8 @@ shb_status mhb_orbit_contacts_create(const mhb_modal_structure     *s,
   d->force_jump       = shb_arena_take(arena, n, sizeof(double));
   d->elastic_feedback = shb_arena_take(arena, n, sizeof(double));
   d->basis            = shb_arena_take(arena, 2 * (size_t)d->nb, sizeof(double));
-  if (!mhb_ring_band_create(s->blades, 3 * s->pairs, &d->band) || arena->failed) {
+  const int groups    = mhb_modal_structure_groups(s);
+  if (!mhb_ring_band_create(groups, 3 * s->contacts / groups, &d->band) || arena->failed) {
     mhb_orbit_contacts_destroy(d);
     SHB_FAIL(SHB_ERR_IO, "out of memory for the stability of %d contacts", s->contacts);
   }
@@ -122,18 +123,18 @@ static int is_slipping(const mhb_contact_state *point) {
 
 /* ---- rates with residual flexibility: p' = (I + G R)^-1 G w', u' = w' - R p' ---- */
 
-/* Rows of contact j of I + G R, and of G w'. R couples the contacts of neighbouring blades. */
+/* Rows of contact j of I + G R, and of G w'. R couples the contacts of neighbouring groups. */
 static void rate_rows(mhb_orbit_contacts *d, int j, double at, double *rate) {
-  int    n = 3 * d->structure->contacts, block = d->band.block, blade[3];
-  int    n_blades = mhb_ring_band_neighbours(&d->band, j / d->structure->pairs, blade);
+  int    n = 3 * d->structure->contacts, block = d->band.block, group[3];
+  int    n_groups = mhb_ring_band_neighbours(&d->band, 3 * j / block, group);
   double G[3][3], w[3];
   mhb_linearised_law_rate(&d->point[j], G);
   motion_rate(d, d->motion, j, at, w);
   for (int r = 0; r < 3; r++) {
     const double *R = d->structure->flexibility + (size_t)(3 * j) * (size_t)n;
     rate[3 * j + r] = G[r][0] * w[0] + G[r][1] * w[1] + G[r][2] * w[2];
-    for (int i = 0; i < n_blades * block; i++) {
-      int c = blade[i / block] * block + i % block;
+    for (int i = 0; i < n_groups * block; i++) {
+      int c = group[i / block] * block + i % block;
       *mhb_ring_band_at(&d->band, 3 * j + r, c) =
           (c == 3 * j + r) + G[r][0] * R[c] + G[r][1] * R[n + c] + G[r][2] * R[2 * n + c];
     }

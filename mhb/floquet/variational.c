@@ -1,11 +1,9 @@
 #include "mhb/floquet/variational.h"
 
-#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
-/* Coefficients of a mode over h: change of q by (q, v), v by (q, v), both by a unit force. */
-enum { DQ_Q, DQ_V, V_Q, V_V, DQ_P, V_P, PROPAGATOR };
+#include "mhb/floquet/propagator.h"
 
 static int unknowns(const mhb_modal_structure *s) {
   return 3 * s->contacts;
@@ -20,6 +18,7 @@ shb_status mhb_variational_create(const mhb_modal_structure *s, int capacity,
   mhb_variational *v = calloc(1, sizeof *v);
   SHB_CHECK(v, SHB_ERR_IO, "out of memory");
   size_t n = (size_t)unknowns(s), contacts = (size_t)s->contacts;
+  int    groups = mhb_modal_structure_groups(s);
   size_t blocks = ((size_t)capacity + MHB_COLUMNS - 1) / MHB_COLUMNS;
   v->structure  = s;
   v->capacity   = capacity;
@@ -29,17 +28,19 @@ shb_status mhb_variational_create(const mhb_modal_structure *s, int capacity,
   v->P          = shb_arena_take(&v->arena, blocks * n, sizeof(mhb_columns));
   v->work       = shb_arena_take(&v->arena, 3 * n, sizeof(mhb_columns));
   v->linearised = shb_arena_take(&v->arena, contacts, sizeof *v->linearised);
-  v->propagator = shb_arena_take(&v->arena, (size_t)s->modes * PROPAGATOR, sizeof(double));
+  if (!s->disc)
+    v->propagator = shb_arena_take(&v->arena, (size_t)s->modes * PROPAGATOR, sizeof(double));
   v->compliance = shb_arena_take(&v->arena, n * n, sizeof(double));
-  v->neighbour  = shb_arena_take(&v->arena, (size_t)s->blades, sizeof *v->neighbour);
+  v->neighbour  = shb_arena_take(&v->arena, (size_t)groups, sizeof *v->neighbour);
   v->du         = shb_arena_take(&v->arena, n, sizeof(double));
   v->dsigma     = shb_arena_take(&v->arena, 2 * contacts, sizeof(double));
-  int ok        = mhb_ring_band_create(s->blades, 3 * s->pairs, &v->band);
+  int ok        = mhb_ring_band_create(groups, unknowns(s) / groups, &v->band);
+  if (ok && s->disc) ok = mhb_disc_propagation_create(s->disc, &v->disc) == SHB_OK;
   if (!ok || v->arena.failed) {
     mhb_variational_destroy(v);
     SHB_FAIL(SHB_ERR_IO, "out of memory for the stability of %d columns", capacity);
   }
-  for (int b = 0; b < s->blades; b++)
+  for (int b = 0; b < groups; b++)
     v->n_neighbours = mhb_ring_band_neighbours(&v->band, b, v->neighbour[b]);
   *out = v;
   return SHB_OK;
@@ -49,6 +50,7 @@ void mhb_variational_destroy(mhb_variational *v) {
   if (!v) return;
   shb_arena_free(&v->arena);
   mhb_ring_band_destroy(&v->band);
+  mhb_disc_propagation_destroy(v->disc);
   free(v);
 }
 
@@ -60,20 +62,17 @@ void mhb_variational_clear(mhb_variational *v, int columns) {
   memset(v->P, 0, blocks * (size_t)unknowns(v->structure) * sizeof *v->P);
 }
 
-/* ---- modes ---- */
-
-/* Damped oscillator over h under a constant force, exactly. */
-static void set_propagator(double w, double zeta, double h, double *e) {
-  double a = zeta * w, wd = w * sqrt(1 - zeta * zeta), decay = exp(-a * h);
-  double s = sin(wd * h), half = sin(0.5 * wd * h), ratio = s / wd;
-  double change = expm1(-a * h) + decay * (a * ratio - 2 * half * half); /* of q by q */
-  e[DQ_Q]       = change;
-  e[DQ_V]       = decay * ratio;
-  e[V_Q]        = -w * w * decay * ratio;
-  e[V_V]        = decay * (1 - 2 * half * half - a * ratio);
-  e[DQ_P]       = -change / (w * w);
-  e[V_P]        = decay * ratio;
+static mhb_columns *block_rows(const mhb_variational *v, int k) {
+  return v->Y + (long)k * v->rows;
 }
+
+void mhb_variational_begin(mhb_variational *v) {
+  int rows = modal_rows(v->structure);
+  for (int k = 0; v->disc && k < v->blocks; k++)
+    mhb_disc_propagation_begin(v->disc, block_rows(v, k), block_rows(v, k) + rows);
+}
+
+/* ---- modes ---- */
 
 /* C: change of du over h by unit mean forces. */
 static void set_compliance(mhb_variational *v) {
@@ -96,16 +95,6 @@ static void set_compliance(mhb_variational *v) {
   }
 }
 
-void mhb_variational_set_step(mhb_variational *v, double h) {
-  const mhb_modal_structure *s = v->structure;
-  if (h == v->h) return;
-  mhb_variational_finish(v);
-  v->h = h;
-  for (int i = 0; i < s->modes; i++)
-    set_propagator(s->omega[i], s->zeta[i], h, v->propagator + i * PROPAGATOR);
-  set_compliance(v);
-}
-
 /* q and v of all modes by the mean force P of the last sub-step. */
 MHB_HOT static void apply_force(const mhb_variational *v, mhb_columns *Y, const mhb_columns *P) {
   const mhb_modal_structure *s  = v->structure;
@@ -123,13 +112,40 @@ MHB_HOT static void apply_force(const mhb_variational *v, mhb_columns *Y, const 
   }
 }
 
-void mhb_variational_finish(mhb_variational *v) {
+/* The last mean force takes effect on the modes. */
+static void flush(mhb_variational *v) {
+  int n = unknowns(v->structure), rows = modal_rows(v->structure);
   if (v->h < 0) return;
-  int n = unknowns(v->structure);
   for (int k = 0; k < v->blocks; k++) {
-    apply_force(v, v->Y + (long)k * v->rows, v->P + (long)k * n);
-    memset(v->P + (long)k * n, 0, sizeof *v->P * (size_t)n);
+    mhb_columns *Y = block_rows(v, k), *P = v->P + (long)k * n;
+    if (v->disc) {
+      mhb_disc_propagation_apply(v->disc, Y, Y + rows, P);
+    } else {
+      apply_force(v, Y, P);
+    }
+    memset(P, 0, sizeof *P * (size_t)n);
   }
+}
+
+void mhb_variational_finish(mhb_variational *v) {
+  int rows = modal_rows(v->structure);
+  flush(v);
+  for (int k = 0; v->disc && k < v->blocks; k++)
+    mhb_disc_propagation_end(v->disc, block_rows(v, k), block_rows(v, k) + rows);
+}
+
+void mhb_variational_set_step(mhb_variational *v, double h) {
+  const mhb_modal_structure *s = v->structure;
+  if (h == v->h) return;
+  flush(v);
+  v->h = h;
+  if (v->disc) {
+    mhb_disc_propagation_set_step(v->disc, h, v->compliance);
+    return;
+  }
+  for (int i = 0; i < s->modes; i++)
+    propagator_set(s->omega[i], s->zeta[i], h, v->propagator + i * PROPAGATOR);
+  set_compliance(v);
 }
 
 /* ---- the contacts' system ---- */
@@ -218,9 +234,11 @@ MHB_INLINE void step_block(const mhb_variational *v, ring_size size, mhb_columns
                            mhb_columns *W, mhb_columns *D, mhb_columns *df) {
   const mhb_modal_structure *s      = v->structure;
   const int                  blades = size.blades, sides = size.sides;
-  int                        n3 = 3 * size.pairs, n = blades * n3, m = s->modes;
+  const int                  n3 = 3 * size.pairs, n = blades * n3, m = s->modes;
+  const int                  block = size.neighbours == 1 ? n : n3;
   mhb_columns               *u = Y + 2 * blades * m, *sigma = u + n, y[3];
-  for (int b = 0; b < blades; b++) { /* W, the modes propagating freely */
+  if (v->disc) mhb_disc_propagation_advance(v->disc, Y, Y + blades * m, P, W);
+  for (int b = 0; b < blades && !v->disc; b++) { /* W, the modes propagating freely */
     int right = 3 * mhb_modal_structure_contact(s, b, 0);
     int left  = 3 * mhb_modal_structure_contact(s, b, sides - 1);
     advance_blade(sides, n3, m, v->propagator,
@@ -237,8 +255,8 @@ MHB_INLINE void step_block(const mhb_variational *v, ring_size size, mhb_columns
       df[3 * j + r] = dot3(law->df_y[r], y);
     }
   }
-  subtract_product(v, n, n3, size.neighbours, v->compliance, P, W, D);
-  if (s->flexibility) subtract_product(v, n, n3, size.neighbours, s->flexibility, df, D, D);
+  subtract_product(v, n, block, size.neighbours, v->compliance, P, W, D);
+  if (s->flexibility) subtract_product(v, n, block, size.neighbours, s->flexibility, df, D, D);
   mhb_ring_band_solve(&v->band, D, df); /* D is the change of u; df serves as scratch */
   for (int j = 0; j < n / 3; j++) {
     const mhb_linearised_law *law = &v->linearised[j];
@@ -277,8 +295,8 @@ void mhb_variational_step(mhb_variational *v) {
   const mhb_modal_structure *s = v->structure;
   int                        n = unknowns(s);
   for (int k = 0; k < v->blocks; k++) {
-    mhb_columns *Y = v->Y + (long)k * v->rows, *P = v->P + (long)k * n;
-    if (n == 3 && s->sides == 1) {
+    mhb_columns *Y = block_rows(v, k), *P = v->P + (long)k * n;
+    if (n == 3 && s->sides == 1 && !v->disc) {
       step_one_contact(v, Y, P);
     } else if (s->sides == 2 && s->pairs == 1 && v->n_neighbours == 3) {
       step_ring(v, Y, P, v->work);
@@ -294,7 +312,7 @@ void mhb_variational_saltation(mhb_variational *v, const mhb_saltation *jump) {
   const mhb_modal_structure *s = v->structure;
   int                        n = unknowns(s), j = jump->contact;
   for (int k = 0; k < v->blocks; k++) {
-    mhb_columns *u = v->Y + (long)k * v->rows + 2 * modal_rows(s), *sigma = u + n, y[3];
+    mhb_columns *u = block_rows(v, k) + 2 * modal_rows(s), *sigma = u + n, y[3];
     contact_rows(u, sigma, j, y);
     for (int i = 0; i < 2; i++) sigma[2 * j + i] = dot3(jump->set[i], y);
     if (!s->flexibility) continue;

@@ -20,6 +20,7 @@
 #define MHB_FLOQUET_VARIATIONAL_H
 
 #include "mesh/base/arena.h"
+#include "mhb/floquet/disc_propagation.h"
 #include "mhb/floquet/ring_band.h"
 #include "mhb/structure/modal_structure.h"
 
@@ -48,9 +49,10 @@ typedef struct {
   mhb_columns               *work;       /* [3][n] */
   mhb_linearised_law        *linearised; /* [contact] of the coming sub-step */
   double                     h;          /* s, of the propagator; negative: none */
-  double                    *propagator; /* [mode][6] */
+  double                    *propagator; /* [mode][PROPAGATOR]; NULL on a disc */
+  mhb_disc_propagation      *disc;       /* in its place on a disc, else NULL */
   double                    *compliance; /* [n][n] C, n = 3 contacts */
-  int (*neighbour)[3]; /* [blade] blades that share contacts with it, itself too */
+  int (*neighbour)[3];                   /* [group] groups that are coupled with it, itself too */
   int           n_neighbours;
   mhb_ring_band band;        /* I + C mean_du/2 + R df_du, factored */
   double       *du, *dsigma; /* [n], [2 contacts] of a jump */
@@ -69,18 +71,22 @@ static inline double *mhb_variational_at(mhb_variational *v, int row, int column
   return (double *)&v->Y[(long)(column / MHB_COLUMNS) * v->rows + row] + column % MHB_COLUMNS;
 }
 
+/* The columns are set: q and v are y of the blades. Between this and mhb_variational_finish these
+ * rows are the workspace's own. */
+void mhb_variational_begin(mhb_variational *variational);
+
 /* Sub-steps of h seconds from here on. */
 void mhb_variational_set_step(mhb_variational *variational, double h);
 
 /* Factor the contacts' system for the linearised laws. Returns 0 if singular. */
 int mhb_variational_factor(mhb_variational *variational);
 
-/* One sub-step of all columns. Rows q and v lack the effect of P until mhb_variational_finish. */
+/* One sub-step of all columns. */
 void mhb_variational_step(mhb_variational *variational);
 
 void mhb_variational_saltation(mhb_variational *variational, const mhb_saltation *jump);
 
-/* Apply the last mean force to the modes: q and v are valid after this. */
+/* q and v of the blades are valid after this. */
 void mhb_variational_finish(mhb_variational *variational);
 
 #endif

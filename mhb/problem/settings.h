@@ -117,10 +117,9 @@ typedef struct {
   bool resume; /* take over the finished branches of an interrupted run of equal settings */
 } mhb_settings;
 
-/* Whether points get a verdict. Blades that are coupled by their disc get none yet. */
-static inline bool mhb_judges_stability(const mhb_settings *s) {
-  return s->stability != MHB_STABILITY_NEVER && !s->nodal_diameters;
-}
+/* Whether points get a verdict. On a disc disturbances of every nodal diameter are followed: the
+ * modal file must hold all of them. */
+bool mhb_judges_stability(const mhb_settings *settings);
 
 /* Points by time integration (mhb/integration/integration_sweep.h). */
 typedef enum {

@@ -3,10 +3,13 @@
 #include <string.h>
 
 #include "mesh/base/constants.h"
+#include "modal/model/nodal_diameters.h"
 
 /* Wave number E' = (E + N l)/nu of the fundamental. */
-static int wave_of(const mhb_settings *s) {
-  return (int)((s->engine_order + (long)s->blades * mhb_wave_shift(s)) / s->subharmonics);
+static int wave_of(const mhb_settings *s, int blades) {
+  const mhb_settings own = {
+      .engine_order = s->engine_order, .blades = blades, .subharmonics = s->subharmonics};
+  return (int)((s->engine_order + (long)blades * mhb_wave_shift(&own)) / s->subharmonics);
 }
 
 /* T0^T x of a pair in a mode, negative on the left. */
@@ -51,22 +54,30 @@ static void set_flexibility(const mhb_receptance *r, mhb_modal_structure *s) {
   }
 }
 
+static void take_arrays(const mhb_receptance *r, mhb_modal_structure *s) {
+  const size_t n = 3 * (size_t)s->contacts, m = (size_t)s->modes, side = m * (size_t)r->n;
+  if (!s->disc) {
+    s->omega = shb_arena_take(&s->arena, m, sizeof(double));
+    s->zeta  = shb_arena_take(&s->arena, m, sizeof(double));
+    s->shape = shb_arena_take(&s->arena, (size_t)s->sides * side, sizeof(double));
+  }
+  if (r->model->residual_flexibility || s->modes < r->n_modes)
+    s->flexibility = shb_arena_take(&s->arena, n * n, sizeof(double));
+}
+
 shb_status mhb_modal_structure_create(const mhb_receptance *r, const mhb_settings *settings,
                                       int modes, mhb_modal_structure *s) {
-  const modal_model *model = r->model;
-  int                m = modes < r->n_modes ? modes : r->n_modes, ground = settings->to_ground;
-  *s          = (mhb_modal_structure){.blades = ground ? 1 : settings->blades,
+  const modal_model           *model = r->model;
+  const modal_nodal_diameters *of    = settings->nodal_diameters;
+  const int ground = settings->to_ground, blades = of ? of->blades : ground ? 1 : settings->blades;
+  *s          = (mhb_modal_structure){.blades = blades,
                                       .sides  = ground ? 1 : 2,
-                                      .modes  = m,
+                                      .modes  = modes < r->n_modes ? modes : r->n_modes,
                                       .pairs  = model->n_pairs,
-                                      .wave   = ground ? 0 : wave_of(settings)};
+                                      .wave   = ground && !of ? 0 : wave_of(settings, blades)};
   s->contacts = s->blades * s->pairs;
-  size_t n = 3 * (size_t)s->contacts, side = (size_t)m * (size_t)r->n;
-  s->omega = shb_arena_take(&s->arena, (size_t)m, sizeof(double));
-  s->zeta  = shb_arena_take(&s->arena, (size_t)m, sizeof(double));
-  s->shape = shb_arena_take(&s->arena, (size_t)s->sides * side, sizeof(double));
-  if (model->residual_flexibility || m < r->n_modes)
-    s->flexibility = shb_arena_take(&s->arena, n * n, sizeof(double));
+  if (of) SHB_TRY(mhb_disc_modes_create(r, settings, s->modes, &s->disc));
+  take_arrays(r, s);
   if (s->arena.failed) {
     mhb_modal_structure_destroy(s);
     SHB_FAIL(SHB_ERR_IO, "out of memory for the structure of %d contacts", s->contacts);
@@ -77,18 +88,22 @@ shb_status mhb_modal_structure_create(const mhb_receptance *r, const mhb_setting
 
 void mhb_modal_structure_set(const mhb_receptance *r, mhb_modal_structure *s) {
   const size_t side = (size_t)s->modes * (size_t)r->n, n = 3 * (size_t)s->contacts;
+  if (s->flexibility) memset(s->flexibility, 0, n * n * sizeof *s->flexibility);
+  if (s->disc) {
+    if (s->flexibility) mhb_disc_modes_add_map(s->disc, s->disc->flexibility, s->flexibility);
+    return;
+  }
   for (int i = 0; i < s->modes; i++) {
     s->omega[i] = SHB_TWO_PI * r->model->frequency[i];
     s->zeta[i]  = r->model->damping_ratio[i];
   }
   for (size_t k = 0; k < (size_t)s->sides * side; k++)
     s->shape[k] = shape_of(r, k >= side, (int)(k % (size_t)r->n), (int)(k % side) / r->n);
-  if (!s->flexibility) return;
-  memset(s->flexibility, 0, n * n * sizeof *s->flexibility);
-  set_flexibility(r, s);
+  if (s->flexibility) set_flexibility(r, s);
 }
 
 void mhb_modal_structure_destroy(mhb_modal_structure *s) {
+  mhb_disc_modes_destroy(s->disc);
   shb_arena_free(&s->arena);
   *s = (mhb_modal_structure){0};
 }

@@ -2,32 +2,44 @@
  *
  * To the neighbour (sides = 2) contact j = blade * pairs + pair lies between the right side of its
  * blade and the left side of the next one. To ground (sides = 1) there is one blade. Motion du = B
- * dq - R dp, force on the modes -B^T dp. */
+ * dq - R dp, force on the modes -B^T dp.
+ *
+ * With settings->nodal_diameters the blades are also coupled by their disc (disc_modes.h); then the
+ * modes are those of the nodal diameters. */
 #ifndef MHB_STRUCTURE_MODAL_STRUCTURE_H
 #define MHB_STRUCTURE_MODAL_STRUCTURE_H
 
 #include "mesh/base/arena.h"
 #include "mhb/problem/settings.h"
+#include "mhb/structure/disc_modes.h"
 #include "mhb/structure/receptance.h"
 
 typedef struct {
-  int       blades, sides, modes, pairs, contacts;
-  int       wave;         /* E of the fundamental: the next blade lags by 2 pi E/N */
-  double   *omega, *zeta; /* [modes] rad/s, - */
-  double   *shape;        /* [side][mode][3 pairs] (v, u, w) by the mode, kg^-1/2; left: negative */
-  double   *flexibility;  /* [3 contacts][3 contacts] R, m/N, or NULL */
-  shb_arena arena;
+  int     blades, sides, modes, pairs, contacts;
+  int     wave;         /* E of the fundamental: the next blade lags by 2 pi E/N */
+  double *omega, *zeta; /* [modes] rad/s, - */
+  double *shape;        /* [side][mode][3 pairs] (v, u, w) by the mode, kg^-1/2; left: negative */
+  double *flexibility;  /* [3 contacts][3 contacts] R, m/N, or NULL */
+  /* NULL: blades that their contacts alone couple. Else omega, zeta and shape are NULL. */
+  mhb_disc_modes *disc;
+  shb_arena       arena;
 } mhb_modal_structure;
 
 /* The lowest modes stay dynamic. The others answer statically and are added to R, as is residual
  * flexibility. Residual inertia is left out: u = B q - R p + R2 p'' cannot be integrated forward in
- * time. SHB_ERR_IO: no memory. */
+ * time. SHB_ERR_IO: no memory; SHB_ERR_INPUT: a nodal diameter of the disc is missing. */
 shb_status mhb_modal_structure_create(const mhb_receptance *receptance,
                                       const mhb_settings *settings, int modes,
                                       mhb_modal_structure *structure);
 /* Anew for the same modes, after the receptance went to another speed of a run-up. */
 void mhb_modal_structure_set(const mhb_receptance *receptance, mhb_modal_structure *structure);
 void mhb_modal_structure_destroy(mhb_modal_structure *structure);
+
+/* Groups of contacts that are coupled with the neighbouring groups only: the blades; on a disc all
+ * contacts are one group. */
+static inline int mhb_modal_structure_groups(const mhb_modal_structure *s) {
+  return s->disc ? 1 : s->blades;
+}
 
 /* First contact of the side of a blade. */
 static inline int mhb_modal_structure_contact(const mhb_modal_structure *s, int blade, int side) {

@@ -1,0 +1,164 @@
+#include "mhb/floquet/disc_propagation.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+#include "mhb/floquet/propagator.h"
+
+shb_status mhb_disc_propagation_create(const mhb_disc_modes *modes, mhb_disc_propagation **out) {
+  mhb_disc_propagation *d = calloc(1, sizeof *d);
+  SHB_CHECK(d, SHB_ERR_IO, "out of memory");
+  const size_t N = (size_t)modes->blades, n = (size_t)modes->n, K = (size_t)modes->diameters;
+  d->modes      = modes;
+  d->propagator = shb_arena_take(&d->arena, K * (size_t)modes->modes * PROPAGATOR, sizeof(double));
+  d->block      = shb_arena_take(&d->arena, K * n * n, sizeof *d->block);
+  d->force      = shb_arena_take(&d->arena, N * n, sizeof *d->force);
+  d->motion     = shb_arena_take(&d->arena, N * n, sizeof *d->motion);
+  d->row        = shb_arena_take(&d->arena, N, sizeof *d->row);
+  if (d->arena.failed) {
+    mhb_disc_propagation_destroy(d);
+    SHB_FAIL(SHB_ERR_IO, "out of memory for the stability of a disc of %d sectors", modes->blades);
+  }
+  *out = d;
+  return SHB_OK;
+}
+
+void mhb_disc_propagation_destroy(mhb_disc_propagation *d) {
+  if (!d) return;
+  shb_arena_free(&d->arena);
+  free(d);
+}
+
+static const double complex *shape_of(const mhb_disc_modes *s, int diameter, int mode) {
+  return s->shape + (size_t)(diameter * s->modes + mode) * (size_t)s->n;
+}
+
+void mhb_disc_propagation_set_step(mhb_disc_propagation *d, double h, double *compliance) {
+  const mhb_disc_modes *s = d->modes;
+  const size_t          n = (size_t)s->n, all = n * (size_t)s->blades;
+  memset(d->block, 0, sizeof *d->block * (size_t)s->diameters * n * n);
+  for (int at = 0; at < s->diameters * s->modes; at++) {
+    const int             diameter = at / s->modes;
+    const double complex *phi      = shape_of(s, diameter, at % s->modes);
+    double               *e        = d->propagator + at * PROPAGATOR;
+    double complex       *C        = d->block + (size_t)diameter * n * n;
+    propagator_set(s->omega[at], s->zeta[at], h, e);
+    for (size_t r = 0; r < n; r++)
+      for (size_t c = 0; c < n; c++) C[r * n + c] += e[DQ_P] * phi[r] * conj(phi[c]);
+  }
+  memset(compliance, 0, sizeof *compliance * all * all);
+  mhb_disc_modes_add_map(s, d->block, compliance);
+}
+
+/* out[coordinate][width] <- F in[sector][width] */
+MHB_HOT static void transform(const mhb_disc_modes *s, int width, const mhb_columns *in,
+                              mhb_columns *out) {
+  const int N = s->blades;
+  for (int at = 0; at < N; at++)
+    for (int r = 0; r < width; r++) {
+      mhb_columns sum = {0};
+      for (int b = 0; b < N; b++) sum += s->fourier[at * N + b] * in[b * width + r];
+      out[at * width + r] = sum;
+    }
+}
+
+/* out[sector][width] += F^T in[coordinate][width] */
+MHB_HOT static void add_transformed_back(const mhb_disc_modes *s, int width, const mhb_columns *in,
+                                         mhb_columns *out) {
+  const int N = s->blades;
+  for (int b = 0; b < N; b++)
+    for (int r = 0; r < width; r++) {
+      mhb_columns sum = {0};
+      for (int at = 0; at < N; at++) sum += s->fourier[at * N + b] * in[at * width + r];
+      out[b * width + r] += sum;
+    }
+}
+
+/* rows [N][modes] <- F rows, or F^T rows */
+static void turn_rows(mhb_disc_propagation *d, mhb_columns *rows, int back) {
+  const mhb_disc_modes *s = d->modes;
+  const int             N = s->blades;
+  for (int i = 0; i < s->modes; i++) {
+    for (int a = 0; a < N; a++) {
+      mhb_columns sum = {0};
+      for (int b = 0; b < N; b++)
+        sum += s->fourier[back ? b * N + a : a * N + b] * rows[b * s->modes + i];
+      d->row[a] = sum;
+    }
+    for (int a = 0; a < N; a++) rows[a * s->modes + i] = d->row[a];
+  }
+}
+
+void mhb_disc_propagation_begin(mhb_disc_propagation *d, mhb_columns *q, mhb_columns *v) {
+  turn_rows(d, q, 0);
+  turn_rows(d, v, 0);
+}
+
+void mhb_disc_propagation_end(mhb_disc_propagation *d, mhb_columns *q, mhb_columns *v) {
+  turn_rows(d, q, 1);
+  turn_rows(d, v, 1);
+}
+
+/* Force Phi^H p on a mode, real and imaginary part of a wave of count coordinates. */
+MHB_INLINE void modal_force(int n, int count, const double complex *phi, const mhb_columns *p,
+                            mhb_columns out[2]) {
+  out[0] = out[1] = (mhb_columns){0};
+  for (int r = 0; r < n; r++) {
+    out[0] += creal(phi[r]) * p[r];
+    if (count == 1) continue;
+    out[0] += cimag(phi[r]) * p[n + r];
+    out[1] += creal(phi[r]) * p[n + r] - cimag(phi[r]) * p[r];
+  }
+}
+
+/* u += Phi dz */
+MHB_INLINE void add_motion(int n, int count, const double complex *phi, const mhb_columns dz[2],
+                           mhb_columns *u) {
+  for (int r = 0; r < n; r++) {
+    u[r] += creal(phi[r]) * dz[0];
+    if (count == 1) continue;
+    u[r] -= cimag(phi[r]) * dz[1];
+    u[n + r] += cimag(phi[r]) * dz[0] + creal(phi[r]) * dz[1];
+  }
+}
+
+/* d->force is p^. The modes of one nodal diameter; with motion also propagated freely. */
+MHB_HOT static void advance_diameter(mhb_disc_propagation *d, int diameter, mhb_columns *q,
+                                     mhb_columns *v, mhb_columns *motion) {
+  const mhb_disc_modes *s = d->modes;
+  const int             n = s->n, m = s->modes;
+  int                   count;
+  const int             first = mhb_disc_modes_first(s, diameter, &count);
+  for (int i = 0; i < m; i++) {
+    const double         *e   = d->propagator + (diameter * m + i) * PROPAGATOR;
+    const double complex *phi = shape_of(s, diameter, i);
+    mhb_columns           force[2], dz[2] = {{0}};
+    modal_force(n, count, phi, d->force + first * n, force);
+    for (int c = 0; c < count; c++) {
+      const int         at = (first + c) * m + i;
+      const mhb_columns q0 = q[at] - e[DQ_P] * force[c], v0 = v[at] - e[V_P] * force[c];
+      q[at] = q0;
+      v[at] = v0;
+      if (!motion) continue;
+      dz[c] = e[DQ_Q] * q0 + e[DQ_V] * v0;
+      q[at] = q0 + dz[c];
+      v[at] = e[V_Q] * q0 + e[V_V] * v0;
+    }
+    if (motion) add_motion(n, count, phi, dz, motion + first * n);
+  }
+}
+
+void mhb_disc_propagation_apply(mhb_disc_propagation *d, mhb_columns *q, mhb_columns *v,
+                                const mhb_columns *P) {
+  transform(d->modes, d->modes->n, P, d->force);
+  for (int k = 0; k < d->modes->diameters; k++) advance_diameter(d, k, q, v, NULL);
+}
+
+void mhb_disc_propagation_advance(mhb_disc_propagation *d, mhb_columns *q, mhb_columns *v,
+                                  const mhb_columns *P, mhb_columns *W) {
+  const mhb_disc_modes *s = d->modes;
+  transform(s, s->n, P, d->force);
+  memset(d->motion, 0, sizeof *d->motion * (size_t)(s->blades * s->n));
+  for (int k = 0; k < s->diameters; k++) advance_diameter(d, k, q, v, d->motion);
+  add_transformed_back(s, s->n, d->motion, W);
+}

@@ -1,0 +1,138 @@
+#include "mhb/structure/disc_modes.h"
+
+#include <math.h>
+#include <stdlib.h>
+
+#include "mesh/base/constants.h"
+#include "modal/model/nodal_diameters.h"
+
+static void set_fourier(mhb_disc_modes *d) {
+  const int N = d->blades;
+  for (int n = 0; n < d->diameters; n++) {
+    int       count;
+    const int at = mhb_disc_modes_first(d, n, &count);
+    for (int b = 0; b < N; b++) {
+      const double angle     = SHB_TWO_PI * (double)(n * b % N) / N;
+      d->fourier[at * N + b] = sqrt((double)count / N) * cos(angle);
+      if (count == 2) d->fourier[(at + 1) * N + b] = sqrt(2. / N) * sin(angle);
+    }
+  }
+}
+
+/* Shapes and frequencies; the modes above those kept go into the flexibility. */
+static void set_modes(mhb_disc_modes *d, const mhb_modal_part *part, int diameter) {
+  const modal_model    *model = part->wave[diameter].model;
+  const double complex *B     = part->B + (size_t)diameter * (size_t)(d->n * d->all);
+  double complex       *phi   = d->shape + (size_t)diameter * (size_t)(d->modes * d->n);
+  for (int i = 0; i < d->modes; i++) {
+    d->omega[diameter * d->modes + i] = SHB_TWO_PI * model->frequency[i];
+    d->zeta[diameter * d->modes + i]  = model->damping_ratio[i];
+    for (int r = 0; r < d->n; r++) phi[i * d->n + r] = B[r * d->all + i];
+  }
+  if (!d->flexibility) return;
+  double complex *R = d->flexibility + (size_t)diameter * (size_t)(d->n * d->n);
+  mhb_residual_terms_matrix(part->residual_terms, diameter, 0, R);
+  for (int i = d->modes; i < d->all; i++) {
+    const double w = SHB_TWO_PI * model->frequency[i];
+    for (int r = 0; r < d->n; r++)
+      for (int c = 0; c < d->n; c++)
+        R[r * d->n + c] += B[r * d->all + i] * conj(B[c * d->all + i]) / (w * w);
+  }
+}
+
+/* The nodal diameters in the place of harmonics: the one of index n lags by n turns of 1/N. */
+static shb_status fill(mhb_disc_modes *d, const mhb_receptance *r, const mhb_settings *s) {
+  modal_wave     wave[d->diameters];
+  double complex phase[d->diameters];
+  for (int n = 0; n < d->diameters; n++) {
+    int missing;
+    phase[n] = cexp(-I * SHB_TWO_PI * n / d->blades);
+    SHB_CHECK(modal_nodal_diameters_wave(s->nodal_diameters, n, &wave[n], &missing), SHB_ERR_INPUT,
+              "the modal file lacks nodal diameter %d", missing);
+  }
+  const mhb_relative  relative  = {d->n, s->to_ground ? 1 : 2, r->T0};
+  const mhb_harmonics harmonics = {.nu              = 1,
+                                   .n_harmonics     = d->diameters - 1,
+                                   .phase           = phase,
+                                   .wave            = wave,
+                                   .nodal_diameters = true};
+  mhb_modal_part     *part;
+  SHB_TRY(mhb_modal_part_create(r->model, relative, &harmonics, &part));
+  for (int n = 0; n < d->diameters; n++) set_modes(d, part, n);
+  mhb_modal_part_destroy(part);
+  return SHB_OK;
+}
+
+shb_status mhb_disc_modes_create(const mhb_receptance *r, const mhb_settings *s, int modes,
+                                 mhb_disc_modes **out) {
+  mhb_disc_modes *d = calloc(1, sizeof *d);
+  SHB_CHECK(d, SHB_ERR_IO, "out of memory");
+  const int N  = s->nodal_diameters->blades;
+  d->blades    = N;
+  d->n         = r->n;
+  d->all       = r->n_modes;
+  d->modes     = modes < d->all ? modes : d->all;
+  d->diameters = N / 2 + 1;
+
+  const size_t K = (size_t)d->diameters, n = (size_t)d->n, m = (size_t)d->modes;
+  d->omega   = shb_arena_take(&d->arena, K * m, sizeof *d->omega);
+  d->zeta    = shb_arena_take(&d->arena, K * m, sizeof *d->zeta);
+  d->shape   = shb_arena_take(&d->arena, K * m * n, sizeof *d->shape);
+  d->fourier = shb_arena_take(&d->arena, (size_t)N * (size_t)N, sizeof *d->fourier);
+  if (r->model->residual_flexibility || d->modes < d->all)
+    d->flexibility = shb_arena_take(&d->arena, K * n * n, sizeof *d->flexibility);
+  shb_status status = d->arena.failed
+                          ? shb_fail(SHB_ERR_IO, __FILE__, __LINE__, "out of memory for the disc")
+                          : fill(d, r, s);
+  if (status != SHB_OK) {
+    mhb_disc_modes_destroy(d);
+    return status;
+  }
+  set_fourier(d);
+  *out = d;
+  return SHB_OK;
+}
+
+void mhb_disc_modes_destroy(mhb_disc_modes *d) {
+  if (!d) return;
+  shb_arena_free(&d->arena);
+  free(d);
+}
+
+int mhb_disc_modes_first(const mhb_disc_modes *d, int diameter, int *count) {
+  *count = diameter == 0 || 2 * diameter == d->blades ? 1 : 2;
+  return diameter == 0 ? 0 : 2 * diameter - 1;
+}
+
+void mhb_disc_modes_add_map(const mhb_disc_modes *d, const double complex *block, double *dense) {
+  const int N = d->blades, n = d->n;
+  for (int lag = 0; lag < N; lag++) /* of the sector that moves behind the one that is pushed */
+    for (int r = 0; r < n; r++)
+      for (int c = 0; c < n; c++) {
+        double sum = 0;
+        for (int k = 0; k < d->diameters; k++) {
+          int count;
+          mhb_disc_modes_first(d, k, &count);
+          sum += count * creal(block[((size_t)k * (size_t)n + (size_t)r) * (size_t)n + (size_t)c] *
+                               cexp(-I * SHB_TWO_PI * (double)(k * lag % N) / N));
+        }
+        for (int b = 0; b < N; b++) {
+          const size_t row = (size_t)((b + lag) % N * n + r), column = (size_t)(b * n + c);
+          dense[row * (size_t)(N * n) + column] += sum / N;
+        }
+      }
+}
+
+void mhb_disc_modes_add_motion(const mhb_disc_modes *d, int blade, int mode, double *motion) {
+  const int N = d->blades, n = d->n;
+  for (int k = 0; k < d->diameters; k++) {
+    int                   count;
+    const double complex *phi = d->shape + (size_t)(k * d->modes + mode) * (size_t)n;
+    mhb_disc_modes_first(d, k, &count);
+    for (int lag = 0; lag < N; lag++) {
+      const double complex turn = cexp(-I * SHB_TWO_PI * (double)(k * lag % N) / N);
+      for (int r = 0; r < n; r++)
+        motion[(blade + lag) % N * n + r] += count * creal(phi[r] * turn) / N;
+    }
+  }
+}

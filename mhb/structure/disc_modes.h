@@ -1,0 +1,45 @@
+/* The ring of a flexible disc in modal coordinates: every nodal diameter has modes of its own.
+ *
+ * Nodal diameter n, 0 <= n <= N/2, theta = 2 pi/N, contact motion u_b = Phi_n z_n e^(-j n theta b)
+ * of sector b. The complex amplitudes z_n are the unitary discrete Fourier transform of coordinates
+ * y_b of the sectors, one a mode:
+ *   z_n = N^(-1/2) sum_b e^(j n theta b) y_b
+ * so that a shift of the ring renames the y_b, as for blades that are coupled by their contacts
+ * alone. Real coordinates of z, orthonormal to y: z_0 | sqrt 2 Re z_n, sqrt 2 Im z_n | z_(N/2).
+ * Derivation: docs/theory/stability.md. */
+#ifndef MHB_STRUCTURE_DISC_MODES_H
+#define MHB_STRUCTURE_DISC_MODES_H
+
+#include <complex.h>
+
+#include "mesh/base/arena.h"
+#include "mhb/problem/settings.h"
+#include "mhb/structure/receptance.h"
+
+typedef struct mhb_disc_modes {
+  int             blades, n, modes, all; /* N; 3 pairs; kept of each diameter, of all in the file */
+  int             diameters;             /* N/2 + 1 */
+  double         *omega, *zeta;          /* [diameter][modes] rad/s, - */
+  double complex *shape;       /* [diameter][modes][n] (v, u, w) of the contact, kg^-1/2 */
+  double complex *flexibility; /* [diameter][n][n] static one of all else, m/N; NULL: none */
+  double         *fourier;     /* [N][N] real coordinates of z by y */
+  shb_arena       arena;
+} mhb_disc_modes;
+
+/* The lowest modes of each nodal diameter of settings->nodal_diameters, which must hold all of
+ * them; the others answer statically. SHB_ERR_IO: no memory. SHB_ERR_INPUT: one is missing. */
+shb_status mhb_disc_modes_create(const mhb_receptance *receptance, const mhb_settings *settings,
+                                 int modes, mhb_disc_modes **disc);
+void       mhb_disc_modes_destroy(mhb_disc_modes *disc);
+
+/* First of the real coordinates of a nodal diameter; *count of them, 1 or 2. */
+int mhb_disc_modes_first(const mhb_disc_modes *disc, int diameter, int *count);
+
+/* dense [N n][N n] += the map of the sectors' contacts whose symbol at nodal diameter n is
+ * block[diameter][n][n], Hermitian. */
+void mhb_disc_modes_add_map(const mhb_disc_modes *disc, const double complex *block, double *dense);
+
+/* motion [N n] += that of the contacts by a unit of y of a mode of a blade. */
+void mhb_disc_modes_add_motion(const mhb_disc_modes *disc, int blade, int mode, double *motion);
+
+#endif
