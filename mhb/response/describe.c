@@ -43,6 +43,8 @@ shb_status mhb_response_describe(mhb_response *response, const modal_model *mode
   response->engine_order   = settings->engine_order;
   response->blades         = settings->blades;
   response->run_up         = settings->run_up != NULL;
+  response->lacks_diameters =
+      settings->stability != MHB_STABILITY_NEVER && !mhb_judges_stability(settings);
   response->parameter      = settings->parameter;
   response->n_multipliers  = mhb_judges_stability(settings) ? MHB_KEPT_MULTIPLIERS : 0;
   response->mode_frequency = malloc(sizeof(double) * m);

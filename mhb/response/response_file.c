@@ -156,6 +156,8 @@ static shb_status write_root(hid_t file, const mhb_response *response) {
   SHB_TRY(h5_write_attribute_int(file, "/", "subharmonics", response->subharmonics));
   if (response->run_up) SHB_TRY(h5_write_attribute_int(file, "/", "run_up", 1));
   if (response->ring) SHB_TRY(h5_write_attribute_int(file, "/", "ring", response->ring));
+  if (response->lacks_diameters)
+    SHB_TRY(h5_write_attribute_int(file, "/", "lacks_nodal_diameters", 1));
   if (response->unfinished) SHB_TRY(h5_write_attribute_int(file, "/", "finished", 0));
   SHB_TRY(h5_write_attribute_text(file, "/", "parameter", mhb_parameter_name(response->parameter)));
   SHB_TRY(write_tracking(file, response));
@@ -531,11 +533,13 @@ static shb_status read_root(hid_t file, const char *path, mhb_response **out) {
                                                       response->n_probes % response->ring == 0)),
       SHB_ERR_INPUT, "%s: ring is %d, but there are %d pairs and %d probes", path, response->ring,
       response->n_pairs, response->n_probes);
-  int run_up = 0, finished = 1;
+  int run_up = 0, finished = 1, lacks = 0;
+  SHB_TRY(h5_read_attribute_int(file, "/", "lacks_nodal_diameters", 0, &lacks));
   SHB_TRY(h5_read_attribute_int(file, "/", "run_up", 0, &run_up));
   SHB_TRY(h5_read_attribute_int(file, "/", "finished", 1, &finished));
-  response->unfinished = finished == 0;
-  response->run_up     = run_up != 0 && response->engine_order >= 1;
+  response->unfinished      = finished == 0;
+  response->lacks_diameters = lacks != 0;
+  response->run_up          = run_up != 0 && response->engine_order >= 1;
   SHB_TRY(read_tracking(file, path, response));
   SHB_TRY(mhb_samples_read(file, &response->samples));
   SHB_TRY(h5_read_attribute_double(file, "/", "psi", 0, &response->psi));

@@ -215,7 +215,8 @@ typedef struct {
   double *mode_frequency, *mode_damping, *eigen_residual; /* [m]; eigen_residual may be NULL */
   int     engine_order, blades;
   int     ring; /* number of different blades: pairs and probes of blade 0 come first; 0: a wave */
-  bool    unfinished; /* the run that makes it has more to do */
+  bool    unfinished;      /* the run that makes it has more to do */
+  bool    lacks_diameters; /* of its disc, without which stability cannot be judged */
   bool    run_up; /* the speed follows the frequency on the engine order; modes of the top speed */
   double  psi, phi;       /* rad, mean of the pairs */
   char   *track, *output; /* with mhb.track: what is followed, of which output; else NULL */

@@ -117,8 +117,8 @@ void mhb_disc_modes_add_map(const mhb_disc_modes *d, const double complex *block
                                cexp(-I * SHB_TWO_PI * (double)(k * lag % N) / N));
         }
         for (int b = 0; b < N; b++) {
-          const size_t row = (size_t)((b + lag) % N * n + r), column = (size_t)(b * n + c);
-          dense[row * (size_t)(N * n) + column] += sum / N;
+          const int row = (b + lag) % N * n + r, column = b * n + c;
+          dense[(size_t)row * (size_t)N * (size_t)n + (size_t)column] += sum / N;
         }
       }
 }

@@ -54,7 +54,14 @@ static tally count(const post_analysis *analysis) {
   return t;
 }
 
-static void put_verdicts(const tally *t, post_buffer *out) {
+static void put_verdicts(const tally *t, bool lacks_diameters, post_buffer *out) {
+  if (lacks_diameters) {
+    post_put(out,
+             "<li>Stability was <b>not judged</b>: disturbances may have any nodal diameter, and "
+             "the modal file lacks some. <code>modal.nodal_diameters: all</code> adds "
+             "them.</li>\n");
+    return;
+  }
   if (t->points[POST_VERDICT_NOT_JUDGED] == t->total) {
     post_put(out,
              "<li>Stability was <b>not judged</b>: <code>mhb.stability</code> does. Between the "
@@ -157,7 +164,7 @@ static void put_not_computed(const post_analysis *analysis, post_buffer *out) {
 void post_stability_findings(const post_analysis *analysis, post_buffer *out) {
   tally t = count(analysis);
   if (t.total == 0) return;
-  put_verdicts(&t, out);
+  put_verdicts(&t, analysis->response->lacks_diameters, out);
   put_lasting(analysis, out);
   put_not_computed(analysis, out);
 }

@@ -64,6 +64,19 @@ static void peaks_are_those_of_the_readme(void **state) {
   }
 }
 
+static int verdict_at_peak(const mhb_response *response, double n0) {
+  const mhb_branch *b = scene_branch(response, MHB_BRANCH_NONLINEAR, n0);
+  return b->stable[scene_highest(response, b, 91, 269).point];
+}
+
+static void stability_is_that_of_the_readme(void **state) {
+  (void)state;
+  assert_int_equal(verdict_at_peak(disc, 15), 1);
+  assert_int_equal(verdict_at_peak(disc, 40), 1);
+  assert_int_equal(verdict_at_peak(disc, 100), 0);
+  for (int i = 1; i <= 3; i++) assert_int_equal(verdict_at_peak(clamped, TABLE[i].n0), 0);
+}
+
 /* The clamped blade has no second resonance in the range. */
 static void the_second_resonance_is_the_discs(void **state) {
   (void)state;
@@ -102,6 +115,7 @@ int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(curves_are_sound),
       cmocka_unit_test(peaks_are_those_of_the_readme),
+      cmocka_unit_test(stability_is_that_of_the_readme),
       cmocka_unit_test(the_second_resonance_is_the_discs),
       cmocka_unit_test(frequencies_over_the_nodal_diameter),
   };

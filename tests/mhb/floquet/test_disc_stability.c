@@ -169,6 +169,20 @@ static void an_uncoupled_disc_is_clamped_blades(void **state) {
     }
 }
 
+/* A disturbance may have any nodal diameter. */
+static void all_nodal_diameters_are_needed(void **state) {
+  (void)state;
+  sector s;
+  sector_create(2, 6, 0.8, 5, 0.4, &s);
+  assert_true(mhb_judges_stability(&s.settings));
+  s.waves.n--;
+  assert_false(mhb_judges_stability(&s.settings));
+  s.waves.n++;
+  s.settings.stability = MHB_STABILITY_NEVER;
+  assert_false(mhb_judges_stability(&s.settings));
+  modal_nodal_diameters_free(&s.waves);
+}
+
 /* Modes that answer statically, because of the number of states or in the file. */
 static void higher_modes_may_answer_statically(void **state) {
   static double complex copy[MOST];
@@ -195,6 +209,7 @@ int main(void) {
       cmocka_unit_test(the_distance_is_that_of_the_substeps),
       cmocka_unit_test(linear_limits_are_those_of_the_ring),
       cmocka_unit_test(an_uncoupled_disc_is_clamped_blades),
+      cmocka_unit_test(all_nodal_diameters_are_needed),
       cmocka_unit_test(higher_modes_may_answer_statically),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);

@@ -180,10 +180,10 @@ static void run_up_tells_its_speeds(void **state) {
   hid_t         file;
   double       *speed = NULL;
   h5_shape      shape = H5_SHAPE(7);
-  wrote->run_up       = true;
+  wrote->run_up = wrote->lacks_diameters = true;
   assert_ok(mhb_response_write(wrote, scratch("speeds.h5"), &from));
   assert_ok(mhb_response_read(scratch("speeds.h5"), &read));
-  assert_true(read->run_up);
+  assert_true(read->run_up && read->lacks_diameters);
   assert_ok(h5_open(scratch("speeds.h5"), &file));
   assert_ok(h5_read_double(file, "/branch_0/speed", &shape, &speed));
   for (int i = 0; i < 7; i++)
@@ -191,10 +191,10 @@ static void run_up_tells_its_speeds(void **state) {
   assert_ok(h5_close(file));
   free(speed);
   mhb_response_destroy(read);
-  wrote->run_up = false;
+  wrote->run_up = wrote->lacks_diameters = false;
   assert_ok(mhb_response_write(wrote, scratch("one.h5"), &from));
   assert_ok(mhb_response_read(scratch("one.h5"), &read));
-  assert_false(read->run_up);
+  assert_false(read->run_up || read->lacks_diameters);
   mhb_response_destroy(wrote);
   mhb_response_destroy(read);
 }

@@ -168,7 +168,12 @@ static void what_is_missing_is_said(void **state) {
   for (int b = 0; b < f.response->n_branches; b++)
     for (int p = 0; p < f.response->branch[b].n_points; p++) f.response->branch[b].stable[p] = -1;
   text = findings(&f);
-  assert_has(text, "Stability was <b>not judged</b>");
+  assert_has(text, "Stability was <b>not judged</b>: <code>mhb.stability</code> does.");
+  free(text);
+  f.response->lacks_diameters = true;
+  text                        = findings(&f);
+  assert_has(text, "<code>modal.nodal_diameters: all</code> adds them.");
+  assert_null(strstr(text, "mhb.stability"));
   free(text);
   tear_down(&f);
 }

@@ -46,8 +46,8 @@ static char *contents(const char *path) {
 static const char *integration; /* of the next publish, or NULL */
 
 static shb_status publish(char **summary) {
-  const post_job job      = {"x",         response, html, csv,  svg,  NULL,
-                             integration, NULL,     NULL, NULL, NULL, MESH_AXIS_X};
+  const post_job job      = {"x",  response, html, csv,  svg,         NULL, integration,
+                             NULL, NULL,     NULL, NULL, MESH_AXIS_X, 0};
   shb_progress   progress = shb_progress_start("post", true, false);
   return post_publish(&job, &progress, summary);
 }
