@@ -59,6 +59,7 @@ endif()
 
 if(TARGET shroudhb-study)
   list(APPEND SLOW_TESTS cases.scenes.shroud_angle cases.scenes.robust_preload)
+  list(APPEND INTEGRATION_TESTS cases.scenes.soft_contact)
 endif()
 
 get_property(all_tests DIRECTORY PROPERTY TESTS)

@@ -13,8 +13,9 @@
 static const int sweeps[] = {3, 7, 15, 0};
 enum { N_SWEEPS = sizeof sweeps / sizeof *sweeps, MANY = 1000 };
 
-/* Tolerance of the contact law on these curves; the peak itself is solved with that of the case. */
-static const double OUTLINE = 1e-4;
+/* Tolerance of the contact law on these curves; the peak itself is solved with that of the case.
+ * On 200 contacts of z_notch_blade the sweeps cost 0.06 s each, with 1e-4 0.09 s. */
+static const double OUTLINE = 1e-3;
 
 typedef struct {
   const case_file    *file;
@@ -167,6 +168,13 @@ static shb_status thin_curves(job *j, post_output output) {
   return SHB_OK;
 }
 
+/* Whether a peak was solved with enough harmonics. Of a case with a fixed number the error of these
+ * is not known. */
+static bool is_known(const job *j, const exact_peak *peak) {
+  bool fixed = !(j->model->settings.motion_tolerance > 0);
+  return peak->found && peak->exact && (fixed || isfinite(peak->amplitude_error));
+}
+
 /* State and reason: the peak's quality, and the first curve that did not cover the range. */
 static void judge(job *j, const exact_peak *peak) {
   char text[512]   = "";
@@ -189,6 +197,10 @@ static void judge(job *j, const exact_peak *peak) {
     snprintf(text, sizeof text, "the peak could not be solved again with more harmonics");
     j->design->state = STUDY_NOT_CONVERGED;
   }
+  if (!text[0] && !is_known(j, peak)) {
+    snprintf(text, sizeof text, "the peak is another one with more harmonics");
+    j->design->state = STUDY_NOT_CONVERGED;
+  }
   study_design_set_reason(j->design, text);
 }
 
@@ -207,8 +219,8 @@ static shb_status fill(job *j, post_output first, int harmonics, const exact_pea
   return SHB_OK;
 }
 
-static bool is_settled(const exact_peak *peak) {
-  return peak->found && ((peak->exact && !peak->doubt) || peak->edge);
+static bool is_settled(const job *j, const exact_peak *peak) {
+  return is_known(j, peak) && !peak->doubt;
 }
 
 /* Sweep with more and more harmonics until the peak is exact. */
@@ -218,7 +230,7 @@ static shb_status work(job *j) {
   exact_peak       peak  = {0};
   post_output      first = {0};
   shb_status       status;
-  for (int i = 0; i < N_SWEEPS && !is_settled(&peak); i++) {
+  for (int i = 0; i < N_SWEEPS && !is_settled(j, &peak); i++) {
     exact_peak before = peak;
     if (sweeps[i] > 0 && !is_coarse(j, sweeps[i])) continue;
     status = sweep(j, sweeps[i]);
@@ -228,7 +240,7 @@ static shb_status work(job *j) {
     first           = post_output_primary(j->response);
     SHB_TRY(find_peak(j, first, asked, &peak));
     /* A detached curve that this sweep has not found. */
-    if (before.exact && !(peak.amplitude > before.amplitude)) {
+    if (is_known(j, &before) && !(peak.amplitude > before.amplitude)) {
       before.doubt = peak.doubt || !peak.exact;
       peak         = before;
     }

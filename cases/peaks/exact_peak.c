@@ -126,24 +126,36 @@ static void maximise(maximum *m) {
 static mhb_peak_near between_samples(const fine_maximum *f) {
   const double a = f->before.omega, b = f->at.omega, c = f->after.omega;
   const double low = fmin(a, fmin(b, c)), high = fmax(a, fmax(b, c)), room = 0.5 * (high - low);
-  return (mhb_peak_near){{low - room, high + room}, {1 - 1e-9, RISE}};
+  return (mhb_peak_near){{low - room, high + room}, {1 - 1e-9, RISE}, false, true};
 }
 
-/* The maximum between the samples, solved with their harmonics.
- *   solution  out  kept there; its x is NULL if there is none */
-static shb_status solve_first(maximum *m, matched_solution *solution) {
-  mhb_peak_derivatives by;
-  m->t        = 1;
-  m->drop     = 0;
-  m->found[1] = -1;
+/* Between this solution and that at any place near it. */
+static int solve_beside(const maximum *m, const matched_solution *from) {
+  const matched_solution *const chord[2] = {&m->fine->before, &m->fine->after};
+  double                        found[2];
+  return point_matcher_between(m->matcher, from, from, 0, chord, found);
+}
+
+/* The maximum between the samples, solved with their harmonics. The matcher is left there.
+ *   solution  out  kept there; its x is NULL if there is none
+ *   by        out  its kind and, where it is known, frequency and amplitude */
+static shb_status solve_first(maximum *m, matched_solution *solution, mhb_peak_derivatives *by) {
+  mhb_peak_near near = between_samples(m->fine);
+  double        solved[2];
+  near.smooth_only = true; /* a sample is hardly ever at a corner */
+  m->t             = 1;
+  m->drop          = 0;
+  m->found[1]      = -1;
   if (solve(m, 1) < 0) return SHB_OK;
-  SHB_TRY(point_matcher_peak(m->matcher, between_samples(m->fine), &by, m->found));
-  if (by.kind != MHB_PEAK_SMOOTH) {
-    m->found[1] = -1;
-    maximise(m);
-    if (solve(m, m->t) < 0) return SHB_OK;
-  }
-  return point_matcher_keep(m->matcher, solution);
+  SHB_TRY(point_matcher_peak(m->matcher, near, by, m->found));
+  if (by->kind == MHB_PEAK_SMOOTH) return point_matcher_keep(m->matcher, solution);
+  m->found[1] = -1;
+  maximise(m);
+  if (solve(m, m->t) < 0) return SHB_OK;
+  SHB_TRY(point_matcher_keep(m->matcher, solution));
+  SHB_TRY(point_matcher_peak(m->matcher, between_samples(m->fine), by, solved));
+  if (by->kind != MHB_PEAK_SMOOTH && !solve_beside(m, solution)) matched_solution_free(solution);
+  return SHB_OK;
 }
 
 /* ---------------------------------------------------------------- its numbers */
@@ -194,25 +206,29 @@ static shb_status matcher_for(const work *w, maximum *m, int harmonics) {
   return point_matcher_create(w->model, &settings, m->harmonics, w->output, &m->matcher);
 }
 
+/* The numbers of a peak whose solution the matcher found last. */
+static shb_status describe_peak(const work *w, const maximum *m, const mhb_peak_derivatives *by,
+                                exact_peak *peak) {
+  SHB_TRY(describe_solution(w, m, peak));
+  peak->by = *by;
+  if (by->kind == MHB_PEAK_UNJUDGED) return SHB_OK;
+  peak->amplitude = by->amplitude;
+  peak->frequency = by->omega / SHB_TWO_PI;
+  return SHB_OK;
+}
+
 /* The peak near a solution, with the harmonics of the matcher, and its numbers. */
 static shb_status solve_near_solution(const work *w, maximum *m, const matched_solution *from,
                                       exact_peak *peak, matched_solution *solution) {
-  const matched_solution *const chord[2] = {&m->fine->before, &m->fine->after};
-  double                        found[2], solved[2];
+  mhb_peak_derivatives by;
+  double               solved[2];
   *peak = (exact_peak){.stable = -1};
   no_errors(peak);
-  if (!point_matcher_between(m->matcher, from, from, 0, chord, found)) return SHB_OK;
-  SHB_TRY(point_matcher_peak(m->matcher, between_samples(m->fine), &peak->by, solved));
-  if (peak->by.kind != MHB_PEAK_SMOOTH &&
-      !point_matcher_between(m->matcher, from, from, 0, chord, found))
-    return SHB_OK;
+  if (!solve_beside(m, from)) return SHB_OK;
+  SHB_TRY(point_matcher_peak(m->matcher, between_samples(m->fine), &by, solved));
+  if (by.kind != MHB_PEAK_SMOOTH && !solve_beside(m, from)) return SHB_OK;
   SHB_TRY(point_matcher_keep(m->matcher, solution));
-  SHB_TRY(describe_solution(w, m, peak));
-  if (w->asked.multipliers) SHB_TRY(point_matcher_judge(m->matcher, &peak->stable));
-  if (peak->by.kind == MHB_PEAK_UNJUDGED) return SHB_OK;
-  peak->amplitude = peak->by.amplitude;
-  peak->frequency = peak->by.omega / SHB_TWO_PI;
-  return SHB_OK;
+  return describe_peak(w, m, &by, peak);
 }
 
 /* ---------------------------------------------------------------- errors */
@@ -242,57 +258,109 @@ typedef struct {
   exact_peak       peak;
   double           amplitude; /* m, with those of the samples; -1: not solved */
   double           drop;
+  int              harmonics; /* of the peak; 0: those of the case */
   matched_solution solution;
 } candidate;
 
-/* With the harmonics of the case, or as many as its tolerance asks for. */
-static shb_status settle(const work *w, const fine_maximum *f, int fixed, candidate *c) {
+/* With as many harmonics as the tolerance of the case asks for. */
+static shb_status settle(const work *w, const fine_maximum *f, candidate *c) {
   bool settled = false;
-  for (int level = 0; level < (fixed ? 1 : N_LEVELS - w->first) && !settled; level++) {
+  for (int level = w->first + 1; level < N_LEVELS && !settled; level++) {
     maximum          m      = {.fine = f};
     exact_peak       more   = {0};
     matched_solution at     = {0};
-    shb_status       status = matcher_for(w, &m, fixed ? 0 : levels[w->first + level]);
+    shb_status       status = matcher_for(w, &m, levels[level]);
     if (status == SHB_OK) status = solve_near_solution(w, &m, &c->solution, &more, &at);
     point_matcher_destroy(m.matcher);
-    bool same = more.found && (level == 0 || fabs(more.amplitude / c->peak.amplitude - 1) < CHANGE);
-    if (same && level > 0) {
+    if (more.found && fabs(more.amplitude / c->peak.amplitude - 1) < CHANGE) {
       set_errors(&more, &c->peak);
       add_drop(&more, c->drop);
-    } else if (same && fixed) {
-      add_drop(&more, c->drop); /* that of the harmonics is not known */
-    }
-    if (same) {
-      more.exact = true;
-      c->peak    = more;
-      settled    = more.amplitude_error < w->settings->motion_tolerance * more.amplitude;
+      more.exact   = true;
+      c->peak      = more;
+      c->harmonics = levels[level];
+      settled      = more.amplitude_error < w->settings->motion_tolerance * more.amplitude;
       matched_solution_free(&c->solution);
       c->solution = at;
     } else {
       matched_solution_free(&at);
-      settled = true; /* the error stays unknown */
+      settled = true; /* the error stays unknown, or is that of fewer */
     }
     SHB_TRY(status);
   }
   return SHB_OK;
 }
 
-static shb_status begin(const work *w, const fine_maximum *f, int fixed, candidate *c) {
-  maximum m    = {.fine = f};
-  c->amplitude = -1;
-  no_errors(&c->peak);
-  if (f->edge) { /* a point of the coarse curve */
-    c->peak.edge   = true;
-    c->peak.stable = -1;
-    SHB_TRY(describe(w, w->response, (int)(f->branch - w->response->branch), f->point, &c->peak));
-    c->amplitude = c->peak.amplitude;
-    return SHB_OK;
-  }
-  SHB_TRY(matcher_for(w, &m, fixed ? 0 : levels[w->first]));
-  shb_status status = solve_first(&m, &c->solution);
+/* What is wanted besides at the highest peak alone: multipliers, derivatives. */
+static shb_status add_asked(const work *w, const fine_maximum *f, const candidate *c,
+                            exact_peak *peak) {
+  mhb_peak_near near   = between_samples(f);
+  maximum       m      = {.fine = f};
+  const bool    judged = peak->by.kind != MHB_PEAK_UNJUDGED;
+  double        solved[2];
+  near.no_derivatives = false;
+  if (!c->solution.x || !(w->asked.multipliers || (w->asked.derivatives && judged))) return SHB_OK;
+  SHB_TRY(matcher_for(w, &m, c->harmonics));
+  shb_status status = SHB_OK;
+  if (w->asked.multipliers && solve_beside(&m, &c->solution))
+    status = point_matcher_judge(m.matcher, &peak->stable);
+  if (status == SHB_OK && w->asked.derivatives && judged && solve_beside(&m, &c->solution))
+    status = point_matcher_peak(m.matcher, near, &peak->by, solved);
   point_matcher_destroy(m.matcher);
-  if (c->solution.x) c->amplitude = m.found[1];
-  c->drop = m.drop;
+  return status;
+}
+
+/* The end of a branch, solved again at its frequency; without a solution the coarse point is
+ * taken. */
+static shb_status settle_edge(const work *w, const fine_maximum *f, int fixed, candidate *c) {
+  const curve_place place = {f->branch, f->point, f->point, f->point, f->point, 0};
+  exact_peak        fewer;
+  c->peak.edge   = true;
+  c->peak.stable = -1;
+  SHB_TRY(describe(w, w->response, (int)(f->branch - w->response->branch), f->point, &c->peak));
+  for (int level = w->first; level < (fixed ? w->first + 1 : N_LEVELS); level++) {
+    maximum m = {.fine = f};
+    double  found[2];
+    fewer = c->peak;
+    SHB_TRY(matcher_for(w, &m, fixed ? 0 : levels[level]));
+    bool       good   = point_matcher_solve(m.matcher, &place, true, found);
+    shb_status status = good ? describe_solution(w, &m, &c->peak) : SHB_OK;
+    if (good && w->asked.multipliers && status == SHB_OK)
+      status = point_matcher_judge(m.matcher, &c->peak.stable);
+    point_matcher_destroy(m.matcher);
+    SHB_TRY(status);
+    if (!good) break;
+    c->peak.exact = true;
+    if (level == w->first) continue;
+    set_errors(&c->peak, &fewer);
+    if (c->peak.amplitude_error < w->settings->motion_tolerance * c->peak.amplitude) break;
+  }
+  c->amplitude = c->peak.amplitude;
+  return SHB_OK;
+}
+
+/* With the harmonics of the samples.
+ *   most  in  the highest peak so far: one that is no rival gets no numbers but its amplitude */
+static shb_status begin(const work *w, const fine_maximum *f, int fixed, double most,
+                        candidate *c) {
+  maximum              m  = {.fine = f};
+  mhb_peak_derivatives by = {.kind = MHB_PEAK_UNJUDGED};
+  c->amplitude            = -1;
+  c->peak.stable          = -1;
+  no_errors(&c->peak);
+  if (f->edge) return settle_edge(w, f, fixed, c);
+  c->harmonics = fixed ? 0 : levels[w->first];
+  SHB_TRY(matcher_for(w, &m, c->harmonics));
+  shb_status status = solve_first(&m, &c->solution, &by);
+  if (status == SHB_OK && c->solution.x) {
+    c->amplitude = by.kind == MHB_PEAK_UNJUDGED ? m.found[1] : by.amplitude;
+    c->drop      = m.drop;
+    if (c->amplitude >= (1 - RIVAL) * most) {
+      status        = describe_peak(w, &m, &by, &c->peak);
+      c->peak.exact = true;
+      if (fixed) add_drop(&c->peak, c->drop); /* that of the harmonics is not known */
+    }
+  }
+  point_matcher_destroy(m.matcher);
   return status;
 }
 
@@ -318,17 +386,20 @@ static shb_status describe_coarse(const work *w, exact_peak *peak) {
 }
 
 static shb_status choose(const work *w, const fine_maxima *maxima, candidate *c, exact_peak *peak) {
-  int    fixed = w->settings->motion_tolerance > 0 ? 0 : w->settings->harmonics;
-  double most  = -1;
+  int    fixed = w->settings->motion_tolerance > 0 ? 0 : w->settings->harmonics, best = -1;
+  double most = -1;
   for (int i = 0; i < maxima->n; i++) {
-    SHB_TRY(begin(w, &maxima->list[i], fixed, &c[i]));
+    SHB_TRY(begin(w, &maxima->list[i], fixed, most, &c[i]));
     most = fmax(most, c[i].amplitude);
   }
   for (int i = 0; i < maxima->n; i++) {
     if (c[i].amplitude < 0 || c[i].amplitude < (1 - RIVAL) * most) continue;
-    if (!c[i].peak.edge) SHB_TRY(settle(w, &maxima->list[i], fixed, &c[i]));
-    if (c[i].peak.found && !(c[i].peak.amplitude <= peak->amplitude)) *peak = c[i].peak;
+    if (!c[i].peak.edge && !fixed) SHB_TRY(settle(w, &maxima->list[i], &c[i]));
+    if (!c[i].peak.found || c[i].peak.amplitude <= peak->amplitude) continue;
+    *peak = c[i].peak;
+    best  = i;
   }
+  if (best >= 0) SHB_TRY(add_asked(w, &maxima->list[best], &c[best], peak));
   if (!peak->found) SHB_TRY(describe_coarse(w, peak));
   if (maxima->missed > MISSED * peak->amplitude) peak->doubt = true;
   return SHB_OK;

@@ -11,7 +11,7 @@
  * solution. Three harmonics are 8 % off on z_notch_blade at low preloads, 0.1 % at high ones. */
 static const double SLACK = 0.01, SPREAD = 3, LEAST = 0.6, UNKNOWN = 0.1;
 /* Accuracy of the samples: of the contact law, and of the residual. */
-static const double LAW = 1e-4, RESIDUAL = 1e-5;
+static const double LAW = 1e-3, RESIDUAL = 1e-5;
 /* Between samples above this part of the highest there is one more. */
 static const double HALVED = 0.98;
 /* Samples below this part of the highest are no candidates. A step of the coarse curve turns by at

@@ -31,7 +31,9 @@ typedef struct {
 
 mhb_peak_near mhb_peak_at(double omega) {
   return (mhb_peak_near){{omega * (1 - SAME_FREQUENCY), omega * (1 + SAME_FREQUENCY)},
-                         {1 - SAME_AMPLITUDE, 1 + SAME_AMPLITUDE}};
+                         {1 - SAME_AMPLITUDE, 1 + SAME_AMPLITUDE},
+                         false,
+                         false};
 }
 
 static bool is_near(const search *s, double omega, double amplitude) {
@@ -59,7 +61,7 @@ static void solve_smooth(const search *s, mhb_curve_system *system, mhb_curve_po
   out->kind      = MHB_PEAK_SMOOTH;
   out->omega     = omega;
   out->amplitude = report.amplitude;
-  mhb_peak_system_derivatives(system, point, out->by);
+  if (!s->near.no_derivatives) mhb_peak_system_derivatives(system, point, out->by);
   memcpy(s->x, point->x, (size_t)s->balance->n * sizeof *s->x);
 }
 
@@ -158,7 +160,7 @@ static void without_slip(const search *s, double *x, mhb_peak_derivatives *out) 
   out->kind      = nearer ? MHB_PEAK_STUCK : MHB_PEAK_CORNER;
   out->omega     = omega[nearer];
   out->amplitude = amplitude[nearer];
-  corner_derivatives(s, &tracking, nearer, x, out);
+  if (!s->near.no_derivatives) corner_derivatives(s, &tracking, nearer, x, out);
 }
 
 shb_status mhb_peak_derivatives_find(mhb_balance *balance, int output, mhb_size size,
@@ -169,7 +171,7 @@ shb_status mhb_peak_derivatives_find(mhb_balance *balance, int output, mhb_size 
   for (int i = 0; i < MHB_PEAK_PARAMETERS; i++) out->by[i] = NAN;
   if (balance->n > MOST_UNKNOWNS) return SHB_OK;
   SHB_TRY(smooth(&s, out));
-  if (out->kind == MHB_PEAK_SMOOTH || balance->n_pairs != 1) return SHB_OK;
+  if (out->kind == MHB_PEAK_SMOOTH || near.smooth_only || balance->n_pairs != 1) return SHB_OK;
   double *scratch = calloc((size_t)balance->n, sizeof *scratch);
   SHB_CHECK(scratch, SHB_ERR_IO, "out of memory");
   without_slip(&s, scratch, out);

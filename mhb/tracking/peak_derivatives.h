@@ -21,6 +21,7 @@ typedef struct {
  * of the solution. Other peaks are to be the solution itself. */
 typedef struct {
   double omega[2], amplitude[2];
+  bool   smooth_only, no_derivatives; /* other peaks are not looked for; all derivatives are NAN */
 } mhb_peak_near;
 
 /* The peak is the solution itself: 1e-4 in amplitude, 1e-3 in frequency. */

@@ -123,6 +123,7 @@ shb_scene_test(optimum_preload optimum_preload)
 if(TARGET shroudhb-study)
   shb_scene_test(shroud_angle shroud_angle)
   shb_scene_test(robust_preload robust_preload)
+  shb_scene_test(soft_contact z_notch_blade)
 endif()
 
 if(SHROUDHB_PYTHON)
