@@ -8,10 +8,10 @@
  *   bench_study --quick   the same, 3 designs
  *
  * A row is a design of preload and friction. The reference is the highest point of a sweep of the
- * whole range with 31 harmonics and a tenth of the law's tolerance. Of random designs it is that of
- * a sweep in outline with 15 harmonics, or with 31 where the peak is not within AGREES of that.
- * A peak between two points of the reference is higher than both by some 1e-5, in outline by up to
- * 1e-3, so that a positive error is no fault.
+ * whole range with 31 harmonics and a tenth of the law's tolerance. Random designs have sweeps in
+ * outline with 15 harmonics, and with 31 where the peak is not within AGREES of that. A peak
+ * between two points of the reference is higher than both, by some 1e-5, in outline by up to 1e-3.
+ * So a positive error is no fault.
  * Goal: no peak is lower than the reference by more than 1 %, the tolerance of the case. */
 #include <math.h>
 #include <omp.h>
