@@ -25,6 +25,8 @@ typedef struct {
   study_design       *design;
   mhb_response       *response;
   peak_field         *field; /* NULL: not wanted */
+  const solved_peak  *from;  /* of a neighbour; NULL: none */
+  solved_peak        *found; /* NULL: not asked for */
 } job;
 
 static bool wants(const job *j, study_quantity quantity) {
@@ -184,7 +186,7 @@ static void judge(job *j, const exact_peak *peak) {
     if (b->kind != MHB_BRANCH_NONLINEAR || b->main != k || b->complete) continue;
     snprintf(text, sizeof text, "a curve does not cover mhb.frequency: %s",
              b->reason ? b->reason : "no reason is known");
-    j->design->state = STUDY_NOT_CONVERGED;
+    if (!(peak->walked && is_known(j, peak))) j->design->state = STUDY_NOT_CONVERGED;
   }
   if (!text[0] && peak->edge)
     snprintf(text, sizeof text,
@@ -223,12 +225,16 @@ static bool is_settled(const job *j, const exact_peak *peak) {
   return is_known(j, peak) && !peak->doubt;
 }
 
-/* Sweep with more and more harmonics until the peak is exact. */
-static shb_status work(job *j) {
-  exact_peak_asked asked = {wants(j, STUDY_STABLE), study_derivatives(j->n, j->output) > 0,
-                            j->field, 0};
-  exact_peak       peak  = {0};
-  post_output      first = {0};
+/* Sweep with more and more harmonics until the peak is exact.
+ *   walked  the neighbour's peak, here */
+static shb_status sweep_for(job *j, solved_peak *walked) {
+  solved_peak      latest = {0};
+  exact_peak_asked asked  = {.multipliers = wants(j, STUDY_STABLE),
+                             .derivatives = study_derivatives(j->n, j->output) > 0,
+                             .field       = j->field,
+                             .solution    = j->found ? &latest : NULL};
+  exact_peak       peak   = {0};
+  post_output      first  = {0};
   shb_status       status;
   for (int i = 0; i < N_SWEEPS && !is_settled(j, &peak); i++) {
     exact_peak before = peak;
@@ -238,19 +244,36 @@ static shb_status work(job *j) {
     if (status != SHB_OK && status != SHB_NOT_CONVERGED) return status;
     asked.harmonics = sweeps[i] > 0 ? sweeps[i] : MANY;
     first           = post_output_primary(j->response);
+    if (j->from && !asked.walked) {
+      SHB_TRY(peak_walk(&j->model->model, &j->model->settings, first, j->from, walked));
+      asked.walked = walked;
+    }
     SHB_TRY(find_peak(j, first, asked, &peak));
     /* A detached curve that this sweep has not found. */
     if (is_known(j, &before) && !(peak.amplitude > before.amplitude)) {
       before.doubt = peak.doubt || !peak.exact;
       peak         = before;
+    } else if (j->found) {
+      solved_peak former = *j->found;
+      *j->found          = latest;
+      latest             = former;
     }
+    solved_peak_free(&latest);
   }
   return fill(j, first, asked.harmonics, &peak);
 }
 
-shb_status design_run(const case_file *file, const case_model *model, peak_field *field,
-                      int n_outputs, const study_output *output, study_design *design) {
-  job        j      = {file, model, n_outputs, output, design, NULL, field};
+static shb_status work(job *j) {
+  solved_peak walked = {0};
+  shb_status  status = sweep_for(j, &walked);
+  solved_peak_free(&walked);
+  return status;
+}
+
+shb_status design_run_from(const case_file *file, const case_model *model, peak_field *field,
+                           int n_outputs, const study_output *output, const solved_peak *from,
+                           solved_peak *found, study_design *design) {
+  job        j      = {file, model, n_outputs, output, design, NULL, field, from, found};
   shb_status status = field ? peak_field_use(field, file) : SHB_OK;
   if (status == SHB_OK) status = work(&j);
   if (status == SHB_ERR_INPUT) {
@@ -259,4 +282,9 @@ shb_status design_run(const case_file *file, const case_model *model, peak_field
   }
   mhb_response_destroy(j.response);
   return status;
+}
+
+shb_status design_run(const case_file *file, const case_model *model, peak_field *field,
+                      int n_outputs, const study_output *output, study_design *design) {
+  return design_run_from(file, model, field, n_outputs, output, NULL, NULL, design);
 }

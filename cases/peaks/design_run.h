@@ -5,6 +5,7 @@
 #include "cases/commands/load_model.h"
 #include "cases/designs/output_names.h"
 #include "cases/peaks/peak_field.h"
+#include "cases/peaks/peak_walk.h"
 #include "postproc/study/design_study.h"
 
 /* Compute the outputs on a modal model. Sets state, value, error, reason and curve of the design.
@@ -19,5 +20,13 @@
  * (exact_peak.h). Errors: SHB_ERR_IO no memory; SHB_INTERRUPTED. */
 shb_status design_run(const case_file *file, const case_model *model, peak_field *field,
                       int n_outputs, const study_output *output, study_design *design);
+
+/* The same from and to peaks of other designs.
+ *   from   in   the highest peak of a neighbour, walked to this design; NULL: none
+ *   found  out  the highest peak; NULL: not asked for. Its solution has no x where the peak has no
+ *               solution of its own. To be freed in any case */
+shb_status design_run_from(const case_file *file, const case_model *model, peak_field *field,
+                           int n_outputs, const study_output *output, const solved_peak *from,
+                           solved_peak *found, study_design *design);
 
 #endif

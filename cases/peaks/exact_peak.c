@@ -2,6 +2,7 @@
 
 #include <math.h>
 #include <stdlib.h>
+#include <string.h>
 
 #include "cases/peaks/fine_curve.h"
 #include "mesh/base/constants.h"
@@ -385,6 +386,30 @@ static shb_status describe_coarse(const work *w, exact_peak *peak) {
   return describe(w, w->response, branch, point, peak);
 }
 
+/* Whether the highest peak is one that was walked to from another design, found anew or not. */
+static bool is_walked(const fine_maxima *maxima, const candidate *c, int best) {
+  static const double same = 1e-6;
+  for (int i = 0; i < maxima->n; i++)
+    if (maxima->list[i].walked && c[i].peak.amplitude >= (1 - same) * c[best].peak.amplitude)
+      return true;
+  return false;
+}
+
+/* Copy the solution of a peak to where it is asked for; without one nothing is done. */
+static void give_solution(const work *w, const fine_maximum *f, const candidate *c) {
+  solved_peak *out  = w->asked.solution;
+  size_t       size = 3 * (size_t)w->model->n_pairs * (1 + 2 * (size_t)c->solution.harmonics);
+  matched_solution_free(&out->solution);
+  if (!c->solution.x) return;
+  double *x = malloc(size * sizeof *x);
+  if (!x) return;
+  memcpy(x, c->solution.x, size * sizeof *x);
+  *out            = (solved_peak){.order = f->branch->order, .amplitude = c->peak.amplitude};
+  out->solution   = c->solution;
+  out->solution.x = x;
+  peak_walk_values(w->settings, out->value);
+}
+
 static shb_status choose(const work *w, const fine_maxima *maxima, candidate *c, exact_peak *peak) {
   int    fixed = w->settings->motion_tolerance > 0 ? 0 : w->settings->harmonics, best = -1;
   double most = -1;
@@ -399,9 +424,11 @@ static shb_status choose(const work *w, const fine_maxima *maxima, candidate *c,
     *peak = c[i].peak;
     best  = i;
   }
+  if (best >= 0) peak->walked = is_walked(maxima, c, best);
+  if (best >= 0 && w->asked.solution) give_solution(w, &maxima->list[best], &c[best]);
   if (best >= 0) SHB_TRY(add_asked(w, &maxima->list[best], &c[best], peak));
   if (!peak->found) SHB_TRY(describe_coarse(w, peak));
-  if (maxima->missed > MISSED * peak->amplitude) peak->doubt = true;
+  if (maxima->missed > (peak->walked ? 1 : MISSED) * peak->amplitude) peak->doubt = true;
   return SHB_OK;
 }
 
@@ -421,7 +448,9 @@ shb_status exact_peak_find(const modal_model *model, const mhb_settings *setting
   *peak = (exact_peak){.amplitude = -1, .stable = -1};
   no_errors(peak);
   shb_status status = fine_maxima_find(model, settings, response, output, first, &maxima);
-  candidate *c      = calloc((size_t)maxima.n + 1, sizeof *c);
+  if (status == SHB_OK && asked.walked)
+    status = fine_maxima_append(response, asked.walked, &maxima);
+  candidate *c = calloc((size_t)maxima.n + 1, sizeof *c);
   if (status == SHB_OK && !c) status = shb_fail(SHB_ERR_IO, __FILE__, __LINE__, "out of memory");
   if (status == SHB_OK) status = choose(&w, &maxima, c, peak);
   for (int i = 0; c && i < maxima.n; i++) matched_solution_free(&c[i].solution);

@@ -7,6 +7,7 @@
 #define CASES_PEAKS_EXACT_PEAK_H
 
 #include "cases/peaks/peak_field.h"
+#include "cases/peaks/peak_walk.h"
 #include "mhb/problem/settings.h"
 #include "mhb/response/response.h"
 #include "mhb/tracking/peak_derivatives.h"
@@ -16,9 +17,10 @@
 /* Numbers at a peak, and their changes by more harmonics (NAN: not known). */
 typedef struct {
   bool   found;
-  bool   edge;  /* the highest point is an end of a curve: the peak may lie outside the range */
-  bool   exact; /* solved again; false: a point of the coarse curve */
-  bool   doubt; /* a place where the curve may be higher has no fine solution */
+  bool   edge;   /* the highest point is an end of a curve: the peak may lie outside the range */
+  bool   exact;  /* solved again; false: a point of the coarse curve */
+  bool   doubt;  /* a place where the curve may be higher has no fine solution */
+  bool   walked; /* it is the peak that was walked to from another design */
   double frequency, amplitude, peak_to_peak, dissipation; /* Hz, m, m, J */
   double frequency_error, amplitude_error, peak_to_peak_error, dissipation_error;
   int    stable;           /* 1, 0; -1: not judged or undecided */
@@ -27,9 +29,11 @@ typedef struct {
 } exact_peak;
 
 typedef struct {
-  bool        multipliers, derivatives;
-  peak_field *field;     /* NULL: not asked for */
-  int         harmonics; /* of the coarse curve at most, per period of the excitation */
+  bool               multipliers, derivatives;
+  peak_field        *field;     /* NULL: not asked for */
+  int                harmonics; /* of the coarse curve at most, per period of the excitation */
+  const solved_peak *walked;    /* from another design, joins the maxima; NULL: none */
+  solved_peak       *solution;  /* out: that of the peak; NULL: not asked for */
 } exact_peak_asked;
 
 /* Find the highest peak of an output over all nonlinear branches of a response.

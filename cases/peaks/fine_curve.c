@@ -4,6 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "mesh/base/constants.h"
 #include "postproc/analysis/response_analysis.h"
 
 /* Points of the coarse curve below 1 - SLACK - SPREAD error of its highest are not sampled, but at
@@ -262,7 +263,7 @@ shb_status fine_maxima_find(const modal_model *model, const mhb_settings *settin
   work w            = {model, settings, coarse, output, harmonics, 0, NULL, 0, 0, 0, 0};
   *out              = (fine_maxima){0};
   w.branch          = calloc((size_t)coarse->n_branches + 1, sizeof *w.branch);
-  out->list         = calloc(MOST_MAXIMA, sizeof *out->list);
+  out->list         = calloc(MOST_MAXIMA + 1, sizeof *out->list); /* one may be appended */
   shb_status status = w.branch && out->list
                           ? sample_all(&w, out)
                           : shb_fail(SHB_ERR_IO, __FILE__, __LINE__, "out of memory");
@@ -274,6 +275,27 @@ shb_status fine_maxima_find(const modal_model *model, const mhb_settings *settin
   }
   free(w.branch);
   return status;
+}
+
+shb_status fine_maxima_append(const mhb_response *coarse, const solved_peak *peak,
+                              fine_maxima *out) {
+  static const double     wide   = 2e-3; /* of the bracket in frequency, relative */
+  const matched_solution *s      = &peak->solution;
+  const mhb_branch       *branch = NULL;
+  size_t size = (size_t)coarse->n_pairs * 3 * (1 + 2 * (size_t)s->harmonics) * sizeof *s->x;
+  for (int k = coarse->n_branches - 1; k >= 0; k--)
+    if (coarse->branch[k].kind == MHB_BRANCH_NONLINEAR && coarse->branch[k].order == peak->order)
+      branch = &coarse->branch[k];
+  if (!s->x || !branch) return SHB_OK;
+  fine_maximum *m = &out->list[out->n++];
+  *m              = (fine_maximum){
+                   .branch = branch, .walked = true, .found = {s->omega / SHB_TWO_PI, peak->amplitude}};
+  SHB_TRY(copy(s, size, &m->before));
+  SHB_TRY(copy(s, size, &m->at));
+  SHB_TRY(copy(s, size, &m->after));
+  m->before.omega *= 1 - wide;
+  m->after.omega *= 1 + wide;
+  return SHB_OK;
 }
 
 void fine_maxima_free(fine_maxima *m) {

@@ -7,7 +7,7 @@
 #ifndef CASES_PEAKS_FINE_CURVE_H
 #define CASES_PEAKS_FINE_CURVE_H
 
-#include "cases/converge/matched_point.h"
+#include "cases/peaks/peak_walk.h"
 #include "mhb/response/response.h"
 #include "postproc/analysis/outputs.h"
 
@@ -16,6 +16,7 @@ typedef struct {
   const mhb_branch *branch;   /* of the coarse curve */
   int               point;    /* of the coarse branch, at the sample or before it */
   bool              edge;     /* an end of the branch */
+  bool              walked;   /* no sample: it was walked to from another design */
   double            found[2]; /* Hz, m */
   matched_solution  before, at, after;
   double            beside[2]; /* m, amplitudes before and after */
@@ -36,6 +37,12 @@ shb_status fine_maxima_find(const modal_model *model, const mhb_settings *settin
                             const mhb_response *coarse, post_output output, int harmonics,
                             fine_maxima *maxima);
 void       fine_maxima_free(fine_maxima *maxima);
+
+/* Append a peak that was walked to from another design. Its own branch is not known: it takes the
+ * first one of its order. Nothing is done without such a branch. Errors: SHB_ERR_IO no
+ * memory. */
+shb_status fine_maxima_append(const mhb_response *coarse, const solved_peak *peak,
+                              fine_maxima *maxima);
 
 /* Harmonics of a balance on a branch of some order. */
 int fine_harmonics(const mhb_settings *settings, const mhb_branch *branch, int harmonics);

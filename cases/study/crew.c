@@ -61,7 +61,7 @@ static int take_result(const crew_work *w, const int *at_work, shb_status *statu
   return rank;
 }
 
-static shb_status manage(const crew_work *w, int n_keys, int *at_work) {
+static shb_status manage(const crew_work *w, int n_request, int *at_work) {
   int        n = n_ranks(), busy = 0;
   shb_status status = SHB_OK;
   for (int rank = 1; rank < n; rank++) at_work[rank] = -1;
@@ -72,7 +72,7 @@ static shb_status manage(const crew_work *w, int n_keys, int *at_work) {
       if (at_work[rank] >= 0) continue;
       int design = w->next(w->context, &value);
       if (design < 0) break;
-      MPI_Send(value, n_keys, MPI_DOUBLE, rank, TAG_WORK, MPI_COMM_WORLD);
+      MPI_Send(value, n_request, MPI_DOUBLE, rank, TAG_WORK, MPI_COMM_WORLD);
       at_work[rank] = design;
       busy++;
     }
@@ -97,7 +97,7 @@ shb_status crew_manage(const crew_work *w, design_process *process) {
     return status;
   }
   int       *at_work = calloc((size_t)n_ranks(), sizeof *at_work);
-  shb_status status  = at_work ? manage(w, process->n_keys, at_work)
+  shb_status status  = at_work ? manage(w, process->n_request, at_work)
                                : shb_fail(SHB_ERR_IO, __FILE__, __LINE__, "out of memory");
   free(at_work);
   crew_dismiss();
@@ -115,12 +115,12 @@ static int await(void) {
 }
 
 shb_status crew_serve(design_process *process) {
-  double    *value  = calloc((size_t)process->n_keys + 1, sizeof *value);
+  double    *value  = calloc((size_t)process->n_request + 1, sizeof *value);
   shb_status status = SHB_OK;
   while (value && await() == TAG_WORK) {
     char  *bytes = NULL;
     size_t size  = 0;
-    MPI_Recv(value, process->n_keys, MPI_DOUBLE, 0, TAG_WORK, MPI_COMM_WORLD, MPI_STATUS_IGNORE);
+    MPI_Recv(value, process->n_request, MPI_DOUBLE, 0, TAG_WORK, MPI_COMM_WORLD, MPI_STATUS_IGNORE);
     status = design_process_run(process, value, &bytes, &size);
     /* without an answer the manager would wait for ever */
     if (status != SHB_OK || size > INT_MAX) MPI_Abort(MPI_COMM_WORLD, SHB_ERR_IO);

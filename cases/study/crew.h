@@ -10,7 +10,7 @@
 /* The manager's side. */
 typedef struct {
   void *context;
-  /* The next design to compute and its values [n_keys]; -1: none at present. */
+  /* The next design to compute and its request [n_request]; -1: none at present. */
   int (*next)(void *context, const double **value);
   /* A design is done. Errors end the study. */
   shb_status (*done)(void *context, int design, const char *bytes, size_t size);

@@ -137,7 +137,7 @@ static shb_status pack_death(const design_process *p, int status, char **bytes, 
 shb_status design_process_run(design_process *p, const double *value, char **bytes, size_t *size) {
   *bytes = NULL;
   if (!p->child) SHB_TRY(start(p));
-  bool good = put_all(p->to, value, (size_t)p->n_keys * sizeof *value) &&
+  bool good = put_all(p->to, value, (size_t)p->n_request * sizeof *value) &&
               get_all(p->from, size, sizeof *size) && *size <= MOST_BYTES;
   if (good) *bytes = malloc(*size + 1);
   good = good && *bytes && get_all(p->from, *bytes, *size);
@@ -150,13 +150,13 @@ void design_process_stop(design_process *p) {
   if (p->child) reap(p);
 }
 
-shb_status design_process_serve(int n_keys, design_compute *compute, void *context) {
-  double *value = calloc((size_t)n_keys + 1, sizeof *value);
+shb_status design_process_serve(int n_request, design_compute *compute, void *context) {
+  double *value = calloc((size_t)n_request + 1, sizeof *value);
   SHB_CHECK(value, SHB_ERR_IO, "out of memory");
   int answers = dup(STDOUT_FILENO); /* what a library prints must not mix with answers */
   dup2(STDERR_FILENO, STDOUT_FILENO);
   shb_status status = SHB_OK;
-  while (status == SHB_OK && get_all(STDIN_FILENO, value, (size_t)n_keys * sizeof *value)) {
+  while (status == SHB_OK && get_all(STDIN_FILENO, value, (size_t)n_request * sizeof *value)) {
     char  *bytes = NULL;
     size_t size  = 0;
     status       = compute(context, value, &bytes, &size);

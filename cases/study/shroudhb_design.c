@@ -1,6 +1,7 @@
 /* shroudhb-design: computes designs of a study, one after another, for a worker of shroudhb-study.
  * No MPI. */
 #include <cblas.h>
+#include <math.h>
 #include <omp.h>
 #include <stdio.h>
 
@@ -24,18 +25,40 @@ typedef struct {
   modal_store store;
 } server;
 
-/* The outputs of a design. What is wrong with a design becomes its reason. */
-static shb_status evaluate(server *s, const double *value, study_design *design) {
+/* The outputs of a design, from and to peaks of others (design_run_from). */
+static shb_status run(server *s, const double *value, const solved_peak *from, solved_peak *found,
+                      study_design *design) {
   case_file   file;
   case_model  model;
   peak_field *field;
-  shb_status  status = study_spec_design(&s->spec, value, NULL, NULL, stderr, &file);
-  if (status == SHB_OK) {
-    status = modal_store_get(&s->store, value, &file, &model, &field);
-    if (status == SHB_OK)
-      status = design_run(&file, &model, field, s->spec.n_outputs, s->spec.output, design);
-    case_free(&file);
-  }
+  SHB_TRY(study_spec_design(&s->spec, value, NULL, NULL, stderr, &file));
+  shb_status status = modal_store_get(&s->store, value, &file, &model, &field);
+  if (status == SHB_OK)
+    status = design_run_from(&file, &model, field, s->spec.n_outputs, s->spec.output, from, found,
+                             design);
+  case_free(&file);
+  return status;
+}
+
+/* The highest peak of a neighbour, computed again. Faults of it leave the peak without a
+ * solution. */
+static shb_status find_peak(server *s, const double *value, int by, solved_peak *peak) {
+  design_study  one;
+  shb_status    status = design_study_create(s->spec.keys.n, s->spec.n_outputs, by, &one);
+  study_design *design = status == SHB_OK ? design_study_add(&one, value) : NULL;
+  if (status == SHB_OK) status = design ? run(s, value, NULL, peak, design) : SHB_ERR_IO;
+  design_study_free(&one);
+  return status == SHB_INTERRUPTED ? status : SHB_OK;
+}
+
+/* The outputs of a design. What is wrong with a design becomes its reason. */
+static shb_status evaluate(server *s, const double *request, int by, study_design *design) {
+  const double *beside = request + s->spec.keys.n;
+  const bool    again  = s->spec.keys.n > 0 && !isnan(beside[0]);
+  solved_peak   from   = {0};
+  shb_status    status = again ? find_peak(s, beside, by, &from) : SHB_OK;
+  if (status == SHB_OK) status = run(s, request, again ? &from : NULL, NULL, design);
+  solved_peak_free(&from);
   if (status == SHB_OK || status == SHB_INTERRUPTED) return status;
   design->state = STUDY_FAILED;
   study_design_set_reason(design, shb_message()[0] ? shb_message() : "the case is refused");
@@ -51,7 +74,7 @@ static shb_status compute(void *context, const double *value, char **bytes, size
   study_design *design = status == SHB_OK ? design_study_add(&one, value) : NULL;
   if (status == SHB_OK && !design)
     status = shb_fail(SHB_ERR_IO, __FILE__, __LINE__, "out of memory");
-  if (status == SHB_OK) status = evaluate(s, value, design);
+  if (status == SHB_OK) status = evaluate(s, value, by, design);
   if (status == SHB_OK) {
     design->seconds = shb_processor_seconds() - began;
     status          = design_message_pack(design, s->spec.n_outputs, by, bytes, size);
@@ -71,7 +94,7 @@ int main(int argc, char **argv) {
   shb_interrupt_catch();
   openblas_set_num_threads(1);
   omp_set_num_threads(1); /* the designs run side by side */
-  status = design_process_serve(s.spec.keys.n, compute, &s);
+  status = design_process_serve(2 * s.spec.keys.n, compute, &s);
   modal_store_close(&s.store);
   study_spec_free(&s.spec);
   return command_finish(status);

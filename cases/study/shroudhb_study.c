@@ -168,7 +168,7 @@ static int work(const command_options *options) {
   go[3] = study_derivatives(spec.n_outputs, spec.output);
   MPI_Bcast(go, 4, MPI_INT, 0, MPI_COMM_WORLD);
   design_process process = {
-      .study = options->path, .n_keys = go[1], .n_outputs = go[2], .n_derivatives = go[3]};
+      .study = options->path, .n_request = 2 * go[1], .n_outputs = go[2], .n_derivatives = go[3]};
   if (go[0] == SHB_OK) status = rank == 0 ? manage(&spec, options, &process) : crew_serve(&process);
   int code = rank == 0 ? command_finish(status) : SHB_OK;
   study_spec_free(&spec);

@@ -7,6 +7,7 @@
 
 #include "cases/plan/design_statistics.h"
 #include "cases/study/design_message.h"
+#include "cases/study/nearest_design.h"
 #include "cases/study/optimisation.h"
 #include "cases/study/study_summary.h"
 #include "postproc/draw/text_buffer.h"
@@ -20,11 +21,14 @@ typedef struct {
   const study_spec *spec;
   design_study     *study;
   shb_progress     *progress;
-  char             *path;  /* NAME.study.h5 */
-  int               next;  /* first design that was not looked at */
-  int              *twin;  /* [n] an earlier design of the same digest, or -1 */
-  bool             *given; /* [n] handed out, or taken from a file */
-  int               n_done, n_computed, n_to_compute;
+  char             *path;    /* NAME.study.h5 */
+  int               next;    /* first design that was not looked at */
+  bool              again;   /* designs that did not converge are tried again, from here on */
+  double           *request; /* [2 n_keys] */
+  int              *twin;    /* [n] an earlier design of the same digest, or -1 */
+  bool             *given;   /* [n] handed out, or taken from a file */
+  bool             *tried;   /* [n] handed out again, or the result of that was taken from a file */
+  int               n_at_work, n_done, n_computed, n_to_compute;
   double            started, published;
   bool              changed; /* since the last publication */
   optimisation     *search;  /* NULL: the designs are known from the start */
@@ -114,6 +118,22 @@ static shb_status find_twins(running *r) {
   return SHB_OK;
 }
 
+/* The design of the same digest as another one of a known study; -1: there is none. */
+static int same_design(const design_study *s, const design_study *known, int design) {
+  for (int i = 0; design >= 0 && i < s->n; i++)
+    if (strcmp(s->design[i].digest, known->design[design].digest) == 0) return i;
+  return -1;
+}
+
+/* Whether the result of a known design holds here: not of one that was tried again from a design
+ * that this study has not. Sets from whose peak it was tried again. */
+static bool holds(const design_study *s, const design_study *known, const study_design *from,
+                  int *tried_from) {
+  *tried_from = same_design(s, known, from->tried_from);
+  return from->state != STUDY_WAITING && from->state != STUDY_FAILED &&
+         (from->tried_from < 0 || *tried_from >= 0);
+}
+
 /* Take over the results that another file has. A failure of a process is tried again. */
 static shb_status take_known(running *r, const design_study *known) {
   design_study *s = r->study;
@@ -134,9 +154,11 @@ static shb_status take_known(running *r, const design_study *known) {
     if (r->given[i] || low == (size_t)known->n || strcmp(list[low].digest, wanted.digest) != 0)
       continue;
     const study_design *from = &known->design[list[low].design];
-    if (from->state == STUDY_WAITING || from->state == STUDY_FAILED) continue;
+    int                 tried_from;
+    if (!holds(s, known, from, &tried_from)) continue;
     status      = design_message_copy(from, s->n_outputs, s->n_derivatives, &s->design[i]);
     r->given[i] = true;
+    s->design[i].tried_from = tried_from;
     r->n_done++;
   }
   free(list);
@@ -185,15 +207,64 @@ static shb_status publish(running *r, bool finished) {
   return status;
 }
 
-static int next_design(void *context, const double **value) {
-  running *r = context;
+/* The request for a design, from the peak of another one, or -1. */
+static const double *request_for(running *r, const double *value, int from) {
+  int           n      = r->spec->keys.n;
+  const double *beside = from >= 0 ? r->study->design[from].key : NULL;
+  for (int k = 0; k < n; k++) {
+    r->request[k]     = value[k];
+    r->request[n + k] = beside ? beside[k] : NAN;
+  }
+  return r->request;
+}
+
+/* After all others, designs that did not converge are tried again, each from the peak of the
+ * nearest solved one. Those that are solved so help no others, so that the order does not count.
+ * The result of a file stays where that design is the same. */
+static int next_again(running *r) {
+  design_study *s = r->study;
+  if (!r->again) {
+    if (r->n_at_work > 0) return -1;
+    r->again = true;
+    r->next  = 0;
+  }
+  for (; r->next < s->n; r->next++) {
+    study_design *d    = &s->design[r->next];
+    bool          open = d->state == STUDY_NOT_CONVERGED || d->tried_from >= 0;
+    if (!open || r->tried[r->next]) continue;
+    r->tried[r->next] = true;
+    int from          = nearest_design(s, r->next);
+    if (from < 0 || from == d->tried_from) continue;
+    d->tried_from = from;
+    r->n_to_compute++;
+    return r->next++;
+  }
+  return -1;
+}
+
+static int next_design(void *context, const double **request) {
+  running      *r = context;
+  const double *value;
+  int           design = -1;
   if (shb_interrupted()) return -1;
-  if (r->search) return optimisation_next(r->search, value);
-  while (r->next < r->study->n && (r->given[r->next] || r->twin[r->next] >= 0)) r->next++;
-  if (r->next == r->study->n) return -1;
-  r->given[r->next] = true;
-  *value            = r->study->design[r->next].key;
-  return r->next++;
+  if (r->search) {
+    design = optimisation_next(r->search, &value);
+    if (design >= 0) *request = request_for(r, value, -1);
+    return design;
+  }
+  while (!r->again && r->next < r->study->n && (r->given[r->next] || r->twin[r->next] >= 0))
+    r->next++;
+  if (!r->again && r->next < r->study->n) {
+    design           = r->next++;
+    r->given[design] = true;
+  } else {
+    design = next_again(r);
+  }
+  if (design < 0) return -1;
+  r->n_at_work++;
+  const study_design *d = &r->study->design[design];
+  *request              = request_for(r, d->key, r->again ? d->tried_from : -1);
+  return design;
 }
 
 /* "2 min 5 s" */
@@ -219,12 +290,52 @@ static void show(running *r) {
                     left[0] ? " left" : "");
 }
 
+/* Say in the reason of a design that it was tried again, and from where. */
+static void tell_trial(study_design *d) {
+  static const char mark[] = "; tried again from the peak of design ";
+  char              text[1024];
+  const char       *reason = d->reason ? d->reason : "", *former = strstr(reason, mark);
+  int               length = former ? (int)(former - reason) : (int)strlen(reason);
+  if (d->state == STUDY_DONE)
+    snprintf(text, sizeof text, "solved from the peak of design %d%s%s", d->tried_from + 1,
+             reason[0] ? "; " : "", reason);
+  else
+    snprintf(text, sizeof text, "%.*s%s%d", length, reason, mark, d->tried_from + 1);
+  study_design_set_reason(d, text);
+}
+
+/* Take the result of a design that was tried again. If that failed, the former one stays. */
+static shb_status take_again(running *r, study_design *d, const char *bytes, size_t size) {
+  design_study  one;
+  int           outputs = r->study->n_outputs, derivatives = r->study->n_derivatives;
+  double        seconds = d->seconds;
+  shb_status    status  = design_study_create(r->study->n_keys, outputs, derivatives, &one);
+  study_design *again   = status == SHB_OK ? design_study_add(&one, d->key) : NULL;
+  if (status == SHB_OK && !again)
+    status = shb_fail(SHB_ERR_IO, __FILE__, __LINE__, "out of memory");
+  if (status == SHB_OK) status = design_message_unpack(bytes, size, outputs, derivatives, again);
+  if (status == SHB_OK && again->state != STUDY_FAILED)
+    status = design_message_unpack(bytes, size, outputs, derivatives, d);
+  if (status == SHB_OK) {
+    d->seconds = seconds + again->seconds;
+    if (again->state == STUDY_FAILED) d->state = STUDY_NOT_CONVERGED;
+    tell_trial(d);
+  }
+  design_study_free(&one);
+  return status;
+}
+
 static shb_status done(void *context, int design, const char *bytes, size_t size) {
-  running *r = context;
-  SHB_TRY(design_message_unpack(bytes, size, r->study->n_outputs, r->study->n_derivatives,
-                                &r->study->design[design]));
+  running      *r = context;
+  study_design *d = &r->study->design[design];
+  r->n_at_work--;
+  if (r->again) {
+    SHB_TRY(take_again(r, d, bytes, size));
+  } else {
+    SHB_TRY(design_message_unpack(bytes, size, r->study->n_outputs, r->study->n_derivatives, d));
+    r->n_done++;
+  }
   if (r->search) optimisation_done(r->search, design);
-  r->n_done++;
   r->n_computed++;
   r->changed = true;
   show(r);
@@ -244,6 +355,7 @@ static shb_status copy_twins(running *r) {
     if (r->given[i] || !from || from->state == STUDY_WAITING) continue;
     SHB_TRY(design_message_copy(from, r->study->n_outputs, r->study->n_derivatives,
                                 &r->study->design[i]));
+    r->study->design[i].tried_from = from->tried_from;
     r->n_done++;
   }
   return SHB_OK;
@@ -316,7 +428,9 @@ shb_status study_run(const study_spec *spec, bool force, design_process *process
   r.path            = study_path(spec, ".study.h5");
   r.twin            = malloc(n * sizeof *r.twin);
   r.given           = calloc(n, sizeof *r.given);
-  if (status == SHB_OK && !(r.path && r.twin && r.given))
+  r.tried           = calloc(n, sizeof *r.tried);
+  r.request         = calloc(2 * (size_t)spec->keys.n + 1, sizeof *r.request);
+  if (status == SHB_OK && !(r.path && r.twin && r.given && r.tried && r.request))
     status = shb_fail(SHB_ERR_IO, __FILE__, __LINE__, "out of memory");
   if (status == SHB_OK && spec->optimise.wanted)
     status = search_all(&r, force, process);
@@ -327,6 +441,8 @@ shb_status study_run(const study_spec *spec, bool force, design_process *process
   free(r.path);
   free(r.twin);
   free(r.given);
+  free(r.tried);
+  free(r.request);
   SHB_TRY(status);
   if (shb_interrupted())
     SHB_FAIL(SHB_INTERRUPTED, "interrupted; the same command goes on where it stopped");

@@ -93,7 +93,8 @@ study_design *design_study_add(design_study *s, const double *key) {
   study_design d = {.key        = unknowns((size_t)s->n_keys),
                     .value      = unknowns((size_t)s->n_outputs),
                     .error      = unknowns((size_t)s->n_outputs),
-                    .derivative = unknowns((size_t)s->n_derivatives)};
+                    .derivative = unknowns((size_t)s->n_derivatives),
+                    .tried_from = -1};
   if (!d.key || !d.value || !d.error || !d.derivative) {
     free_design(&d);
     return NULL;

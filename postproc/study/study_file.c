@@ -71,12 +71,14 @@ static shb_status put_designs(hid_t file, const design_study *s) {
   const char **reason  = calloc((size_t)s->n + 1, sizeof *reason);
   const char **digest  = calloc((size_t)s->n + 1, sizeof *digest);
   int         *state   = calloc((size_t)s->n + 1, sizeof *state);
+  int         *tried   = calloc((size_t)s->n + 1, sizeof *tried);
   double      *seconds = calloc((size_t)s->n + 1, sizeof *seconds);
-  shb_status   status  = reason && digest && state && seconds ? SHB_OK : no_memory();
+  shb_status   status  = reason && digest && state && tried && seconds ? SHB_OK : no_memory();
   for (int i = 0; status == SHB_OK && i < s->n; i++) {
     reason[i]  = s->design[i].reason ? s->design[i].reason : "";
     digest[i]  = s->design[i].digest;
     state[i]   = (int)s->design[i].state;
+    tried[i]   = s->design[i].tried_from;
     seconds[i] = s->design[i].seconds;
   }
   h5_shape shape = H5_SHAPE((hsize_t)s->n);
@@ -84,6 +86,9 @@ static shb_status put_designs(hid_t file, const design_study *s) {
   if (status == SHB_OK && some)
     status = h5_write_int(file, "/design/status", shape, state, "-",
                           "0 not run, 1 done, 2 failed, 3 not converged");
+  if (status == SHB_OK && some)
+    status = h5_write_int(file, "/design/tried_from", shape, tried, "-",
+                          "design, from 0, from whose peak it was tried again; -1: it was not");
   if (status == SHB_OK && some)
     status = h5_write_strings(file, "/design/reason", s->n, reason, "why a design has no output");
   if (status == SHB_OK && some)
@@ -93,6 +98,7 @@ static shb_status put_designs(hid_t file, const design_study *s) {
     status = h5_write_double(file, "/design/seconds", shape, seconds, "s", "CPU time");
   free(reason);
   free(digest);
+  free(tried);
   free(state);
   free(seconds);
   return status;
@@ -422,6 +428,18 @@ static shb_status get_design_texts(hid_t file, design_study *s) {
   return SHB_OK;
 }
 
+/* Files of former versions do not have it. */
+static shb_status get_tried(hid_t file, design_study *s) {
+  int     *tried = NULL;
+  h5_shape shape = H5_SHAPE((hsize_t)s->n);
+  if (s->n == 0 || !h5_exists(file, "/design/tried_from")) return SHB_OK;
+  SHB_TRY(h5_read_int(file, "/design/tried_from", &shape, &tried));
+  for (int i = 0; i < s->n; i++)
+    s->design[i].tried_from = tried[i] >= 0 && tried[i] < s->n ? tried[i] : -1;
+  free(tried);
+  return SHB_OK;
+}
+
 static shb_status get_seconds(hid_t file, design_study *s) {
   double  *seconds = NULL;
   h5_shape shape   = H5_SHAPE((hsize_t)s->n);
@@ -611,6 +629,7 @@ static shb_status get_all(hid_t file, design_study *s) {
   SHB_TRY(get_case_values(file, s));
   SHB_TRY(get_states(file, s));
   SHB_TRY(get_design_texts(file, s));
+  SHB_TRY(get_tried(file, s));
   SHB_TRY(get_seconds(file, s));
   SHB_TRY(get_matrix(file, "/design/value", s, n_keys, offsetof(study_design, key)));
   SHB_TRY(get_matrix(file, "/output/value", s, n_outputs, offsetof(study_design, value)));

@@ -376,6 +376,46 @@ def check_robust():
     near(float(rows('plain.study.csv')[0]['peak']), float(row['peak']), 1e-8)
 
 
+AGAIN = """contact.n0,mhb.max_points
+0.1 N,20000
+0.15 N,20000
+0.13 N,{few}
+1.5 N,{few}
+"""
+
+
+def check_again():
+    """A design that did not converge is solved from the peak of the nearest one that did. Where
+    that fails too it keeps its reason. Ranks and resumption do not change the table."""
+    for name, few in ('again', 10), ('enough', 20000):
+        write(f'{name}.csv', AGAIN.format(few=few))
+        write(f'{name}.yaml', f'case: case.yaml\nplan: {{table: {name}.csv}}\noutputs: [peak, '
+              'frequency]\n')
+    said = run(program('shroudhb-study'), 'again.yaml', code=3)
+    assert '1 not converged' in said, said
+    run(program('shroudhb-study'), '--quiet', 'enough.yaml')
+    table, whole = rows('again.study.csv'), rows('enough.study.csv')
+    solved, left = table[2], table[3]
+    assert solved['status'] == 'done' and left['status'] == 'not converged', (solved, left)
+    assert solved['reason'].startswith('solved from the peak of design 2; a curve does not cover')
+    for output in 'peak', 'frequency', 'dpeak_dn0', 'dpeak_dmu':
+        near(float(solved[output]), float(whole[2][output]), 1e-7)
+    first, second = left['reason'].split('; tried again from the peak of design ')
+    assert first.startswith('a curve does not cover mhb.frequency: ') and second == '2', left
+    with h5py.File('again.study.h5') as source:
+        assert list(source['design/tried_from'][:]) == [-1, -1, 1, 1]
+    bytes_alone = read('again.study.csv')
+    said = run(program('shroudhb-study'), '--verbose', 'again.yaml', code=3)
+    assert '4 designs, 0 to compute' in said and read('again.study.csv') == bytes_alone, said
+    command = ['mpiexec', '-n', '3', '--oversubscribe', program('shroudhb-study'), '--quiet',
+               '--force', 'again.yaml']
+    subprocess.run(command, env=ENVIRONMENT, check=False, capture_output=True)
+    assert read('again.study.csv') == bytes_alone
+    write('again.csv', AGAIN.format(few=10) + '0.135 N,20000\n') # a nearer one is solved
+    run(program('shroudhb-study'), '--quiet', 'again.yaml', code=3)
+    assert 'of design 5; ' in rows('again.study.csv')[2]['reason'], rows('again.study.csv')[2]
+
+
 FAULTS = [
     ('vary: {contact.mu: [0.3]}\nplan: {sobl: 12}', "sobl: unknown key; did you mean 'sobol'?"),
     ('vary: {contact.mu: [0.3]}\nplan: {sobol: 0}', 'plan.sobol: expected a whole number from 1'),
@@ -473,7 +513,7 @@ def main():
         run(program('shroudhb-study'), '--quiet', 'grid.yaml')
         for check in (check_values, check_derivatives, check_optimise, check_one_key,
                       check_ranks, check_reuse, check_sampled_plans, check_uncertain,
-                      check_robust, check_crash, check_kill, check_faults,
+                      check_robust, check_crash, check_kill, check_again, check_faults,
                       check_overrides, check_one_design):
             check()
             print(check.__name__, 'passed')

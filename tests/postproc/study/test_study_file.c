@@ -38,10 +38,11 @@ static void fill(design_study *s) {
   d->seconds       = 0.12;
   memcpy(d->digest, "0123456789abcdef", STUDY_DIGEST);
   assert_int_equal(study_curve_take(&d->curve, 2), SHB_OK);
-  d->curve.frequency[1] = 212.5;
-  d->curve.amplitude[1] = 3.5e-5;
-  d->curve.stable[1]    = -1;
-  s->design[1].state    = STUDY_FAILED;
+  d->curve.frequency[1]   = 212.5;
+  d->curve.amplitude[1]   = 3.5e-5;
+  d->curve.stable[1]      = -1;
+  s->design[1].state      = STUDY_FAILED;
+  s->design[2].tried_from = 1;
   study_design_set_reason(&s->design[1], "mesh: \"sections\", folded");
 }
 
@@ -70,6 +71,8 @@ static void round_trip(void **state) {
   assert_string_equal(t.key[1].name, "contact.mu");
   assert_string_equal(t.derivative[0].unit, "m/N");
   assert_near(t.design[2].key[0], 30, 0);
+  assert_int_equal(t.design[0].tried_from, -1);
+  assert_int_equal(t.design[2].tried_from, 1);
   assert_near(t.design[0].value[1], 212.5, 0);
   assert_true(isnan(t.design[0].error[1]));
   assert_true(isnan(t.design[1].value[0]));
