@@ -288,8 +288,9 @@ shb_status fine_maxima_append(const mhb_response *coarse, const solved_peak *pea
       branch = &coarse->branch[k];
   if (!s->x || !branch) return SHB_OK;
   fine_maximum *m = &out->list[out->n++];
-  *m              = (fine_maximum){
-                   .branch = branch, .walked = true, .found = {s->omega / SHB_TWO_PI, peak->amplitude}};
+  *m              = (fine_maximum){.branch = branch, .walked = true};
+  m->found[0]     = s->omega / SHB_TWO_PI;
+  m->found[1]     = peak->amplitude;
   SHB_TRY(copy(s, size, &m->before));
   SHB_TRY(copy(s, size, &m->at));
   SHB_TRY(copy(s, size, &m->after));
