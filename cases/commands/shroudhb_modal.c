@@ -46,7 +46,10 @@ static bool split_words(int argc, char **argv, words *out) {
   bool found = false, ended = false;
   *out = (words){1, 1, calloc((size_t)argc + 1, sizeof(char *)),
                  calloc((size_t)argc + 1, sizeof(char *))};
-  if (!out->own || !out->petsc) return false;
+  if (!out->own || !out->petsc) {
+    fputs("shroudhb: error: out of memory\n", stderr);
+    return false;
+  }
   out->own[0] = out->petsc[0] = argv[0];
   for (int i = 1; i < argc; i++) {
     bool is_long = strncmp(argv[i], "--", 2) == 0;

@@ -333,7 +333,8 @@ case_node *case_document_parse(case_issues *issues) {
   case_node   *root = NULL;
   yaml_event_t event;
   if (first_event(&b, &event)) {
-    root      = calloc(1, sizeof *root);
+    root = calloc(1, sizeof *root);
+    if (!root) case_issue_add(issues, 0, 0, NULL, "out of memory");
     bool good = root && build(&b, &event, "", 0, root) && expect_end(&b);
     yaml_event_delete(&event);
     if (!good) {

@@ -359,15 +359,14 @@ static int write_all(int fd, const char *data, size_t size) {
   return why;
 }
 
-/* Write the stamp and the image. Returns 0 or errno. */
+/* Write the stamp and the image; a file that is not whole is removed. Returns 0 or errno. */
 static int write_stamped(const char *path, const char *image, size_t size) {
   char stamp[H5_STAMP];
-  int  fd = open(path, O_WRONLY | O_CREAT | O_TRUNC, 0666);
-  if (fd < 0) return errno;
+  int  fd = open(path, O_WRONLY | O_CREAT | O_TRUNC, 0666), why = fd < 0 ? errno : 0;
   h5_stamp_make(image, size, stamp);
-  int why = write_all(fd, stamp, sizeof stamp);
+  if (!why) why = write_all(fd, stamp, sizeof stamp);
   if (!why) why = write_all(fd, image, size);
-  if (close(fd) != 0 && !why) why = errno;
+  if (fd >= 0 && close(fd) != 0 && !why) why = errno;
   if (why) remove_file(path);
   return why;
 }
