@@ -46,7 +46,8 @@ static int affordable(const mhb_floquet *s) {
 
 static shb_status fill(mhb_floquet *s, const mhb_receptance *receptance,
                        const mhb_settings *settings, int substeps) {
-  SHB_TRY(mhb_modal_structure_create(receptance, settings, receptance->n_modes, &s->structure));
+  SHB_TRY(
+      mhb_modal_structure_create(receptance, settings, receptance->n_modes, false, &s->structure));
   const mhb_modal_structure *all_modes = &s->structure;
   int                        m         = settings->harmonics,
       all = 2 * (all_modes->modes * all_modes->blades + all_modes->contacts);
@@ -55,7 +56,7 @@ static shb_status fill(mhb_floquet *s, const mhb_receptance *receptance,
   SHB_TRY(mhb_linear_exponents_create(all_modes, &s->exponents));
   SHB_TRY(mhb_contact_evaluator_create(m, m, settings->tolerance, &s->contact));
   if (affordable(s) > 0) {
-    SHB_TRY(mhb_modal_structure_create(receptance, settings, affordable(s), &s->reduced));
+    SHB_TRY(mhb_modal_structure_create(receptance, settings, affordable(s), true, &s->reduced));
     SHB_TRY(mhb_monodromy_create(&s->reduced, &s->schedule, s->contact, m, (substeps + 1) / 2,
                                  FINEST, &s->monodromy));
     int cells  = mhb_floquet_cells(s),

@@ -57,16 +57,15 @@ static void relative_shapes(mhb_linear_exponents *x, int d, double complex step)
   }
 }
 
-/* Residual flexibility R of nodal diameter d: the first row of blocks, each with its phase. */
-static void relative_flexibility(mhb_linear_exponents *x, double complex step) {
-  const mhb_modal_structure *s  = x->structure;
-  int                        n3 = 3 * s->pairs, n = 3 * s->contacts;
-  double complex             phase = 1;
-  memset(x->R, 0, sizeof *x->R * (size_t)(n3 * n3));
-  for (int b = 0; b < s->blades && s->flexibility; b++, phase *= step)
-    for (int r = 0; r < n3; r++)
-      for (int c = 0; c < n3; c++)
-        x->R[r * n3 + c] += phase * s->flexibility[(size_t)r * (size_t)n + (size_t)(b * n3 + c)];
+/* Residual flexibility R of nodal diameter d. */
+static void relative_flexibility(mhb_linear_exponents *x, int d, double complex step) {
+  const mhb_modal_structure *s      = x->structure;
+  const size_t               square = 9 * (size_t)s->pairs * (size_t)s->pairs;
+  memset(x->R, 0, sizeof *x->R * square);
+  if (s->disc && s->disc->flexibility)
+    memcpy(x->R, s->disc->flexibility + (size_t)d * square, sizeof *x->R * square);
+  for (size_t i = 0; i < square && s->block; i++)
+    x->R[i] = s->block[i] + step * s->block[square + i] + conj(step) * s->block[2 * square + i];
 }
 
 /* Element c of the row K of contact a times [R B], c < n3 + modes. */
@@ -104,7 +103,7 @@ static int nodal_diameter(mhb_linear_exponents *x, int d) {
   const double              *omega = s->disc ? s->disc->omega + d * m : s->omega;
   const double              *zeta  = s->disc ? s->disc->zeta + d * m : s->zeta;
   relative_shapes(x, d, step);
-  relative_flexibility(x, step);
+  relative_flexibility(x, d, step);
   if (!contact_stiffness(x)) return 0;
   const double complex *SB = x->S + (size_t)n3 * (size_t)n3;
   memset(x->A, 0, sizeof *x->A * (size_t)(n * n));

@@ -209,7 +209,7 @@ shb_status mhb_ring_step_create(const mhb_receptance *receptance, const mhb_sett
                                 mhb_ring_step *ring) {
   *ring = (mhb_ring_step){.n_neighbours = 1};
   mhb_radau_create(&ring->rule);
-  SHB_TRY(mhb_modal_structure_create(receptance, settings, receptance->n_modes, &ring->s));
+  SHB_TRY(mhb_modal_structure_create(receptance, settings, receptance->n_modes, true, &ring->s));
   const mhb_modal_structure *s  = &ring->s;
   int                        n3 = 3 * s->pairs, m = s->modes;
   if (s->sides == 2) ring->n_neighbours = s->blades < 3 ? s->blades : 3;

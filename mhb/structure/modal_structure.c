@@ -41,32 +41,61 @@ static double flexibility(const mhb_receptance *r, int s, int row, int t, int co
   return sum;
 }
 
-static void set_flexibility(const mhb_receptance *r, mhb_modal_structure *s) {
-  int n3 = r->n, n = 3 * s->contacts;
-  for (int k = 0; k < s->blades * s->sides * s->sides; k++) {
-    int blade = k / (s->sides * s->sides), to = k / s->sides % s->sides, by = k % s->sides;
-    int row0    = 3 * mhb_modal_structure_contact(s, blade, to);
-    int column0 = 3 * mhb_modal_structure_contact(s, blade, by);
-    for (int row = 0; row < n3; row++)
-      for (int column = 0; column < n3; column++)
-        s->flexibility[(size_t)(row0 + row) * (size_t)n + (size_t)(column0 + column)] +=
-            flexibility(r, to, row, by, column, s->modes);
+enum { SELF, NEXT, PREVIOUS, BLOCKS };
+
+/* Contact 0 lies between the right side of blade 0 and the left side of blade 1. */
+static void set_blocks(const mhb_receptance *r, mhb_modal_structure *s) {
+  static const int of[2][2] = {{SELF, PREVIOUS}, {NEXT, SELF}}; /* [to][by] */
+  const size_t     n3       = (size_t)r->n;
+  memset(s->block, 0, BLOCKS * n3 * n3 * sizeof *s->block);
+  for (int k = 0; k < s->sides * s->sides; k++) {
+    const int to = k / s->sides, by = k % s->sides;
+    double   *block = s->block + (size_t)of[to][by] * n3 * n3;
+    for (size_t i = 0; i < n3 * n3; i++)
+      block[i] += flexibility(r, to, (int)(i / n3), by, (int)(i % n3), s->modes);
   }
 }
 
-static void take_arrays(const mhb_receptance *r, mhb_modal_structure *s) {
+/* Add a block to the rows of every blade's contacts. */
+static void spread(mhb_modal_structure *s, const double *block, int step) {
+  const size_t n3 = 3 * (size_t)s->pairs, n = 3 * (size_t)s->contacts;
+  for (int b = 0; b < s->blades; b++) {
+    const size_t row = (size_t)b * n3, column = (size_t)((b + step) % s->blades) * n3;
+    for (size_t i = 0; i < n3 * n3; i++)
+      s->flexibility[(row + i / n3) * n + column + i % n3] += block[i];
+  }
+}
+
+static void set_flexibility(const mhb_receptance *r, mhb_modal_structure *s) {
+  const size_t n = 3 * (size_t)s->contacts, square = (size_t)r->n * (size_t)r->n;
+  if (s->block) set_blocks(r, s);
+  if (!s->flexibility) return;
+  memset(s->flexibility, 0, n * n * sizeof *s->flexibility);
+  if (s->disc) {
+    mhb_disc_modes_add_map(s->disc, s->disc->flexibility, s->flexibility);
+    return;
+  }
+  spread(s, s->block + SELF * square, 0);
+  if (s->sides == 1) return;
+  spread(s, s->block + NEXT * square, 1);
+  spread(s, s->block + PREVIOUS * square, s->blades - 1);
+}
+
+static void take_arrays(const mhb_receptance *r, bool whole, mhb_modal_structure *s) {
   const size_t n = 3 * (size_t)s->contacts, m = (size_t)s->modes, side = m * (size_t)r->n;
+  const bool   flexible = r->model->residual_flexibility || s->modes < r->n_modes;
   if (!s->disc) {
     s->omega = shb_arena_take(&s->arena, m, sizeof(double));
     s->zeta  = shb_arena_take(&s->arena, m, sizeof(double));
     s->shape = shb_arena_take(&s->arena, (size_t)s->sides * side, sizeof(double));
   }
-  if (r->model->residual_flexibility || s->modes < r->n_modes)
-    s->flexibility = shb_arena_take(&s->arena, n * n, sizeof(double));
+  if (flexible && !s->disc)
+    s->block = shb_arena_take(&s->arena, BLOCKS * (size_t)r->n * (size_t)r->n, sizeof(double));
+  if (flexible && whole) s->flexibility = shb_arena_take(&s->arena, n * n, sizeof(double));
 }
 
 shb_status mhb_modal_structure_create(const mhb_receptance *r, const mhb_settings *settings,
-                                      int modes, mhb_modal_structure *s) {
+                                      int modes, bool whole, mhb_modal_structure *s) {
   const modal_model           *model = r->model;
   const modal_nodal_diameters *of    = settings->nodal_diameters;
   const int ground = settings->to_ground, blades = of ? of->blades : ground ? 1 : settings->blades;
@@ -77,7 +106,7 @@ shb_status mhb_modal_structure_create(const mhb_receptance *r, const mhb_setting
                                       .wave   = ground && !of ? 0 : wave_of(settings, blades)};
   s->contacts = s->blades * s->pairs;
   if (of) SHB_TRY(mhb_disc_modes_create(r, settings, s->modes, &s->disc));
-  take_arrays(r, s);
+  take_arrays(r, whole, s);
   if (s->arena.failed) {
     mhb_modal_structure_destroy(s);
     SHB_FAIL(SHB_ERR_IO, "out of memory for the structure of %d contacts", s->contacts);
@@ -87,19 +116,14 @@ shb_status mhb_modal_structure_create(const mhb_receptance *r, const mhb_setting
 }
 
 void mhb_modal_structure_set(const mhb_receptance *r, mhb_modal_structure *s) {
-  const size_t side = (size_t)s->modes * (size_t)r->n, n = 3 * (size_t)s->contacts;
-  if (s->flexibility) memset(s->flexibility, 0, n * n * sizeof *s->flexibility);
-  if (s->disc) {
-    if (s->flexibility) mhb_disc_modes_add_map(s->disc, s->disc->flexibility, s->flexibility);
-    return;
-  }
-  for (int i = 0; i < s->modes; i++) {
+  const size_t side = (size_t)s->modes * (size_t)r->n;
+  for (int i = 0; i < s->modes && !s->disc; i++) {
     s->omega[i] = SHB_TWO_PI * r->model->frequency[i];
     s->zeta[i]  = r->model->damping_ratio[i];
   }
-  for (size_t k = 0; k < (size_t)s->sides * side; k++)
+  for (size_t k = 0; k < (size_t)s->sides * side && !s->disc; k++)
     s->shape[k] = shape_of(r, k >= side, (int)(k % (size_t)r->n), (int)(k % side) / r->n);
-  if (s->flexibility) set_flexibility(r, s);
+  set_flexibility(r, s);
 }
 
 void mhb_modal_structure_destroy(mhb_modal_structure *s) {

@@ -19,17 +19,22 @@ typedef struct {
   int     wave;         /* E of the fundamental: the next blade lags by 2 pi E/N */
   double *omega, *zeta; /* [modes] rad/s, - */
   double *shape;        /* [side][mode][3 pairs] (v, u, w) by the mode, kg^-1/2; left: negative */
-  double *flexibility;  /* [3 contacts][3 contacts] R, m/N, or NULL */
+  /* [self, next, previous][3 pairs][3 pairs] R of a blade's contacts by forces on its own and on
+   * the neighbours', m/N. NULL: none, or a disc. */
+  double *block;
+  double *flexibility; /* [3 contacts][3 contacts] R of all; NULL: none, or not asked for */
   /* NULL: blades that their contacts alone couple. Else omega, zeta and shape are NULL. */
   mhb_disc_modes *disc;
   shb_arena       arena;
 } mhb_modal_structure;
 
-/* The lowest modes stay dynamic. The others answer statically and are added to R, as is residual
+/* whole: with R of all contacts, whose memory grows with the square of their number.
+ *
+ * The lowest modes stay dynamic. The others answer statically and are added to R, as is residual
  * flexibility. Residual inertia is left out: u = B q - R p + R2 p'' cannot be integrated forward in
  * time. SHB_ERR_IO: no memory; SHB_ERR_INPUT: a nodal diameter of the disc is missing. */
 shb_status mhb_modal_structure_create(const mhb_receptance *receptance,
-                                      const mhb_settings *settings, int modes,
+                                      const mhb_settings *settings, int modes, bool whole,
                                       mhb_modal_structure *structure);
 /* Anew for the same modes, after the receptance went to another speed of a run-up. */
 void mhb_modal_structure_set(const mhb_receptance *receptance, mhb_modal_structure *structure);
