@@ -14,6 +14,7 @@
 #include "mesh/base/publish.h"
 #include "mhb/integration/integration_sweep.h"
 #include "mhb/mistuning/dense_ring.h"
+#include "mhb/structure/dense_disc.h"
 
 static const char usage[] =
     "usage: shroudhb-integrate [--quiet] [--verbose] [--force] [--set KEY=VALUE]... [--into "
@@ -84,17 +85,23 @@ static void warn_of_ring(const case_file *file, const modal_model *model) {
       file->mhb.blades, model->n_modes, file->integrate.max_periods);
 }
 
-/* A ring of different blades is integrated as one model; the file has the wave's numbers. */
+/* A ring of different blades and a disc are integrated as one model. */
 static shb_status integrate(const case_file *file, case_model *model, const mhb_response *balance,
                             const char *output, const shb_provenance *provenance,
                             shb_progress *progress, mhb_response **response) {
-  if (!model->ring)
+  if (!model->ring && !model->disc)
     return mhb_integration_sweep(&model->model, &model->settings, &file->integrate, balance, output,
                                  provenance, progress, response);
   modal_model  dense;
   mhb_settings settings;
-  shb_status   status = mhb_dense_ring(model->ring, &dense);
-  mhb_dense_ring_settings(&model->settings, &settings);
+  shb_status   status;
+  if (model->disc) {
+    status = mhb_dense_disc(&model->settings, &dense);
+    mhb_dense_disc_settings(&model->settings, &settings);
+  } else {
+    status = mhb_dense_ring(model->ring, &dense);
+    mhb_dense_ring_settings(&model->settings, &settings);
+  }
   if (status == SHB_OK)
     status = mhb_integration_sweep(&dense, &settings, &file->integrate, balance, output, provenance,
                                    progress, response);

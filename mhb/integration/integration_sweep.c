@@ -70,6 +70,15 @@ static shb_status add_point(sweep *s, int branch, double n0, double hz, sweep_po
   return SHB_OK;
 }
 
+/* Turn of a wave over n sectors, where the model has more of them than the balance. */
+static double complex lag(const mhb_response *balance, long n) {
+  const mhb_settings of   = {.engine_order = balance->engine_order,
+                             .blades       = balance->blades,
+                             .subharmonics = balance->subharmonics};
+  const long         wave = (of.engine_order + of.blades * mhb_wave_shift(&of)) / of.subharmonics;
+  return n ? cexp(-I * SHB_TWO_PI * (double)(n * wave % of.blades) / of.blades) : 1;
+}
+
 /* A point that starts between points p and p + 1 of a branch of the balance, unless both are
  * unstable. Where one is, it starts on the other. */
 static shb_status plan_between(sweep *s, const mhb_branch *b, int p, int branch, double hz) {
@@ -78,14 +87,17 @@ static shb_status plan_between(sweep *s, const mhb_branch *b, int p, int branch,
   if (b->stable[p] == 0 && b->stable[p + 1] == 0) return SHB_OK;
   if (b->stable[p] == 0) part = 1;
   if (b->stable[p + 1] == 0) part = 0;
-  int K = b->n_harmonics + 1, n3 = 3 * s->balance->n_pairs;
+  int K = b->n_harmonics + 1, own = 3 * s->balance->n_pairs, n3 = 3 * s->model->n_pairs;
   SHB_TRY(add_point(s, branch, b->n0[p], hz, &c));
   c->start = malloc(sizeof *c->start * (size_t)(K * n3));
   SHB_CHECK(c->start, SHB_ERR_IO, "out of memory");
   c->m                     = K - 1;
-  const double complex *at = b->force + (size_t)p * (size_t)(n3 * K), *next = at + n3 * K;
-  for (int i = 0; i < n3 * K; i++)
-    c->start[i % K * n3 + i / K] = (1 - part) * at[i] + part * next[i];
+  const double complex *at = b->force + (size_t)p * (size_t)(own * K), *next = at + own * K;
+  for (int i = 0; i < n3 * K; i++) {
+    const int k = i % K, row = i / K, from = row % own * K + k;
+    c->start[k * n3 + row] =
+        ((1 - part) * at[from] + part * next[from]) * lag(s->balance, (long)k * (row / own));
+  }
   return SHB_OK;
 }
 
@@ -465,8 +477,7 @@ shb_status mhb_integration_sweep(const modal_model *model, const mhb_settings *s
              .progress  = progress};
   *out    = NULL;
   SHB_CHECK(!settings->nodal_diameters, SHB_ERR_INPUT,
-            "time integration knows no nodal diameters yet; give modal.file of a clamped blade, or "
-            "leave the integration out");
+            "time integration takes a disc as one structure (mhb/structure/dense_disc.h)");
   SHB_CHECK(!settings->run_up || request->start != MHB_START_FROM_STATE, SHB_ERR_INPUT,
             "integrate.start: state takes the state of one structure to the next, but in a run-up "
             "(mhb.run_up) each frequency has its own; set it to balance or rest");

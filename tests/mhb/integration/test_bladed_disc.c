@@ -5,7 +5,9 @@
 #include <math.h>
 
 #include "mesh/base/constants.h"
+#include "mhb/branches/forced_response.h"
 #include "mhb/integration/integration_sweep.h"
+#include "mhb/structure/dense_disc.h"
 #include "tests/support/check.h"
 #include "tests/support/lumped_disc.h"
 #include "tests/support/periodic.h"
@@ -158,10 +160,170 @@ static void time_integration_ends_on_it(void **state) {
   modal_nodal_diameters_free(&s.waves);
 }
 
+/* The ring made of nodal diameters is that of the sectors: all contacts, probe and load. */
+static void sectors_in_one_are_the_ring(void **state) {
+  static const int order[] = {1, 4, 6, 11};
+  (void)state;
+  for (int i = 0; i < 4; i++) {
+    const int       E = order[i];
+    const double    w = 0.93;
+    sector          s;
+    modal_model     ring, dense;
+    mhb_settings    of_dense;
+    mhb_receptance *r[2];
+    sector_create(E, 2, 5, &s);
+    lumped_disc_ring(&s.disc, E, &ring);
+    const mhb_settings of_ring = lumped_disc_ring_settings(&s.settings);
+    assert_ok(mhb_dense_disc(&s.settings, &dense));
+    mhb_dense_disc_settings(&s.settings, &of_dense);
+    assert_ok(mhb_receptance_create(&ring, &of_ring, 2, &r[0]));
+    assert_ok(mhb_receptance_create(&dense, &of_dense, 2, &r[1]));
+    assert_int_equal(r[0]->n, r[1]->n);
+    const int      n       = r[0]->n;
+    double         away[3] = {0}, size[3] = {0};
+    double complex p[3 * N], motion[2][3 * N], probe[2][3];
+    for (int k = 0; k <= 2; k++) {
+      for (int c = 0; c < n; c++) p[c] = k ? CMPLX(sin(c + k), cos(3 * c)) : sin(c);
+      for (int j = 0; j < 2; j++) {
+        mhb_receptance_at(r[j], w, 2);
+        mhb_receptance_motion(r[j], k, p, motion[j]);
+        mhb_receptance_probe(r[j], k, p, probe[j]);
+      }
+      for (int c = 0; c < n; c++) {
+        away[0] = fmax(away[0], cabs(motion[1][c] - motion[0][c]));
+        size[0] = fmax(size[0], cabs(motion[0][c]));
+        away[1] = fmax(away[1], cabs(r[1]->free[k * n + c] - r[0]->free[k * n + c]));
+        size[1] = fmax(size[1], cabs(r[0]->free[k * n + c]));
+      }
+      for (int c = 0; c < 3; c++) {
+        away[2] = fmax(away[2], cabs(probe[1][c] - probe[0][c]));
+        size[2] = fmax(size[2], cabs(probe[0][c]));
+      }
+    }
+    print_message("E = %d: contact %.1e, load %.1e, probe %.1e apart\n", E, away[0] / size[0],
+                  away[1] / size[1], away[2] / size[2]);
+    for (int j = 0; j < 3; j++) assert_below(away[j] / size[j], 1e-11);
+    for (int j = 0; j < 2; j++) mhb_receptance_destroy(r[j]);
+    modal_model_free(&ring);
+    modal_model_free(&dense);
+    modal_nodal_diameters_free(&s.waves);
+  }
+}
+
+/* Distance of sector 0 between both, relative, under forces in the form of the wave. */
+static double distance_of_receptances(mhb_receptance *one, mhb_receptance *all, int engine_order,
+                                      double omega) {
+  double away = 0, size = 0;
+  mhb_receptance_at(one, omega, 2);
+  mhb_receptance_at(all, omega, 2);
+  for (int k = 0; k <= 2; k++) {
+    double complex p[3] = {1, k ? CMPLX(0.3, 0.5) : 0.3, k ? I : -0.7}, of_all[3 * N];
+    double complex motion[2][3 * N], probe[2][3];
+    for (int c = 0; c < 3 * N; c++)
+      of_all[c] = p[c % 3] * cexp(-I * SHB_TWO_PI * k * engine_order * (c / 3) / N);
+    mhb_receptance_motion(one, k, p, motion[0]);
+    mhb_receptance_motion(all, k, of_all, motion[1]);
+    mhb_receptance_probe(one, k, p, probe[0]);
+    mhb_receptance_probe(all, k, of_all, probe[1]);
+    for (int c = 0; c < 3; c++) {
+      away = fmax(away, fmax(cabs(motion[1][c] - motion[0][c]), cabs(probe[1][c] - probe[0][c])));
+      size = fmax(size, cabs(motion[0][c]));
+    }
+  }
+  return away / size;
+}
+
+/* Modes left out: the ring answers to a wave as one sector. The weights of the terms are bounded by
+ * the last mode kept, which differs: of order w^6. */
+static void terms_are_those_of_the_nodal_diameters(void **state) {
+  static const int order[] = {1, 4, 6, 11};
+  (void)state;
+  for (int i = 0; i < 4; i++) {
+    sector          s;
+    modal_model     dense;
+    mhb_settings    of_dense;
+    mhb_receptance *one, *all;
+    sector_create(order[i], 2, 5, &s);
+    modal_nodal_diameters_free(&s.waves);
+    lumped_disc_waves(&s.disc, 5, &s.waves);
+    assert_ok(mhb_dense_disc(&s.settings, &dense));
+    mhb_dense_disc_settings(&s.settings, &of_dense);
+    assert_ok(mhb_receptance_create(&s.waves.model[0], &s.settings, 2, &one));
+    assert_ok(mhb_receptance_create(&dense, &of_dense, 2, &all));
+    const double fast = distance_of_receptances(one, all, order[i], 0.1);
+    const double slow = distance_of_receptances(one, all, order[i], 0.05);
+    print_message("E = %d, 5 of 12 modes: %.1e and %.1e apart\n", order[i], fast, slow);
+    assert_below(slow, 1e-9);
+    assert_true(slow < fast / 40);
+    mhb_receptance_destroy(one);
+    mhb_receptance_destroy(all);
+    modal_model_free(&dense);
+    modal_nodal_diameters_free(&s.waves);
+  }
+}
+
+/* From the balance: its forces lag from sector to sector. */
+static void integration_by_nodal_diameters_stays_on_the_balance(void **state) {
+  sector                   s;
+  modal_model              dense;
+  mhb_settings             of_dense;
+  mhb_response            *balance, *response;
+  mhb_integration_settings asked = {.n_frequencies = 1,
+                                    .listed        = true,
+                                    .frequency     = {0.86 / SHB_TWO_PI},
+                                    .start         = MHB_START_FROM_BALANCE,
+                                    .steps         = 32,
+                                    .tolerance     = 1e-7,
+                                    .max_periods   = 500};
+  (void)state;
+  sector_create(3, MANY, 5, &s);
+  s.settings.frequency[0] = 0.85 / SHB_TWO_PI;
+  s.settings.frequency[1] = 0.87 / SHB_TWO_PI;
+  assert_ok(mhb_forced_response(&s.waves.model[0], &s.settings, NULL, NULL, NULL, &balance));
+  assert_ok(mhb_dense_disc(&s.settings, &dense));
+  mhb_dense_disc_settings(&s.settings, &of_dense);
+  assert_ok(mhb_integration_sweep(&dense, &of_dense, &asked, balance, NULL, NULL, NULL, &response));
+  const mhb_branch *b = &response->branch[0];
+  assert_int_equal(b->n_points, 1);
+  assert_int_equal(b->multiple[0], 1);
+  periodic one;
+  periodic_create(&s.waves.model[0], &s.settings, SHB_TWO_PI * b->frequency[0], NULL, &one);
+  static double x[3 * N * (2 * MANY + 1)], end[3 * N * (2 * MANY + 1)];
+  const int     n = 3 * N * (2 * MANY + 1);
+  expand(MANY, 3, one.x, x);
+  motion_of(b, 0, MANY, end);
+  const double apart = distance(n, 2 * MANY + 1, x, end);
+  print_message("from the balance %d periods, %.1e apart, slipping for %.2f of the period\n",
+                b->periods[0], apart, slipping(&one));
+  assert_below(apart, 5e-5);
+  assert_true(slipping(&one) > 0.1);
+  periodic_destroy(&one);
+  mhb_response_destroy(response);
+  mhb_response_destroy(balance);
+  modal_model_free(&dense);
+  modal_nodal_diameters_free(&s.waves);
+}
+
+static void all_nodal_diameters_are_needed(void **state) {
+  sector      s;
+  modal_model dense;
+  (void)state;
+  sector_create(3, 2, 5, &s);
+  s.waves.n--;
+  assert_refused(mhb_dense_disc(&s.settings, &dense), SHB_ERR_INPUT,
+                 "needs all nodal diameters, 0 to 4; the modal file has 4 of 5");
+  s.waves.n++;
+  modal_nodal_diameters_free(&s.waves);
+}
+
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(the_ring_has_the_same_solution),
       cmocka_unit_test(time_integration_ends_on_it),
+      cmocka_unit_test(sectors_in_one_are_the_ring),
+      cmocka_unit_test(terms_are_those_of_the_nodal_diameters),
+      cmocka_unit_test(integration_by_nodal_diameters_stays_on_the_balance),
+      cmocka_unit_test(all_nodal_diameters_are_needed),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }
