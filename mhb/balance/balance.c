@@ -381,11 +381,36 @@ static void set_mean_gradient(mhb_balance *b, mhb_contact_evaluator *contact, in
   for (int i = 0; lag && i < 2; i++) turn(b, lag, 1, 3, 1, (size_t)b->nb, row[i]);
 }
 
+/* Force of a pair that is assumed to stick or to be open; its info stays as it is. */
+static void assumed_force(const mhb_balance *b, const double *x, int a) {
+  const mhb_law *law = &b->law[a];
+  const int      nb  = b->nb;
+  const double  *v = x + (size_t)(3 * a) * (size_t)nb, *u = v + nb, *w = u + nb;
+  double        *p = b->eval->p + (size_t)(3 * a) * (size_t)nb;
+  memset(p, 0, sizeof *p * 3 * (size_t)nb);
+  p[0] = -law->mean_offset;
+  if (b->assumed[a] == MHB_PAIR_OPEN) return;
+  p[0] += law->n0;
+  for (int i = 0; i < nb; i++) p[i] += law->kv * v[i];
+  for (int i = 1; i < nb; i++) {
+    p[nb + i]     = law->ku[0] * u[i] + law->ku[1] * w[i];
+    p[2 * nb + i] = law->ku[1] * u[i] + law->ku[2] * w[i];
+  }
+}
+
+static bool is_assumed(const mhb_balance *b, int a) {
+  return b->assumed && (b->assumed[a] == MHB_PAIR_STUCK || b->assumed[a] == MHB_PAIR_OPEN);
+}
+
 /* A pair that was stuck or open is evaluated without derivative first: it mostly still is. */
 static void evaluate_pair(mhb_balance *b, mhb_contact_evaluator *contact, const double *x, int a,
                           int derivative) {
   size_t  block = 3 * (size_t)b->nb, at = (size_t)a * block;
   double *dp = b->eval->dp + at * block;
+  if (!derivative && is_assumed(b, a)) {
+    assumed_force(b, x, a);
+    return;
+  }
   if (!derivative || b->eval->kind[a] != MHB_PAIR_NONLINEAR) {
     force_of_pair(b, contact, x, a, NULL);
     if (!derivative) return;

@@ -71,8 +71,7 @@ static double complex *harmonic_of(const mhb_higher_harmonics *h, double complex
   return array + (size_t)(k - h->first) * (size_t)h->n;
 }
 
-/* Stiffness of a pair at the last harmonic, without the part that couples k with -k. */
-static void set_stiffness(const mhb_balance *b, int pair, double complex D[3][3]) {
+void mhb_last_stiffness(const mhb_balance *b, int pair, double complex D[3][3]) {
   size_t        block = 3 * (size_t)b->nb;
   const double *dp    = b->eval->dp + (size_t)pair * block * block;
   for (int c = 0; c < 3; c++) {
@@ -106,7 +105,7 @@ static void set_forces(mhb_higher_harmonics *h, const mhb_balance *balance, cons
   int wide = mhb_real_size(h->last);
   memset(h->force, 0, sizeof *h->force * (size_t)(h->last - h->first + 1) * (size_t)h->n);
   for (int a = 0; a < balance->n_pairs; a++) {
-    set_stiffness(balance, a, (double complex(*)[3])(h->D + 9 * a));
+    mhb_last_stiffness(balance, a, (double complex(*)[3])(h->D + 9 * a));
     if (balance->eval->kind[a] != MHB_PAIR_NONLINEAR) continue;
     pair_force(h, balance, x, a, 0);
     for (int k = h->first; k <= h->last; k++)

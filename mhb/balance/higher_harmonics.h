@@ -46,6 +46,10 @@ double mhb_higher_harmonics_estimate(mhb_higher_harmonics *higher, const mhb_bal
 void mhb_higher_harmonics_feedback(mhb_higher_harmonics *higher, const mhb_balance *balance,
                                    const double *x, double *change);
 
+/* D <- stiffness of a pair at the balance's last harmonic, by its last linearisation, without the
+ * part that couples k with -k; N/m. */
+void mhb_last_stiffness(const mhb_balance *balance, int pair, double complex D[3][3]);
+
 /* |u_k|^2 of the last estimate, m^2; 0 for other harmonics. */
 double mhb_higher_harmonics_power(const mhb_higher_harmonics *higher, int k);
 

@@ -81,7 +81,8 @@ int mhb_ring_system_factor(mhb_ring_system *s, const double *column, const doubl
     memcpy(s->blocks->row, row, n * sizeof *row);
     s->blocks->corner = row[n];
   }
-  return mhb_block_cyclic_factor(s->blocks, column != NULL);
+  s->regular = mhb_block_cyclic_factor(s->blocks, column != NULL);
+  return s->regular;
 }
 
 int mhb_ring_system_solve(mhb_ring_system *s, double *rhs) {

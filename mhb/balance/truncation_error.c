@@ -46,6 +46,8 @@ shb_status mhb_truncation_create(const mhb_balance *balance, mhb_truncation **ou
     t->feedback = shb_arena_take(&t->arena, n, sizeof(double));
     if (t->arena.failed) status = shb_fail(SHB_ERR_IO, __FILE__, __LINE__, "out of memory");
   }
+  if (status == SHB_OK && balance->receptance->ring)
+    status = mhb_ring_truncation_create(balance, t->doubled, &t->ring);
   if (status == SHB_OK && !balance->receptance->ring)
     status = mhb_higher_harmonics_create(t->doubled, t->receptance, &t->higher);
   if (status == SHB_OK)
@@ -62,6 +64,7 @@ void mhb_truncation_destroy(mhb_truncation *t) {
   if (!t) return;
   mhb_condensation_destroy(t->system);
   mhb_higher_harmonics_destroy(t->higher);
+  mhb_ring_truncation_destroy(t->ring);
   mhb_balance_destroy(t->doubled);
   mhb_receptance_destroy(t->receptance);
   shb_arena_free(&t->arena);
@@ -140,7 +143,10 @@ double mhb_truncation_error(mhb_truncation *t, const double *x) {
   t->kind        = MHB_TRUNCATION_NONE;
   if (mhb_balance_is_linear(t->balance)) return 0;
   mhb_balance_set_operating_point(b, &t->balance->eval->at);
-  t->kind = set_step(t);
+  t->part = 1;
+  t->kind = t->ring && t->factors && mhb_ring_truncation_step(t->ring, t->factors, t->x, t->step)
+                ? MHB_TRUNCATION_NEWTON
+                : set_step(t);
   return size > 0 ? hypot(mhb_norm(t->step, b->n), t->higher_size) / size : 0;
 }
 

@@ -7,13 +7,15 @@
  *
  * A harmonic above 2m may be at a resonance. Those harmonics are estimated one by one
  * (higher_harmonics.h). Where they are not small, r is evaluated anew with them before the step. In
- * a ring of different blades those above 2m are not looked at. */
+ * a ring of different blades those above 2m are not looked at, and the factors of the curve save the
+ * Newton step (ring_truncation.h). */
 #ifndef MHB_BALANCE_TRUNCATION_ERROR_H
 #define MHB_BALANCE_TRUNCATION_ERROR_H
 
 #include "mesh/base/arena.h"
 #include "mhb/balance/condensation.h"
 #include "mhb/balance/higher_harmonics.h"
+#include "mhb/balance/ring_truncation.h"
 
 /* With more nonlinear unknowns of the doubled balance than this, 3 (4m+1) a nonlinear pair, few
  * pairs are estimated to first order. Many pairs (MHB_MANY_PAIRS) have no limit. */
@@ -32,12 +34,14 @@ typedef enum {
 typedef struct {
   const mhb_balance    *balance; /* with m harmonics */
   mhb_settings          settings;
-  mhb_receptance       *receptance;           /* all harmonics that are estimated */
-  mhb_balance          *doubled;              /* with 2m harmonics */
-  mhb_condensation     *system;               /* of the doubled balance */
-  mhb_higher_harmonics *higher;               /* above 2m; NULL of a ring */
-  double               *x;                    /* [doubled->n] the solution, zero above m */
-  double               *step;                 /* [doubled->n] delta, -r or 0 of the last estimate */
+  mhb_receptance       *receptance; /* all harmonics that are estimated */
+  mhb_balance          *doubled;    /* with 2m harmonics */
+  mhb_condensation     *system;     /* of the doubled balance */
+  mhb_higher_harmonics *higher;     /* above 2m; NULL of a ring */
+  mhb_ring_truncation  *ring;       /* of a ring; else NULL */
+  mhb_ring_system      *factors;    /* of the balance, near its point; the caller's, or NULL */
+  double               *x;          /* [doubled->n] the solution, zero above m */
+  double               *step;       /* [doubled->n] delta, -r or 0 of the last estimate */
   double               *r, *trial, *feedback; /* [doubled->n] */
   double                higher_size;          /* |u_k|, k > 2m, of the last estimate */
   double                part;                 /* of the Newton step that delta is */

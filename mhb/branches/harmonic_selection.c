@@ -81,7 +81,8 @@ static shb_status level_create(const mhb_harmonic_levels *h, int m, mhb_balance 
     level_destroy(level);
     return status;
   }
-  *out = level;
+  level->truncation->factors = mhb_balance_curve_of(level->curve)->newton->system->ring;
+  *out                       = level;
   return SHB_OK;
 }
 
