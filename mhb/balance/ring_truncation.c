@@ -67,6 +67,7 @@ static int factor_high(mhb_ring_truncation *t) {
   const mhb_balance         *b    = t->balance;
   const mhb_ring_receptance *ring = t->doubled->receptance->ring;
   const int                  n = ring->n, P = n / 3;
+  mhb_receptance_set_frequency(t->doubled->receptance, b->eval->at.omega);
   for (int k = b->m + 1; k <= t->doubled->m; k++) mhb_receptance_update(t->doubled->receptance, k);
   for (int c = 0; c < ring->blades; c++) {
     double complex D[P][9];

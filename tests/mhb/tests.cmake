@@ -33,7 +33,7 @@ shb_test(mhb/response modal_motion tests_models)
 shb_test(mhb/response face_wear tests_models)
 shb_test(mhb/response direct_stress tests_fem tests_models shb_modal)
 foreach(noun balance stick_stiffness condensation multistart newton ring_system subharmonics
-    truncation_error modal_error spatial_error)
+    truncation_error ring_truncation modal_error spatial_error)
   shb_test(mhb/balance ${noun} tests_models)
 endforeach()
 target_sources(test_mhb_balance_condensation PRIVATE bench/shroud_face.c)

@@ -1,0 +1,133 @@
+/* The distance of a ring's solution from that with twice the harmonics, against that solution. */
+#include <math.h>
+#include <string.h>
+
+#include "mhb/balance/newton.h"
+#include "mhb/balance/truncation_error.h"
+#include "mhb/mistuning/mistuned_ring.h"
+#include "tests/support/check.h"
+#include "tests/support/random_model.h"
+
+enum { N = 5, P = 1, M = 5, LOW = N * 3 * P * (2 * M + 1), HIGH = N * 3 * P * (4 * M + 1) };
+
+typedef struct {
+  modal_model        blade;
+  mhb_settings       settings;
+  mhb_mistuned_ring *ring;
+  mhb_balance       *balance;
+  mhb_newton        *newton;
+  mhb_truncation    *truncation;
+} problem;
+
+static void make(problem *g, double n0) {
+  const double deviation[N] = {0.05, -0.02, 0, 0.03, -0.06};
+  random_model(P, WITH_LEFT | WITH_RESIDUAL | WITH_AREAS, 3, &g->blade);
+  g->settings              = random_settings(M);
+  g->settings.blades       = N;
+  g->settings.engine_order = 2;
+  assert_ok(mhb_mistuned_ring_create(&g->blade, &g->settings, deviation, 1, &g->ring));
+  g->settings.ring = g->ring;
+  assert_ok(mhb_balance_create(&g->ring->whole, &g->settings, &g->balance));
+  mhb_balance_set_preload(g->balance, n0);
+  assert_ok(mhb_newton_create(LOW, &g->newton));
+  assert_ok(mhb_truncation_create(g->balance, &g->truncation));
+}
+
+static void drop(problem *g) {
+  mhb_truncation_destroy(g->truncation);
+  mhb_newton_destroy(g->newton);
+  mhb_balance_destroy(g->balance);
+  mhb_mistuned_ring_destroy(g->ring);
+  modal_model_free(&g->blade);
+}
+
+/* x[LOW] <- a solution at omega; 0: none from both linear limits. */
+static int solve(problem *g, double omega, double *x) {
+  int iterations;
+  for (int stuck = 0; stuck < 2; stuck++) {
+    assert_ok(mhb_balance_linear_limit(g->balance, omega, stuck, x));
+    if (mhb_newton_solve(g->newton, g->balance, omega, 1e-11, x, &iterations) == MHB_CONVERGED)
+      return 1;
+  }
+  return 0;
+}
+
+/* away[HIGH] <- the solution with 2M harmonics less the one with M in wide[HIGH]; 0: none. */
+static int solve_doubled(problem *g, double omega, const double *wide, const double *step,
+                         double *away) {
+  mhb_newton *newton;
+  int         iterations;
+  assert_ok(mhb_newton_create(HIGH, &newton));
+  for (int i = 0; i < HIGH; i++) away[i] = wide[i] + step[i];
+  const mhb_reason reason =
+      mhb_newton_solve(newton, g->truncation->doubled, omega, 1e-11, away, &iterations);
+  for (int i = 0; i < HIGH; i++) away[i] -= wide[i];
+  mhb_newton_destroy(newton);
+  return reason == MHB_CONVERGED;
+}
+
+/* With the factors of a bordered system, as a curve has them, or of one without a border. */
+static void check_at(problem *g, double omega, int bordered, double *worst, int *n) {
+  double             x[LOW], column[LOW + 1], row[LOW + 1], away[HIGH], off[HIGH];
+  unsigned long long seed = 5;
+  if (!solve(g, omega, x) || mhb_balance_is_linear(g->balance)) return;
+  for (int i = 0; i <= LOW; i++) {
+    column[i] = random_unit(&seed);
+    row[i]    = random_unit(&seed);
+  }
+  row[LOW]              = column[LOW];
+  mhb_ring_system *ring = g->newton->system->ring;
+  assert_true(mhb_ring_system_factor(ring, bordered ? column : NULL, bordered ? row : NULL));
+  mhb_truncation *t   = g->truncation;
+  t->factors          = ring;
+  const double error  = mhb_truncation_error(t, x);
+  const int    direct = mhb_ring_truncation_step(t->ring, ring, t->x, off);
+  assert_int_equal(t->kind, MHB_TRUNCATION_NEWTON);
+  if (!direct) return; /* Newton's step was taken */
+  assert_memory_equal(off, t->step, sizeof off);
+  assert_near(error, mhb_norm(t->step, HIGH) / mhb_balance_vibration(g->balance, x), 1e-14);
+  assert_true(solve_doubled(g, omega, t->x, t->step, away));
+  for (int i = 0; i < HIGH; i++) off[i] -= away[i];
+  *worst = fmax(*worst, mhb_norm(off, HIGH) / mhb_norm(away, HIGH));
+  ++*n;
+}
+
+static void the_estimate_is_the_distance(void **state) {
+  (void)state;
+  for (int bordered = 0; bordered < 2; bordered++) {
+    double worst = 0;
+    int    n     = 0;
+    for (int i = 0; i < 2; i++) {
+      problem g = {0};
+      make(&g, i ? 0.4 : 0.1);
+      for (double omega = 0.7; omega < 2; omega += 0.09) check_at(&g, omega, bordered, &worst, &n);
+      drop(&g);
+    }
+    print_message("border %d: %d estimates, off by %.3f of the distance\n", bordered, n, worst);
+    assert_true(n >= 15);
+    assert_below(worst, 0.1);
+  }
+}
+
+/* Without factors, or with those of a singular system, the estimate is Newton's step. */
+static void without_factors_it_is_newtons_step(void **state) {
+  problem g = {0};
+  double  x[LOW], zero[LOW + 1] = {0}, step[HIGH];
+  (void)state;
+  make(&g, 0.1);
+  assert_true(solve(&g, 1.33, x) && !mhb_balance_is_linear(g.balance));
+  const double newton = mhb_truncation_error(g.truncation, x);
+  memcpy(step, g.truncation->step, sizeof step);
+  assert_false(mhb_ring_system_factor(g.newton->system->ring, zero, zero));
+  g.truncation->factors = g.newton->system->ring;
+  assert_near(mhb_truncation_error(g.truncation, x), newton, 0);
+  assert_memory_equal(step, g.truncation->step, sizeof step);
+  assert_int_equal(g.truncation->kind, MHB_TRUNCATION_NEWTON);
+  drop(&g);
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {cmocka_unit_test(the_estimate_is_the_distance),
+                                     cmocka_unit_test(without_factors_it_is_newtons_step)};
+  return cmocka_run_group_tests(tests, NULL, NULL);
+}
