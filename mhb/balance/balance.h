@@ -57,9 +57,9 @@ typedef struct {
   double complex         *response_k;         /* [3 pairs] of a ring; else NULL */
   double complex         *lag; /* [blades][m + 1] of a ring; else NULL: exp(-j k b phi/nu), by which
                                 * the tuned wave lags at blade b */
-  const mhb_pair_kind *assumed; /* [pair] kinds that stuck and open pairs are taken to have by
+  const mhb_pair_kind    *assumed; /* [pair] kinds that stuck and open pairs are taken to have by
                                  * evaluations without derivative, without their law; or NULL */
-  mhb_evaluation         *eval;               /* in use: evaluations write it */
+  mhb_evaluation         *eval;    /* in use: evaluations write it */
   mhb_evaluation         *default_evaluation; /* in use after creation; owned */
   shb_arena               arena;
 } mhb_balance;

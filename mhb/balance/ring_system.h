@@ -14,7 +14,7 @@
 typedef struct {
   const mhb_balance *balance;
   mhb_block_cyclic  *blocks;
-  double            *row; /* [2][3 nb] two real rows of R D */
+  double            *row;     /* [2][3 nb] two real rows of R D */
   int                regular; /* 1: the last factors can be used */
   shb_arena          arena;
 } mhb_ring_system;
