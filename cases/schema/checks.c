@@ -316,6 +316,10 @@ static void check_mistuning(case_reader *r, int stages) {
     case_reader_issue(
         r, "mhb.stability",
         "is not judged for rings of different blades (rotor.mistuning); leave it out");
+  if (case_reader_given(r, "mhb.lasting") && file->mhb.lasting != MHB_LASTING_NEVER)
+    case_reader_issue(r, "mhb.lasting",
+                      "needs stability, which is not judged for rings of different blades "
+                      "(rotor.mistuning); leave it out and use shroudhb integrate");
 }
 
 bool case_check_values(case_reader *r, int stages) {

@@ -7,8 +7,8 @@
  *
  * A harmonic above 2m may be at a resonance. Those harmonics are estimated one by one
  * (higher_harmonics.h). Where they are not small, r is evaluated anew with them before the step. In
- * a ring of different blades those above 2m are not looked at, and the factors of the curve save the
- * Newton step (ring_truncation.h). */
+ * a ring of different blades those above 2m are not looked at. The factors of the curve save the
+ * Newton step there (ring_truncation.h). */
 #ifndef MHB_BALANCE_TRUNCATION_ERROR_H
 #define MHB_BALANCE_TRUNCATION_ERROR_H
 

@@ -714,6 +714,20 @@ static void mistuning(void **state) {
        "c.yaml:12:59: error: rotor.mistuning: has 2 keys; {file: NAME} goes with no other", 1},
   };
   check_faults(rows, COUNT(rows));
+  static const char lasting[] =
+      "modal: {file: c.yaml}\n"
+      "rotor: {mistuning: {deviation: 1 %, seed: 7}}\n"
+      "excitation: {engine_order: 1}\n"
+      "contact: {to: neighbour, mu: 0.3, ku: 1, kv: 1, n0: 1}\n"
+      "mhb: {frequency: [1, 2], lasting: always}\n";
+  char *said;
+  assert_int_equal(judge(lasting, strlen(lasting), &said), SHB_ERR_INPUT);
+  assert_non_null(strstr(said,
+                         "c.yaml:5:35: error: mhb.lasting: needs stability, which is not judged "
+                         "for rings of different blades (rotor.mistuning); leave it out and use "
+                         "shroudhb integrate\n"));
+  assert_non_null(strstr(said, "\n1 error\n"));
+  free(said);
 }
 
 int main(void) {
