@@ -716,7 +716,7 @@ static void mistuning(void **state) {
   check_faults(rows, COUNT(rows));
   static const char lasting[] =
       "modal: {file: c.yaml}\n"
-      "rotor: {mistuning: {deviation: 1 %, seed: 7}}\n"
+      "rotor: {blades: 4, mistuning: {deviation: 1 %, seed: 7}}\n"
       "excitation: {engine_order: 1}\n"
       "contact: {to: neighbour, mu: 0.3, ku: 1, kv: 1, n0: 1}\n"
       "mhb: {frequency: [1, 2], lasting: always}\n";
