@@ -12,6 +12,17 @@ static void fault(case_issues *issues, const case_node *node, const char *key, c
   case_issue_add(issues, node->line, node->column, key, "%s", text);
 }
 
+/* Members of a key with a mapping that are numbers. */
+static const case_key mapping_members[] = {
+    {.path = "rotor.mistuning.deviation", .type = CASE_NUMBER, .unit = ""},
+    {.path = "rotor.mistuning.seed", .type = CASE_INTEGER, .unit = ""}};
+
+static const case_key *member_of(const char *path) {
+  for (size_t i = 0; i < sizeof mapping_members / sizeof *mapping_members; i++)
+    if (strcmp(mapping_members[i].path, path) == 0) return &mapping_members[i];
+  return NULL;
+}
+
 /* The row of a path: indices become "[]", and an index at the end may choose a number of a list. */
 static const case_key *row_of(const char *path) {
   char   pattern[CASE_PATH];
@@ -169,7 +180,7 @@ static void read_range(case_issues *issues, const case_node *node, study_key *ke
 
 /* Set path, unit and kind of a varied key. False if the path is no number of a case. */
 bool study_key_start(case_issues *issues, const case_node *node, const char *path, study_key *key) {
-  const case_key *row = row_of(path);
+  const case_key *row = member_of(path) ? member_of(path) : row_of(path);
   *key                = (study_key){0};
   case_path(key->path, "%s", path);
   if (!row) {

@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "cases/peaks/exact_peak.h"
+#include "cases/peaks/worst_blade.h"
 #include "mhb/branches/forced_response.h"
 
 /* Harmonics of the sweeps, tried in turn until the peak can be solved beside the curve. 0: those of
@@ -164,7 +165,8 @@ static shb_status thin_curves(job *j, post_output output) {
       if (!is_kept(b, i, every)) continue;
       curve->branch[at]    = k;
       curve->frequency[at] = b->frequency[i];
-      curve->amplitude[at] = post_amplitude(r, b, i, output, post_first_harmonic(b));
+      curve->amplitude[at] = r->ring ? worst_blade_amplitude(r, b, i)
+                                     : post_amplitude(r, b, i, output, post_first_harmonic(b));
       curve->stable[at++]  = b->stable[i];
     }
   return SHB_OK;
@@ -263,7 +265,22 @@ static shb_status sweep_for(job *j, solved_peak *walked) {
   return fill(j, first, asked.harmonics, &peak);
 }
 
+/* A ring of different blades: its worst blade. */
+static shb_status ring_work(job *j) {
+  exact_peak peak;
+  for (int i = 0; i < j->n; i++) {
+    const study_quantity q = j->output[i].quantity;
+    SHB_CHECK(q == STUDY_PEAK || q == STUDY_FREQUENCY || q == STUDY_MODE_FREQUENCY, SHB_ERR_INPUT,
+              "%s: is not computed for a ring of different blades (rotor.mistuning); ask for peak, "
+              "of its worst blade, frequency or modes[I].frequency",
+              j->output[i].name);
+  }
+  SHB_TRY(worst_blade_peak(j->model, &j->response, &peak));
+  return fill(j, (post_output){0}, 0, &peak);
+}
+
 static shb_status work(job *j) {
+  if (j->model->ring) return ring_work(j);
   solved_peak walked = {0};
   shb_status  status = sweep_for(j, &walked);
   solved_peak_free(&walked);

@@ -283,8 +283,9 @@ shb_status modal_store_get(modal_store *s, const double *value, const case_file 
                            case_model *model, peak_field **field) {
   char digest[DIGEST_TEXT];
   digest_modes(file, s->spec->inputs, digest);
-  int at = entry_of(s, digest);
-  if (at < 0 || file->run_up) { /* the models of a run-up depend on the sweep */
+  int        at   = entry_of(s, digest);
+  const bool ring = file->mistuning.kind != CASE_TUNED;
+  if (at < 0 || file->run_up || ring) { /* they depend on the sweep, and on the deviations */
     if (at < 0) at = oldest(s);
     SHB_TRY(load(s, value, file, digest, at));
   }
@@ -294,5 +295,6 @@ shb_status modal_store_get(modal_store *s, const double *value, const case_file 
   model->settings                 = file->mhb;
   model->settings.run_up          = s->entry[at].model.run_up;
   model->settings.nodal_diameters = s->entry[at].model.disc;
+  if (ring) model->settings = s->entry[at].model.settings;
   return SHB_OK;
 }

@@ -2,11 +2,15 @@
 #include "cases/peaks/design_run.h"
 
 #include <math.h>
+#include <string.h>
 
+#include "cases/designs/study_keys.h"
 #include "mesh/base/constants.h"
+#include "mhb/amplification/ring_response.h"
 #include "mhb/branches/forced_response.h"
 #include "postproc/analysis/outputs.h"
 #include "tests/support/check.h"
+#include "tests/support/random_model.h"
 #include "tests/support/settings.h"
 #include "tests/support/three_degree.h"
 
@@ -109,9 +113,74 @@ static void the_end_of_a_range_is_solved_with_enough_harmonics(void **state) {
   modal_model_free(&model.model);
 }
 
+/* A ring of four blades of which the last three are equal, as rotor.mistuning gives it. */
+static case_model ring_of_blades(void) {
+  static const double deviation[] = {-0.02, 0.01, 0.01, 0.01};
+  case_model          model       = {.settings = random_settings(3)};
+  random_model(1, WITH_LEFT | WITH_RESIDUAL, 3, &model.tuned);
+  model.settings.blades       = 4;
+  model.settings.scale        = 2;
+  model.settings.frequency[0] = 1.25 / SHB_TWO_PI;
+  model.settings.frequency[1] = 1.55 / SHB_TWO_PI;
+  model.settings.stability    = MHB_STABILITY_NEVER;
+  model.settings.max_points   = 3000;
+  model.settings.tolerance    = 1e-8;
+  assert_ok(mhb_mistuned_ring_create(&model.tuned, &model.settings, deviation, 1, &model.ring));
+  model.model         = model.ring->whole;
+  model.settings.ring = model.ring;
+  return model;
+}
+
+/* The peak of a ring of different blades is that of its worst blade. */
+static void a_ring_has_the_peak_of_its_worst_blade(void **state) {
+  const study_output stress = {.quantity = STUDY_STRESS, .name = "stress"};
+  case_model         model  = ring_of_blades();
+  mhb_response      *r      = NULL;
+  mhb_settings       s      = model.settings;
+  design_study       one, refused;
+  (void)state;
+  study_design *design = run(&model, &one);
+  shb_status    status = mhb_ring_response(&s, NULL, NULL, NULL, NULL, &r);
+  assert_true(status == SHB_OK || status == SHB_NOT_CONVERGED);
+  const mhb_amplification *own = &r->branch[2].amplification;
+  printf("blade %d: %.6g, told error %.1e, factor %.3f\n", own->blade, design->value[0],
+         design->error[0] / design->value[0], own->factor);
+  assert_int_equal(design->state, STUDY_DONE);
+  assert_near(design->value[0], own->worst, 1e-14);
+  assert_near(design->value[1], own->worst_at, 1e-14);
+  assert_true(own->factor > 1 && design->error[0] > 0 && design->error[0] < design->value[0]);
+  double most = 0;
+  for (int i = 0; i < design->curve.n; i++) most = fmax(most, design->curve.amplitude[i]);
+  assert_near(most, own->worst, 1e-14);
+  mhb_response_destroy(r);
+  design_study_free(&one);
+  assert_ok(design_study_create(0, 1, 0, &refused));
+  design = design_study_add(&refused, NULL);
+  assert_ok(design_run(NULL, &model, NULL, 1, &stress, design));
+  assert_int_equal(design->state, STUDY_FAILED);
+  assert_non_null(strstr(design->reason, "stress: is not computed for a ring of different blades"));
+  design_study_free(&refused);
+  mhb_mistuned_ring_destroy(model.ring);
+  modal_model_free(&model.tuned);
+}
+
+/* A study may vary the members of rotor.mistuning that are numbers. */
+static void deviations_are_a_key_of_a_study(void **state) {
+  case_issues issues = {0};
+  case_node   node   = {0};
+  study_key   key;
+  (void)state;
+  assert_true(study_key_start(&issues, &node, "rotor.mistuning.deviation", &key));
+  assert_false(key.whole);
+  assert_true(study_key_start(&issues, &node, "rotor.mistuning.seed", &key));
+  assert_true(key.whole);
+}
+
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(no_peak_of_random_designs_is_missed),
-      cmocka_unit_test(the_end_of_a_range_is_solved_with_enough_harmonics)};
+      cmocka_unit_test(the_end_of_a_range_is_solved_with_enough_harmonics),
+      cmocka_unit_test(a_ring_has_the_peak_of_its_worst_blade),
+      cmocka_unit_test(deviations_are_a_key_of_a_study)};
   return cmocka_run_group_tests(tests, NULL, NULL);
 }
