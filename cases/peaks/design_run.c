@@ -250,6 +250,7 @@ static shb_status sweep_for(job *j, solved_peak *walked) {
       SHB_TRY(peak_walk(&j->model->model, &j->model->settings, first, j->from, walked));
       asked.walked = walked;
     }
+    asked.hasty = sweeps[i] > 0 && !j->from; /* another sweep follows */
     SHB_TRY(find_peak(j, first, asked, &peak));
     /* A detached curve that this sweep has not found. */
     if (is_known(j, &before) && !(peak.amplitude > before.amplitude)) {

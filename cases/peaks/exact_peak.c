@@ -447,7 +447,8 @@ shb_status exact_peak_find(const modal_model *model, const mhb_settings *setting
   fine_maxima maxima;
   *peak = (exact_peak){.amplitude = -1, .stable = -1};
   no_errors(peak);
-  shb_status status = fine_maxima_find(model, settings, response, output, first, &maxima);
+  shb_status status =
+      fine_maxima_find(model, settings, response, output, first, asked.hasty, &maxima);
   if (status == SHB_OK && asked.walked)
     status = fine_maxima_append(response, asked.walked, &maxima);
   candidate *c = calloc((size_t)maxima.n + 1, sizeof *c);

@@ -32,6 +32,7 @@ typedef struct {
   bool               multipliers, derivatives;
   peak_field        *field;     /* NULL: not asked for */
   int                harmonics; /* of the coarse curve at most, per period of the excitation */
+  bool               hasty;     /* as of fine_maxima_find */
   const solved_peak *walked;    /* from another design, joins the maxima; NULL: none */
   solved_peak       *solution;  /* out: that of the peak; NULL: not asked for */
 } exact_peak_asked;
