@@ -13,6 +13,12 @@
 static const double SLACK = 0.01, SPREAD = 3, LEAST = 0.6, UNKNOWN = 0.1;
 /* Part of the highest point from which on a maximum of the coarse curve is high. */
 static const double HIGH = 0.9;
+/* A curve with few harmonics whose contact opens is checked at each STRIDE-th point above this part
+ * of its highest. Superharmonic resonances of a soft contact may be missing in it: of 300 random
+ * contacts of z_notch_blade four missed a peak that is 1 to 37 % higher. Of these 2.3 to 36 % of the
+ * points had no fine solution. */
+static const double LOW = 0.15, MOST_LOST = 0.02;
+enum { STRIDE = 3, FEW = 9 };
 /* Accuracy of the samples: of the contact law, and of the residual. */
 static const double LAW = 1e-3, RESIDUAL = 1e-5;
 /* Between samples above this part of the highest there is one more. */
@@ -118,6 +124,36 @@ static void measure_error(work *w, fine_branch *b) {
     w->error          = fmax(w->error, good ? fabs(found[1] / own - 1) : UNKNOWN);
     if (!good) w->unsolved = fmax(w->unsolved, own);
   }
+}
+
+/* Whether a contact of a branch opens for a part of the period, at a point that is not low. */
+static bool opens(const work *w, const fine_branch *b) {
+  const int n = w->response->n_pairs;
+  for (int i = 0; i < b->branch->n_points; i++)
+    for (int a = 0; a < n && b->coarse[i] >= LOW * w->top; a++) {
+      double open = b->branch->state[3 * (i * n + a) + 2];
+      if (open > 0 && open < 1) return true;
+    }
+  return false;
+}
+
+/* Whether the curve with few harmonics is one that opens, and is left without a fine solution at
+ * more than a few of its points. It may then lack the highest peak. */
+static bool is_doubtful(work *w) {
+  int checked = 0, lost = 0;
+  if (w->harmonics > FEW) return false;
+  for (int k = 0; k < w->n; k++) {
+    fine_branch *b = &w->branch[k];
+    if (!opens(w, b)) continue;
+    for (int i = 0; i < b->branch->n_points; i += STRIDE) {
+      double      found[2];
+      curve_place place = place_of(b, i);
+      if (b->coarse[i] < LOW * w->top) continue;
+      checked++;
+      lost += !point_matcher_solve(b->matcher, &place, false, found);
+    }
+  }
+  return lost > MOST_LOST * checked;
 }
 
 /* All points that may be high, each with its neighbours. */
@@ -252,8 +288,8 @@ static shb_status sample_all(work *w, bool hasty, fine_maxima *out) {
       SHB_TRY(open_branch(w, branch));
   }
   for (int k = 0; k < w->n; k++) measure_error(w, &w->branch[k]);
-  out->missed = w->unsolved;
-  if (hasty && w->unsolved > HIGH * w->top) return SHB_OK;
+  out->missed = hasty && is_doubtful(w) ? w->top : w->unsolved;
+  if (hasty && out->missed > HIGH * w->top) return SHB_OK;
   for (int k = 0; k < w->n; k++) SHB_TRY(sample_points(w, &w->branch[k]));
   for (int k = 0; k < w->n; k++) SHB_TRY(fill_gaps(w, &w->branch[k]));
   for (int k = 0; k < w->n; k++) SHB_TRY(halve_steps(w, &w->branch[k]));

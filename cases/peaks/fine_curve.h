@@ -33,7 +33,8 @@ typedef struct {
  *   harmonics  in  of the fine curve, per period of the excitation; 0: those of the settings
  *   hasty      in  give up if a high maximum of the coarse curve has no fine solution beside it: no
  *                  maxima, and that one is missed. In 26 of 31 such designs of z_notch_blade it
- *                  could not be solved from its neighbours either
+ *                  could not be solved from its neighbours either. Likewise if the coarse curve is
+ *                  doubtful: its contact opens, and several points have no fine solution
  *   maxima     out to be freed in any case
  * Errors: SHB_ERR_IO no memory; those of mhb_balance_create. */
 shb_status fine_maxima_find(const modal_model *model, const mhb_settings *settings,
