@@ -14,9 +14,9 @@ static const double SLACK = 0.01, SPREAD = 3, LEAST = 0.6, UNKNOWN = 0.1;
 /* Part of the highest point from which on a maximum of the coarse curve is high. */
 static const double HIGH = 0.9;
 /* A curve with few harmonics whose contact opens is checked at each STRIDE-th point above this part
- * of its highest. Superharmonic resonances of a soft contact may be missing in it: of 300 random
- * contacts of z_notch_blade four missed a peak that is 1 to 37 % higher. Of these 2.3 to 36 % of the
- * points had no fine solution. */
+ * of its highest. It may lack superharmonic resonances of a soft contact. Of 300 random contacts of
+ * z_notch_blade four missed a peak that is 1 to 37 % higher; 2.3 to 36 % of the points had no fine
+ * solution there. */
 static const double LOW = 0.15, MOST_LOST = 0.02;
 enum { STRIDE = 3, FEW = 9 };
 /* Accuracy of the samples: of the contact law, and of the residual. */
