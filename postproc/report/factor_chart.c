@@ -51,9 +51,8 @@ static void draw(const mhb_samples *s, const post_plot *plot, double *x, double 
     plot_line(plot, classes, n, x, share, NULL);
     snprintf(classes, sizeof classes, "mark c%d", p);
     snprintf(name, sizeof name, "n0 = %s N", post_plain(n0, s->n0[p], 4));
-    const double at      = 0.1 + 0.8 * (p + 0.5) / s->preloads; /* labels do not overlap */
-    const int    beside  = (int)(at * (n / 2)) < n / 2 ? (int)(at * (n / 2)) : n / 2 - 1;
-    const double move[2] = {6, 4};
+    const int    rings = n / 2, beside = (int)((0.1 + 0.8 * (p + 0.5) / s->preloads) * rings);
+    const double move[2] = {8, 13};
     plot_text(plot, classes, x[2 * beside + 1], share[2 * beside + 1], move, "start", name);
   }
 }

@@ -6,7 +6,7 @@
  *
  * Every row is one curve of a ring of N blades with 7 harmonics at one preload. Deviations are 1 %.
  * Engine order N/8 keeps the inter-blade phase. The columns: points; ms of processor time a point;
- * the same a blade, and over that of the first row; points a minute and core; the wave's own time.
+ * the same a blade, and over that of the first row. Then points a minute and core; the wave's time.
  * Then come the residual and an error. It is the distance of the ring without deviations from the
  * travelling wave, relative. One thread computes, since waiting threads count as processor time.
  * Baseline: the wave. Goals: 20 ms a point at 40 blades; a cost linear in N; 500 points a minute
