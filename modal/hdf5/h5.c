@@ -225,6 +225,8 @@ static shb_status open_failed(const char *path) {
   h5_reason(reason, sizeof reason);
   if (strstr(reason, "truncated"))
     SHB_FAIL(SHB_ERR_IO, "%s: is truncated (%s); write or copy it again", path, reason);
+  if (strstr(reason, "unable to open file: name")) /* the system refuses, not the content */
+    SHB_FAIL(SHB_ERR_IO, "%s: cannot be opened (%s)", path, reason);
   if (strstr(reason, "lock"))
     SHB_FAIL(SHB_ERR_IO, "%s: is locked, another program has it open for writing", path);
   SHB_FAIL(SHB_ERR_IO, "%s: is damaged or truncated (%s); write or copy it again", path, reason);
@@ -238,7 +240,9 @@ static shb_status check_readable(const char *path) {
   close(fd);
   SHB_CHECK(known && S_ISREG(info.st_mode), SHB_ERR_IO, "%s: is not a file", path);
   SHB_CHECK(info.st_size > 0, SHB_ERR_IO, "%s: is empty, not an HDF5 file", path);
-  SHB_CHECK(H5Fis_hdf5(path) > 0, SHB_ERR_IO, "%s: is not an HDF5 file", path);
+  const htri_t is_hdf5 = H5Fis_hdf5(path); /* negative: it cannot be opened */
+  SHB_CHECK(is_hdf5 >= 0, SHB_ERR_IO, "%s: cannot be opened by HDF5", path);
+  SHB_CHECK(is_hdf5 > 0, SHB_ERR_IO, "%s: is not an HDF5 file", path);
   return SHB_OK;
 }
 

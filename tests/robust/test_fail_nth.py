@@ -2,7 +2,7 @@
 
 Usage: test_fail_nth.py FOLDER_OF_PROGRAMS LIBRARY CASE_FOLDER [MOST [STAGE]...]
 MOST calls of each function fail in turn; without it those are all calls. Without a stage: all of
-mhb, post, mesh, modal. Exit code 77: no h5py.
+mhb, post, mesh, modal. STAGE:FUNCTION takes one function only. Exit code 77: no h5py.
 
 A run must end with a code of its own and say why, or publish what it would have published.
 A result of another run lies in its way: it must be untouched, or replaced by a whole one. A sweep
@@ -26,13 +26,14 @@ from results import content
 
 BIN, LIBRARY, SCENE = (os.path.abspath(word) for word in sys.argv[1:4])
 MOST = int(sys.argv[4]) if len(sys.argv) > 4 else None
-STAGES = sys.argv[5:] or ['mhb', 'post', 'mesh', 'modal']
+WORDS = [word.partition(':') for word in sys.argv[5:] or ['mhb', 'post', 'mesh', 'modal']]
+STAGES = {stage: only for stage, _, only in WORDS} # the only function that fails; empty: all
 H5 = ('H5Fcreate', 'H5Fopen', 'H5Fclose', 'H5Gcreate2', 'H5Gopen2', 'H5Dcreate2', 'H5Dopen2',
       'H5Dwrite', 'H5Dread', 'H5Dclose', 'H5Screate_simple', 'H5Awrite', 'H5Aread')
 CALLS = ('malloc', 'open', 'write', 'close', 'fsync', 'rename', 'thread') + H5
 LIBRARIES = ('libgomp: Thread creation failed', 'MPI_Init', 'PMIX ERROR', 'orte_init')
 LINES = 12 # a refusal is short, also with warnings before it
-
+BLAMES = ('is not an HDF5 file', 'is damaged', 'is truncated') # the file, which is whole
 
 
 def program(stage):
@@ -79,7 +80,7 @@ def is_under_way(name):
         return file.attrs.get('finished', 1) == 0
 
 
-def verdict(code, said, name, old, whole):
+def verdict(call, code, said, name, old, whole):
     """What is wrong with a run; empty: nothing. `old` is the earlier result."""
     ended = library_ended(code, said)
     if code not in (0, 2, 3, 4) and not ended:
@@ -87,6 +88,8 @@ def verdict(code, said, name, old, whole):
     lines = [line for line in said.splitlines() if line.strip()]
     if code and not lines:
         return 'no reason given'
+    if call == 'open' and any(text in said for text in BLAMES):
+        return 'a whole file is blamed'
     if len(lines) > LINES and not ended:
         return f'{len(lines)} lines'
     left = [entry for entry in os.listdir('.') if '.tmp.' in entry]
@@ -117,7 +120,7 @@ def check(stage, case, name, earlier):
     whole = content(name)
     assert whole != old, (stage, 'the earlier result must differ')
     bad, runs = [], collections.Counter()
-    for call in CALLS:
+    for call in [STAGES[stage]] if STAGES[stage] else CALLS:
         for nth in chosen(counted(stage, words, call)):
             shutil.copy('old', name)
             try:
@@ -126,7 +129,7 @@ def check(stage, case, name, earlier):
                 bad.append((stage, call, nth, 'endless', ''))
                 continue
             runs[code] += 1
-            wrong = verdict(code, said, name, old, whole)
+            wrong = verdict(call, code, said, name, old, whole)
             if wrong:
                 bad.append((stage, call, nth, wrong, said[-400:]))
             for entry in os.listdir('.'):

@@ -506,6 +506,23 @@ static void test_disk_full(void **state) {
   assert_ok(open_and_close(scratch("after.h5")));
 }
 
+/* The temporary file of h5_create can no longer be opened when it is to be filled. */
+static void test_no_descriptor_left(void **state) {
+  (void)state;
+  struct rlimit before, none;
+  hid_t         file = create("late.h5.tmp.56");
+  assert_int_equal(access(scratch("late.h5.tmp.56"), F_OK), 0);
+  getrlimit(RLIMIT_NOFILE, &before);
+  none          = before;
+  none.rlim_cur = 0;
+  setrlimit(RLIMIT_NOFILE, &none);
+  shb_status status = h5_close(file);
+  setrlimit(RLIMIT_NOFILE, &before);
+  assert_int_equal(status, SHB_ERR_IO);
+  assert_non_null(strstr(shb_message(), "late.h5: cannot be written: Too many open files"));
+  assert_int_not_equal(access(scratch("late.h5.tmp.56"), F_OK), 0);
+}
+
 static void test_abandoned(void **state) {
   (void)state;
   int before = files_in_scratch();
@@ -597,6 +614,7 @@ int main(void) {
       cmocka_unit_test(test_truncated),
       cmocka_unit_test(test_no_folder),
       cmocka_unit_test(test_disk_full),
+      cmocka_unit_test(test_no_descriptor_left),
       cmocka_unit_test(test_abandoned),
       cmocka_unit_test(test_created_like_another),
       cmocka_unit_test(test_no_open_handles),
