@@ -2,8 +2,8 @@
 """Write ring.modal.h5: modes by nodal diameter of a ring of sectors that shroudhb did not mesh.
 
 A sector has a mass of the disc, held by springs to the axis and to the next ones. On it stands the
-blade mass of write_modal.py. Needs numpy and h5py. Replace frequency and shape by those of your FE program's
-cyclic symmetry: real part from the base sector, imaginary part from its duplicate.
+blade mass of write_modal.py. Needs numpy and h5py. Replace frequency and shape by those of your FE
+program's cyclic symmetry: real part from the base sector, imaginary part from its duplicate.
 """
 import h5py
 import numpy as np
