@@ -8,6 +8,7 @@
 
 #include "mesh/base/constants.h"
 #include "mhb/balance/ring_limit.h"
+#include "mhb/balance/stuck_solver.h"
 #include "mhb/numerics/fourier.h"
 #include "mhb/numerics/simd.h"
 #include "mhb/structure/ring_receptance.h"
@@ -134,6 +135,7 @@ shb_status mhb_balance_create_on(mhb_receptance *receptance, const mhb_settings 
 void mhb_balance_destroy(mhb_balance *b) {
   if (!b) return;
   mhb_receptance_product_destroy(b->product);
+  mhb_stuck_solver_destroy(b->stuck);
   if (b->owns_receptance) mhb_receptance_destroy(b->receptance);
   for (int i = 0; b->contacts && i < b->n_threads; i++)
     mhb_contact_evaluator_destroy(b->contacts[i]);
@@ -602,23 +604,37 @@ static double own_preload(const mhb_law *law) {
   return fmax(law->n0, 0) - law->mean_offset;
 }
 
-/* u_0 -= R_0 s0 of the stuck pairs. */
+/* u <- free_0 - R_0 s0 of the stuck pairs. */
 static void subtract_preload(const mhb_balance *b, int stuck, double complex *u) {
   memset(b->force_k, 0, sizeof *b->force_k * 3 * (size_t)b->n_pairs);
   for (int a = 0; a < b->n_pairs; a++)
-    if (is_stuck(b, a, stuck)) b->force_k[3 * a] = -own_preload(&b->law[a]);
-  mhb_receptance_product_of(b->receptance, 0, b->force_k, u);
+    if (is_stuck(b, a, stuck)) b->force_k[3 * a] = own_preload(&b->law[a]) * (b->product ? 1 : -1);
+  if (b->product)
+    mhb_receptance_motion(b->receptance, 0, b->force_k, u); /* without R_0 */
+  else
+    mhb_receptance_product_of(b->receptance, 0, b->force_k, u);
+}
+
+/* The same as solve_stuck for many pairs, without R_k. false: the way is not open. */
+static bool solve_many_stuck(mhb_balance *b, int k, const mhb_pair_kind *kind, double complex *u) {
+  const double *range = b->settings->frequency;
+  if (!b->product) return false;
+  if (!b->stuck && mhb_stuck_solver_create(b->receptance, b->m, &b->stuck) != SHB_OK) return false;
+  return mhb_stuck_solver_solve(b->stuck, k, 0.5 * SHB_TWO_PI * (range[0] + range[1]), b->law, kind,
+                                u);
 }
 
 /* u <- (I + R_k S)^-1 u */
-static shb_status solve_stuck(const mhb_balance *b, int k, int stuck, double complex *u) {
+static shb_status solve_stuck(mhb_balance *b, int k, int stuck, double complex *u) {
+  mhb_pair_kind kind[b->n_pairs];
+  for (int a = 0; a < b->n_pairs; a++)
+    kind[a] = is_stuck(b, a, stuck) ? MHB_PAIR_STUCK : MHB_PAIR_OPEN;
+  if (solve_many_stuck(b, k, kind, u)) return SHB_OK;
+  mhb_receptance_update(b->receptance, k);
   const int              n    = 3 * b->n_pairs;
   lapack_complex_double *A    = calloc((size_t)n * (size_t)n, sizeof *A);
   lapack_int            *ipiv = calloc((size_t)n, sizeof *ipiv);
   lapack_int             bad  = 1;
-  mhb_pair_kind          kind[b->n_pairs];
-  for (int a = 0; a < b->n_pairs; a++)
-    kind[a] = is_stuck(b, a, stuck) ? MHB_PAIR_STUCK : MHB_PAIR_OPEN;
   if (A && ipiv) {
     mhb_stick_matrix(b->n_pairs, b->law, kind, k,
                      b->receptance->R + (size_t)k * (size_t)n * (size_t)n, A);
@@ -645,7 +661,7 @@ static bool rests(const mhb_balance *b, int k) {
 
 /* Stuck: (I + R_k S) u_k = free_k - R_k s0, with s0 at k = 0 only. The mean friction is zero, the
  * smallest admissible one (contact/static_friction.h). */
-static shb_status linear_harmonic(const mhb_balance *b, int k, int stuck, double complex *u) {
+static shb_status linear_harmonic(mhb_balance *b, int k, int stuck, double complex *u) {
   const int n = 3 * b->n_pairs;
   memset(u, 0, sizeof *u * (size_t)n);
   if (rests(b, k)) return SHB_OK;
@@ -659,7 +675,7 @@ shb_status mhb_balance_linear_limit(mhb_balance *b, double value, int stuck, dou
   mhb_balance_set_value(b, value);
   mhb_receptance_set_frequency(b->receptance, b->eval->at.omega);
   for (int k = 0; k <= b->m; k++) {
-    if (!rests(b, k)) mhb_receptance_update(b->receptance, k);
+    if (!rests(b, k)) mhb_balance_update_probes(b, k);
     SHB_TRY(linear_harmonic(b, k, stuck, b->motion_k));
     put_harmonic(b, x, k, b->motion_k);
     for (int i = 0; i < 3 * b->n_pairs; i++) b->force_k[i] = 0;

@@ -41,27 +41,28 @@ typedef struct {
 } mhb_evaluation;
 
 typedef struct {
-  const mhb_settings     *settings;
-  mhb_receptance         *receptance; /* harmonics 0..m at least */
-  int                     owns_receptance;
-  mhb_receptance_product *product;  /* of many pairs; NULL: R is formed */
-  mhb_contact_evaluator  *contact;  /* forces to harmonic m: that of thread 0 */
-  mhb_contact_evaluator **contacts; /* [thread] */
-  int                     n_threads;
-  mhb_law                *law;               /* [pair] shares of the interface, at eval->at */
-  int                     m, n_pairs, nb, n; /* nb = 2m+1, n = 3 pairs nb unknowns */
-  mhb_parameter           parameter;         /* continuation parameter: meaning of `value` below */
-  int                     n_interfaces;
-  int                     n_laws;             /* counts changes of law */
-  double complex         *force_k, *motion_k; /* [3 pairs] one harmonic */
-  double complex         *response_k;         /* [3 pairs] of a ring; else NULL */
-  double complex         *lag; /* [blades][m + 1] of a ring; else NULL: exp(-j k b phi/nu), by which
+  const mhb_settings      *settings;
+  mhb_receptance          *receptance; /* harmonics 0..m at least */
+  int                      owns_receptance;
+  mhb_receptance_product  *product;  /* of many pairs; NULL: R is formed */
+  struct mhb_stuck_solver *stuck;    /* linear limits of many pairs; NULL: not used yet */
+  mhb_contact_evaluator   *contact;  /* forces to harmonic m: that of thread 0 */
+  mhb_contact_evaluator  **contacts; /* [thread] */
+  int                      n_threads;
+  mhb_law                 *law;               /* [pair] shares of the interface, at eval->at */
+  int                      m, n_pairs, nb, n; /* nb = 2m+1, n = 3 pairs nb unknowns */
+  mhb_parameter            parameter;         /* continuation parameter: meaning of `value` below */
+  int                      n_interfaces;
+  int                      n_laws;             /* counts changes of law */
+  double complex          *force_k, *motion_k; /* [3 pairs] one harmonic */
+  double complex          *response_k;         /* [3 pairs] of a ring; else NULL */
+  double complex      *lag; /* [blades][m + 1] of a ring; else NULL: exp(-j k b phi/nu), by which
                                 * the tuned wave lags at blade b */
-  const mhb_pair_kind    *assumed; /* [pair] kinds that stuck and open pairs are taken to have by
+  const mhb_pair_kind *assumed; /* [pair] kinds that stuck and open pairs are taken to have by
                                  * evaluations without derivative, without their law; or NULL */
-  mhb_evaluation         *eval;    /* in use: evaluations write it */
-  mhb_evaluation         *default_evaluation; /* in use after creation; owned */
-  shb_arena               arena;
+  mhb_evaluation      *eval;    /* in use: evaluations write it */
+  mhb_evaluation      *default_evaluation; /* in use after creation; owned */
+  shb_arena            arena;
 } mhb_balance;
 
 shb_status mhb_balance_create(const modal_model *model, const mhb_settings *settings,

@@ -47,10 +47,9 @@ static shb_status amplitudes(sampler *s, double value, double *out) {
   return SHB_OK;
 }
 
-static shb_status record(sampler *s, double value) {
-  double unused[s->n_outputs + 1];
+/* Record the last point of amplitudes. `later` points that follow it are recorded already. */
+static shb_status record(sampler *s, double value, int later) {
   double started = shb_seconds();
-  SHB_TRY(amplitudes(s, value, unused));
   for (int a = 0; a < s->balance->n_pairs; a++) {
     mhb_contact_info *info = &s->balance->eval->info[a];
     memset(info, 0, offsetof(mhb_contact_info, transition));
@@ -62,12 +61,14 @@ static shb_status record(sampler *s, double value) {
                      shb_seconds() - started));
   mhb_branch *branch                   = &s->response->branch[s->branch];
   branch->stable[branch->n_points - 1] = 1;
+  mhb_response_place(s->response, s->branch, branch->n_points - 1 - later);
   return SHB_OK;
 }
 
-/* Record everything in (lo, hi): halve while the middle is off the straight line. */
+/* Record everything in (lo, hi), where hi and `later` - 1 points behind it are recorded. Halve
+ * while the middle is off the straight line. */
 static shb_status refine(sampler *s, double lo, const double *at_lo, double hi, const double *at_hi,
-                         int depth) {
+                         int depth, int later) {
   double mid = 0.5 * (lo + hi), at_mid[s->n_outputs + 1];
   SHB_TRY(amplitudes(s, mid, at_mid));
   int rough = 0;
@@ -76,9 +77,9 @@ static shb_status refine(sampler *s, double lo, const double *at_lo, double hi, 
     rough |= fabs(at_mid[o] - line) > TOLERANCE * fmax(line, at_mid[o]);
   }
   if (!rough || depth == 0) return SHB_OK;
-  SHB_TRY(refine(s, lo, at_lo, mid, at_mid, depth - 1));
-  SHB_TRY(record(s, mid));
-  return refine(s, mid, at_mid, hi, at_hi, depth - 1);
+  SHB_TRY(record(s, mid, later));
+  SHB_TRY(refine(s, lo, at_lo, mid, at_mid, depth - 1, later + 1));
+  return refine(s, mid, at_mid, hi, at_hi, depth - 1, later);
 }
 
 /* First grid: in frequency a quarter of the narrowest half-power width, within reason. */
@@ -142,12 +143,12 @@ static int depth_of(double length, double narrowest) {
 static shb_status sample_grid(sampler *s, const grid *g, double narrowest) {
   double at_lo[s->n_outputs + 1], at_hi[s->n_outputs + 1];
   SHB_TRY(amplitudes(s, g->at[0], at_lo));
-  SHB_TRY(record(s, g->at[0]));
+  SHB_TRY(record(s, g->at[0], 0));
   for (int i = 1; i < g->n; i++) {
     const double lo = g->at[i - 1], hi = g->at[i];
     SHB_TRY(amplitudes(s, hi, at_hi));
-    SHB_TRY(refine(s, lo, at_lo, hi, at_hi, depth_of(hi - lo, narrowest)));
-    SHB_TRY(record(s, hi));
+    SHB_TRY(record(s, hi, 0));
+    SHB_TRY(refine(s, lo, at_lo, hi, at_hi, depth_of(hi - lo, narrowest), 1));
     memcpy(at_lo, at_hi, sizeof at_lo);
   }
   return SHB_OK;

@@ -33,11 +33,12 @@ shb_test(mhb/response modal_motion tests_models)
 shb_test(mhb/response face_wear tests_models)
 shb_test(mhb/response direct_stress tests_fem tests_models shb_modal)
 foreach(noun balance stick_stiffness condensation multistart newton ring_system subharmonics
-    truncation_error ring_truncation modal_error spatial_error)
+    truncation_error ring_truncation modal_error spatial_error stuck_solver)
   shb_test(mhb/balance ${noun} tests_models)
 endforeach()
 target_sources(test_mhb_balance_condensation PRIVATE bench/shroud_face.c)
 target_sources(test_mhb_balance_spatial_error PRIVATE bench/shroud_face.c)
+target_sources(test_mhb_balance_stuck_solver PRIVATE bench/shroud_face.c)
 shb_counts_allocations(test_mhb_balance_condensation)
 foreach(noun multipliers floquet disc_stability friction_limit hill linearised_law ring_band bloch
         hessenberg_qr curve_verdicts)
