@@ -631,17 +631,16 @@ static shb_status solve_stuck(mhb_balance *b, int k, int stuck, double complex *
     kind[a] = is_stuck(b, a, stuck) ? MHB_PAIR_STUCK : MHB_PAIR_OPEN;
   if (solve_many_stuck(b, k, kind, u)) return SHB_OK;
   mhb_receptance_update(b->receptance, k);
-  const int              n    = 3 * b->n_pairs;
-  lapack_complex_double *A    = calloc((size_t)n * (size_t)n, sizeof *A);
-  lapack_int            *ipiv = calloc((size_t)n, sizeof *ipiv);
-  lapack_int             bad  = 1;
-  if (A && ipiv) {
-    mhb_stick_matrix(b->n_pairs, b->law, kind, k,
-                     b->receptance->R + (size_t)k * (size_t)n * (size_t)n, A);
-    bad = LAPACKE_zgesv(LAPACK_COL_MAJOR, n, 1, A, n, ipiv, u, n);
-  }
-  free(A);
-  free(ipiv);
+  enum { FEW = 3 * MHB_MANY_PAIRS };
+  const int              n = 3 * b->n_pairs;
+  lapack_complex_double  few[n < FEW ? n * n : 1];
+  lapack_int             ipiv[n];
+  lapack_complex_double *A = n < FEW ? few : calloc((size_t)n * (size_t)n, sizeof *A);
+  SHB_CHECK(A, SHB_ERR_IO, "out of memory for %d stuck pairs", b->n_pairs);
+  mhb_stick_matrix(b->n_pairs, b->law, kind, k,
+                   b->receptance->R + (size_t)k * (size_t)n * (size_t)n, A);
+  const lapack_int bad = LAPACKE_zgesv_work(LAPACK_COL_MAJOR, n, 1, A, n, ipiv, u, n);
+  if (A != few) free(A);
   SHB_CHECK(bad == 0, SHB_ERR_INPUT, "the stuck system is singular at harmonic %d", k);
   return SHB_OK;
 }
