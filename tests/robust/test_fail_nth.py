@@ -1,7 +1,8 @@
 """robust.fail_nth: the n-th call of a function fails, in every stage of a small case.
 
 Usage: test_fail_nth.py FOLDER_OF_PROGRAMS LIBRARY CASE_FOLDER [MOST [STAGE]...]
-MOST calls of each function fail in turn; without it those are all calls. Without a stage: all of
+MOST calls of each function fail in turn, of a negative MOST the first ones; without it those are all
+calls. Without a stage: all of
 mhb, post, mesh, modal. STAGE:FUNCTION takes one function only. Exit code 77: no h5py.
 
 A run must end with a code of its own and say why, or publish what it would have published.
@@ -61,7 +62,9 @@ def counted(stage, words, call):
 
 
 def chosen(total):
-    """Which calls fail: all, or the first, the last and some between them."""
+    """Which calls fail: all; the first, the last and some between; the first ones (MOST < 0)."""
+    if MOST is not None and MOST < 0:
+        return range(1, min(total, -MOST) + 1)
     if MOST is None or total <= MOST:
         return range(1, total + 1)
     return sorted({1 + round(i * (total - 1) / max(MOST - 1, 1)) for i in range(MOST)})
