@@ -1,9 +1,9 @@
 """robust.fail_nth: the n-th call of a function fails, in every stage of a small case.
 
 Usage: test_fail_nth.py FOLDER_OF_PROGRAMS LIBRARY CASE_FOLDER [MOST [STAGE]...]
-MOST calls of each function fail in turn, of a negative MOST the first ones; without it those are all
-calls. Without a stage: all of
-mhb, post, mesh, modal. STAGE:FUNCTION takes one function only. Exit code 77: no h5py.
+MOST calls of each function fail in turn, of a negative MOST the first ones; without it all calls.
+Without a stage: all of mhb, post, mesh, modal. STAGE:FUNCTION takes one function only. Exit code
+77: no h5py.
 
 A run must end with a code of its own and say why, or publish what it would have published.
 A result of another run lies in its way: it must be untouched, or replaced by a whole one. A sweep
