@@ -16,7 +16,7 @@ static const double HIGH = 0.9;
 /* A curve with few harmonics whose contact opens is checked at each STRIDE-th point above this part
  * of its highest. It may lack superharmonic resonances of a soft contact. Of 300 random contacts of
  * z_notch_blade four missed a peak that is 1 to 37 % higher. There 2.3 to 36 % of the points had no
- * fine solution. A limit of a tenth misses one of them by 36 %, at half the cost of low preloads. */
+ * fine solution. A limit of a tenth misses one by 36 %, at half the cost of low preloads. */
 static const double LOW = 0.15, MOST_LOST = 0.02;
 enum { STRIDE = 3, FEW = 9 };
 /* Accuracy of the samples: of the contact law, and of the residual. */
