@@ -7,7 +7,8 @@
 #
 # The timeouts are ten times these times and more, because a busy machine runs a test slower.
 # A unit test that outgrows its label therefore fails at last.
-set(INTEGRATION_TESTS cases.study.study cases.study.eval cases.study.blade_study
+set(INTEGRATION_TESTS cases.study.study cases.study.samples cases.study.eval
+  cases.study.blade_study
   cases.peaks.design_run cases.field.field cases.commands.json cases.commands.revision
   cases.scenes.read_results
   mesh.io.source mesh.blade.hex_sweep mesh.blade.command fem.solver.factor modal.hdf5.h5

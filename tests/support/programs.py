@@ -1,5 +1,7 @@
-"""What Python tests of the programs share: runs of a program, and a case in a folder of its own."""
+"""What Python tests of the programs share: runs of a program, a case in a folder of its own, files
+that are read."""
 import contextlib
+import csv
 import os
 import shutil
 import subprocess
@@ -22,6 +24,24 @@ def write(name, text):
     with open(name, 'w') as out:
         out.write(text)
     return name
+
+
+def read(name):
+    """The bytes of a file."""
+    with open(name, 'rb') as source:
+        return source.read()
+
+
+def rows(name):
+    """The rows of a CSV file, each a dict of text."""
+    with open(name, newline='') as source:
+        return list(csv.DictReader(source))
+
+
+def near(value, expected, tolerance):
+    """AssertionError: a value, number or text, is further than that from the expected one."""
+    if abs(float(value) - float(expected)) > tolerance * abs(float(expected)):
+        raise AssertionError(f'{value} is not {expected} within {tolerance}')
 
 
 @contextlib.contextmanager

@@ -2,7 +2,6 @@
 
 Usage: test_blade_study.py BIN, with the programs in BIN.
 """
-import csv
 import glob
 import json
 import os
@@ -11,7 +10,7 @@ import sys
 import tempfile
 
 sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), '../../support'))
-from programs import run, write
+from programs import near, rows, run, write
 
 BIN = os.path.abspath(sys.argv[1])
 
@@ -43,16 +42,6 @@ outputs: [peak, frequency, stress, safety, g1]
 
 def program(name):
     return os.path.join(BIN, name)
-
-
-def rows(name):
-    with open(name, newline='') as source:
-        return list(csv.DictReader(source))
-
-
-def near(value, expected, tolerance):
-    if abs(float(value) - float(expected)) > tolerance * abs(float(expected)):
-        raise AssertionError(f'{value} is not {expected} within {tolerance}')
 
 
 def check_values():

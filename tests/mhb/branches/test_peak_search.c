@@ -122,6 +122,36 @@ static void a_detached_curve_is_found(void **state) {
   modal_model_free(&model);
 }
 
+/* Outlines are solved to a coarse residual. Their closed curves end after one round all the same:
+ * none has many more points than the exact one, whatever point it starts at. */
+static void a_detached_curve_in_outline_closes(void **state) {
+  (void)state;
+  modal_model   model;
+  mhb_response *own;
+  mhb_settings  s       = small_gap();
+  quiet_monitor monitor = quiet_monitor_create(0);
+  int           found = 0, most = 0;
+  s.outline    = true;
+  s.tolerance  = 1e-3;
+  s.max_points = 2000;
+  three_degree_model(&model);
+  for (int i = 0; i < 3; i++) {
+    double value = (1.014 + 0.008 * i) / SHB_TWO_PI;
+    assert_ok(main_curve(&model, &s, 9, NULL, &own));
+    assert_ok(mhb_secondary_branches_at(&model, &s, own, 1, &value, 20, &monitor.base));
+    for (int k = 1; k < own->n_branches; k++) {
+      assert_string_equal(own->branch[k].reason, "closed curve");
+      most = own->branch[k].n_points > most ? own->branch[k].n_points : most;
+      found++;
+    }
+    mhb_response_destroy(own);
+  }
+  print_message("%d closed curves, at most %d points\n", found, most);
+  assert_true(found >= 2);
+  assert_true(most < 200);
+  modal_model_free(&model);
+}
+
 /* What a stopped search found is dropped, with its records: a resumed run makes it anew. */
 static void a_stopped_search_leaves_nothing(void **state) {
   (void)state;
@@ -176,6 +206,7 @@ int main(void) {
       cmocka_unit_test(the_lowest_and_the_highest_peak),
       cmocka_unit_test(along_another_parameter),
       cmocka_unit_test(a_detached_curve_is_found),
+      cmocka_unit_test(a_detached_curve_in_outline_closes),
       cmocka_unit_test(a_stopped_search_leaves_nothing),
       cmocka_unit_test(every_run_searches),
   };
