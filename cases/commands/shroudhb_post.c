@@ -203,6 +203,7 @@ static shb_status gauge_publish(const case_file *file, const char *modal,
   char            *path  = case_output(file, ".gauge.csv");
   shb_status status = path ? SHB_OK : shb_fail(SHB_ERR_IO, __FILE__, __LINE__, "out of memory");
   if (status == SHB_OK) status = post_blade_field_read_motion(modal, &field);
+  if (status == SHB_OK) status = post_blade_field_match(&field, response, modal);
   if (status == SHB_OK) status = gauge_rows(file, &field, response, &table);
   if (status == SHB_OK) status = post_buffer_publish(&table, path);
   post_blade_field_free(&field);

@@ -33,13 +33,17 @@ static void read_modal_file(const char *path, offer *o) {
   hid_t    file;
   h5_shape shape;
   if (h5_open(path, &file) != SHB_OK) return; /* the run says why */
-  if (h5_exists(file, "/probe/name") &&
-      h5_read_strings(file, "/probe/name", &o->n_probes, &o->probe) != SHB_OK)
+  const bool disc = h5_exists(file, "/nodal_diameter_0");
+  hid_t      at   = disc ? H5Gopen2(file, "/nodal_diameter_0", H5P_DEFAULT) : file;
+  if (h5_exists(at, "probe") && h5_exists(at, "probe/name") &&
+      h5_read_strings(at, "probe/name", &o->n_probes, &o->probe) != SHB_OK)
     o->n_probes = 0;
-  if (h5_exists(file, "/modes/frequency") &&
-      h5_shape_of(file, "/modes/frequency", &shape) == SHB_OK && shape.rank == 1)
+  const bool modes = h5_exists(at, "modes");
+  if (modes && h5_exists(at, "modes/frequency") &&
+      h5_shape_of(at, "modes/frequency", &shape) == SHB_OK && shape.rank == 1)
     o->n_modes = (int)shape.dim[0];
-  o->has_no_stress = !h5_exists(file, "/mesh") || !h5_exists(file, "/modes/stress");
+  o->has_no_stress = !h5_exists(file, "/mesh") || !modes || !h5_exists(at, "modes/stress");
+  if (disc) H5Gclose(at);
   h5_close(file);
 }
 

@@ -1,9 +1,11 @@
 #include "fem/body/stress.h"
 
+#include <stdlib.h>
 #include <string.h>
 
 #include "fem/body/pressure.h"
 #include "fem/element/finite_strain.h"
+#include "mesh/base/vec3.h"
 
 /* Extrapolation from the points of a rule to the nodes by a linear function of the reference
  * coordinates: node value = sum_p at[node][p] value_p. */
@@ -83,53 +85,90 @@ typedef struct {
   double       *volume; /* [n_nodes] of the elements that count */
 } recovery;
 
-/* The stiffest of the materials at each node; of equal ones the first. */
+/* The region of greater E; of equal ones the first. */
+static int stiffer(const fem_body *body, int a, int b) {
+  const double Ea = body->material[a].E, Eb = body->material[b].E;
+  if (Ea != Eb) return Ea > Eb ? a : b;
+  return a < b ? a : b;
+}
+
+/* The stiffest of the materials at each node, on the cyclic sides of both sectors. */
 static void find_owners(const fem_body *body, int *owner) {
   const mesh_fe *mesh = body->mesh;
   const int      n    = body->element->n;
   for (int i = 0; i < mesh->n_nodes; i++) owner[i] = -1;
   for (int i = 0; i < n * mesh->n_elements; i++) {
     int *own = &owner[mesh->connectivity[i]], here = mesh->region[i / n];
-    if (*own < 0 || body->material[here].E > body->material[*own].E ||
-        (body->material[here].E == body->material[*own].E && here < *own))
-      *own = here;
+    *own = *own < 0 ? here : stiffer(body, *own, here);
+  }
+  for (int i = 0; mesh->image && i < mesh->n_nodes; i++) {
+    const int left = mesh->image[i];
+    if (left >= 0) owner[i] = owner[left] = stiffer(body, owner[i], owner[left]);
   }
 }
 
-static PetscErrorCode recovery_create(const fem_body *body, recovery **out) {
+static void recovery_destroy(recovery *r) {
+  if (!r) return;
+  free(r->volume);
+  free(r->owner);
+  free(r);
+}
+
+/* NULL: no memory. */
+static recovery *recovery_create(const fem_body *body) {
   const mesh_fe       *mesh     = body->mesh;
   const mesh_topology *topology = mesh_topology_of(mesh->kind);
-  PetscFunctionBeginUser;
-  PetscCall(PetscCalloc1(1, out));
-  PetscCall(PetscCalloc1(mesh->n_nodes, &(*out)->volume));
-  fit(topology, &body->element->straight, &(*out)->to[0]);
-  fit(topology, &body->element->curved, &(*out)->to[1]);
-  if (mesh->region) {
-    PetscCall(PetscMalloc1(mesh->n_nodes, &(*out)->owner));
-    find_owners(body, (*out)->owner);
+  recovery            *r        = calloc(1, sizeof *r);
+  if (!r) return NULL;
+  r->volume = calloc((size_t)mesh->n_nodes, sizeof *r->volume);
+  r->owner  = mesh->region ? malloc((size_t)mesh->n_nodes * sizeof *r->owner) : NULL;
+  if (!r->volume || (mesh->region && !r->owner)) {
+    recovery_destroy(r);
+    return NULL;
   }
-  PetscFunctionReturn(0);
-}
-
-static PetscErrorCode recovery_destroy(recovery *r) {
-  PetscFunctionBeginUser;
-  PetscCall(PetscFree(r->volume));
-  PetscCall(PetscFree(r->owner));
-  PetscCall(PetscFree(r));
-  PetscFunctionReturn(0);
+  fit(topology, &body->element->straight, &r->to[0]);
+  fit(topology, &body->element->curved, &r->to[1]);
+  if (r->owner) find_owners(body, r->owner);
+  return r;
 }
 
 static bool counts(const recovery *r, const mesh_fe *mesh, int element, int node) {
   return !r->owner || r->owner[node] == mesh->region[element];
 }
 
+/* Sums of the tensors of two partners on the cyclic sides <- those over the elements of both
+ * sectors, each in the axes of its side. */
+static void join_tensors(const mesh_fe *mesh, double complex phase,
+                         double complex right[FEM_STRESSES], double complex left[FEM_STRESSES]) {
+  double turn[3][3], back[3][3], part[2][FEM_STRESSES];
+  for (int i = 0; i < 3; i++)
+    for (int d = 0; d < 3; d++) turn[i][d] = back[d][i] = mesh->turn[i][d];
+  for (int c = 0; c < FEM_STRESSES; c++)
+    part[0][c] = creal(phase * left[c]), part[1][c] = cimag(phase * left[c]);
+  for (int p = 0; p < 2; p++) vec3_turn_tensor(turn, part[p]);
+  for (int c = 0; c < FEM_STRESSES; c++) {
+    right[c] += CMPLX(part[0][c], part[1][c]);
+    part[0][c] = creal(conj(phase) * right[c]), part[1][c] = cimag(conj(phase) * right[c]);
+  }
+  for (int p = 0; p < 2; p++) vec3_turn_tensor(back, part[p]);
+  for (int c = 0; c < FEM_STRESSES; c++) left[c] = CMPLX(part[0][c], part[1][c]);
+}
+
+/* The same of their volumes; false: node is not on cyclic_right. */
+static bool join_volumes(const mesh_fe *mesh, int node, recovery *r) {
+  if (!mesh->image || mesh->image[node] < 0) return false;
+  double *left    = &r->volume[mesh->image[node]];
+  r->volume[node] = *left = r->volume[node] + *left;
+  return true;
+}
+
 PetscErrorCode fem_nodal_stress(const fem_body *body, const double *u,
                                 double (*stress)[FEM_STRESSES]) {
   const mesh_fe *mesh = body->mesh;
-  recovery      *r;
+  recovery      *r    = recovery_create(body);
 
   PetscFunctionBeginUser;
-  PetscCall(recovery_create(body, &r));
+  PetscCheck(r, PETSC_COMM_SELF, PETSC_ERR_MEM, "no memory for nodal stresses");
   memset(stress, 0, (size_t)mesh->n_nodes * sizeof *stress);
   for (int e = 0; e < mesh->n_elements; e++) {
     const int *node = mesh->connectivity + body->element->n * (size_t)e;
@@ -145,9 +184,18 @@ PetscErrorCode fem_nodal_stress(const fem_body *body, const double *u,
       for (int c = 0; c < FEM_STRESSES; c++) stress[node[i]][c] += nodal[i][c];
     }
   }
+  for (int i = 0; i < mesh->n_nodes; i++) {
+    double complex right[FEM_STRESSES], left[FEM_STRESSES];
+    if (!join_volumes(mesh, i, r)) continue;
+    const int partner = mesh->image[i];
+    for (int c = 0; c < FEM_STRESSES; c++) right[c] = stress[i][c], left[c] = stress[partner][c];
+    join_tensors(mesh, 1, right, left);
+    for (int c = 0; c < FEM_STRESSES; c++)
+      stress[i][c] = creal(right[c]), stress[partner][c] = creal(left[c]);
+  }
   for (int i = 0; i < mesh->n_nodes; i++)
     for (int c = 0; c < FEM_STRESSES; c++) stress[i][c] /= r->volume[i];
-  PetscCall(recovery_destroy(r));
+  recovery_destroy(r);
   PetscFunctionReturn(0);
 }
 
@@ -215,21 +263,44 @@ static void add_changes(const fem_body *body, int e, const double *u, int n, con
   }
 }
 
+/* Up to LANES motions; of a sector each pair of them is the real and the imaginary part of a wave.
+ *   sum  out  [n_nodes], volumes times stresses */
+static void sum_changes(const fem_body *body, const double *u, double complex phase, int n,
+                        const double *motion, recovery *r, lanes (*sum)[FEM_STRESSES]) {
+  const mesh_fe *mesh = body->mesh;
+  memset(sum, 0, (size_t)mesh->n_nodes * sizeof *sum);
+  memset(r->volume, 0, (size_t)mesh->n_nodes * sizeof *r->volume);
+  for (int e = 0; e < mesh->n_elements; e++) add_changes(body, e, u, n, motion, r, sum);
+  for (int i = 0; i < mesh->n_nodes; i++) {
+    if (!join_volumes(mesh, i, r)) continue;
+    lanes *own = sum[i], *partner = sum[mesh->image[i]];
+    for (int l = 0; l < LANES; l += 2) {
+      double complex right[FEM_STRESSES], left[FEM_STRESSES];
+      for (int c = 0; c < FEM_STRESSES; c++) {
+        right[c] = CMPLX(own[c][l], own[c][l + 1]);
+        left[c]  = CMPLX(partner[c][l], partner[c][l + 1]);
+      }
+      join_tensors(mesh, phase, right, left);
+      for (int c = 0; c < FEM_STRESSES; c++) {
+        own[c][l] = creal(right[c]), own[c][l + 1] = cimag(right[c]);
+        partner[c][l] = creal(left[c]), partner[c][l + 1] = cimag(left[c]);
+      }
+    }
+  }
+}
+
 PetscErrorCode fem_nodal_stress_change(const fem_body *body, const double *u, int n,
                                        const double *motion, float *stress) {
   const size_t nodes = (size_t)body->mesh->n_nodes;
-  recovery    *r;
+  recovery    *r     = recovery_create(body);
   lanes(*sum)[FEM_STRESSES];
 
   PetscFunctionBeginUser;
-  PetscCall(recovery_create(body, &r));
+  PetscCheck(r, PETSC_COMM_SELF, PETSC_ERR_MEM, "no memory for nodal stresses");
   PetscCall(PetscMalloc1(nodes, &sum));
   for (int first = 0; first < n; first += LANES) {
     const int count = PetscMin(LANES, n - first);
-    memset(sum, 0, nodes * sizeof *sum);
-    memset(r->volume, 0, nodes * sizeof *r->volume);
-    for (int e = 0; e < body->mesh->n_elements; e++)
-      add_changes(body, e, u, count, motion + 3 * nodes * (size_t)first, r, sum);
+    sum_changes(body, u, 1, count, motion + 3 * nodes * (size_t)first, r, sum);
     for (int l = 0; l < count; l++) {
       float *out = stress + FEM_STRESSES * nodes * (size_t)(first + l);
       for (size_t i = 0; i < nodes; i++)
@@ -238,8 +309,52 @@ PetscErrorCode fem_nodal_stress_change(const fem_body *body, const double *u, in
     }
   }
   PetscCall(PetscFree(sum));
-  PetscCall(recovery_destroy(r));
+  recovery_destroy(r);
   PetscFunctionReturn(0);
+}
+
+/* Work arrays of waves. */
+typedef struct {
+  recovery *r;
+  double   *part; /* [LANES][n_nodes][3] */
+  lanes (*sum)[FEM_STRESSES];
+} wave_work;
+
+/* Up to LANES/2 waves. */
+static void change_waves(const fem_body *body, const double *u, double complex phase, int n,
+                         const double complex *motion, const wave_work *w, float complex *stress) {
+  const size_t nodes = (size_t)body->mesh->n_nodes, size = 3 * nodes;
+  for (size_t l = 0; l < (size_t)n; l++)
+    for (size_t i = 0; i < size; i++) {
+      w->part[2 * l * size + i]       = creal(motion[l * size + i]);
+      w->part[(2 * l + 1) * size + i] = cimag(motion[l * size + i]);
+    }
+  sum_changes(body, u, phase, 2 * n, w->part, w->r, w->sum);
+  for (size_t l = 0; l < (size_t)n; l++)
+    for (size_t i = 0; i < nodes; i++)
+      for (size_t c = 0; c < FEM_STRESSES; c++)
+        stress[FEM_STRESSES * (nodes * l + i) + c] =
+            CMPLXF((float)(w->sum[i][c][2 * l] / w->r->volume[i]),
+                   (float)(w->sum[i][c][2 * l + 1] / w->r->volume[i]));
+}
+
+shb_status fem_nodal_stress_wave(const fem_body *body, const double *u, double complex phase, int n,
+                                 const double complex *motion, float complex *stress) {
+  const size_t    nodes = (size_t)body->mesh->n_nodes;
+  const wave_work w     = {.r    = recovery_create(body),
+                           .part = malloc(LANES * 3 * nodes * sizeof *w.part),
+                           .sum  = malloc(nodes * sizeof *w.sum)};
+  const bool      made  = w.r && w.part && w.sum;
+  for (int first = 0; made && first < n; first += LANES / 2) {
+    const int    count = n - first < LANES / 2 ? n - first : LANES / 2;
+    const size_t at    = nodes * (size_t)first;
+    change_waves(body, u, phase, count, motion + 3 * at, &w, stress + FEM_STRESSES * at);
+  }
+  free(w.part);
+  free(w.sum);
+  recovery_destroy(w.r);
+  SHB_CHECK(made, SHB_ERR_IO, "out of memory for the stress of a wave");
+  return SHB_OK;
 }
 
 PetscErrorCode fem_unbalanced_forces(const fem_body *body, const double *u, double (*unbalanced)[3],

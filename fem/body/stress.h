@@ -3,9 +3,11 @@
 #ifndef FEM_BODY_STRESS_H
 #define FEM_BODY_STRESS_H
 
+#include <complex.h>
 #include <petscsys.h>
 
 #include "fem/body/rotating_body.h"
+#include "mesh/base/status.h"
 
 enum { FEM_STRESSES = 6 }; /* xx, yy, zz, xy, yz, xz, as VTK orders a symmetric tensor */
 
@@ -14,7 +16,8 @@ enum { FEM_STRESSES = 6 }; /* xx, yy, zz, xy, yz, xz, as VTK orders a symmetric 
  * In each element a linear function is fitted to the quadrature points by least squares and
  * evaluated at the nodes. A node gets the mean of its elements, weighted by volume. The error is of
  * second order in the element size; linear stress fields are exact. Where materials meet, only the
- * elements of the stiffest material count (greatest E; of equal ones the first).
+ * elements of the stiffest material count (greatest E; of equal ones the first). On cyclic sides
+ * the elements of both sectors count.
  *   u  in  [n_nodes][3] m
  * Errors: PETSC_ERR_MEM. */
 PetscErrorCode fem_nodal_stress(const fem_body *body, const double *u,
@@ -28,6 +31,15 @@ PetscErrorCode fem_nodal_stress(const fem_body *body, const double *u,
  * Errors: PETSC_ERR_MEM. */
 PetscErrorCode fem_nodal_stress_change(const fem_body *body, const double *u, int n,
                                        const double *motion, float *stress);
+
+/* The same of motions of a sector at one nodal diameter, the right side e^(-j theta) T times the
+ * left. Free of PETSc: several threads may each work on a nodal diameter.
+ *   phase   in   e^(-j theta) (fem/body/sector.h)
+ *   motion  in   [n][n_nodes][3]
+ *   stress  out  [n][n_nodes][6]
+ * Errors: SHB_ERR_IO no memory. */
+shb_status fem_nodal_stress_wave(const fem_body *body, const double *u, double complex phase, int n,
+                                 const double complex *motion, float complex *stress);
 
 /* Internal forces less loads at every node, clamped ones included, N. They vanish in equilibrium at
  * free nodes. At clamped nodes they are the clamp forces.

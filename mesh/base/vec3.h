@@ -1,4 +1,4 @@
-/* Vectors with three components. */
+/* Vectors with three components, and symmetric tensors of them. */
 #ifndef MESH_BASE_VEC3_H
 #define MESH_BASE_VEC3_H
 
@@ -28,6 +28,17 @@ static inline double vec3_distance(const double a[3], const double b[3]) {
   double c[3];
   vec3_minus(a, b, c);
   return vec3_norm(c);
+}
+
+/* s <- R s R^T of the tensor xx, yy, zz, xy, yz, xz. row: the rows of R. */
+static inline void vec3_turn_tensor(double row[3][3], double s[6]) {
+  static const int place[6][2]  = {{0, 0}, {1, 1}, {2, 2}, {0, 1}, {1, 2}, {0, 2}};
+  const double     matrix[3][3] = {{s[0], s[3], s[5]}, {s[3], s[1], s[4]}, {s[5], s[4], s[2]}};
+  for (int c = 0; c < 6; c++) {
+    double half[3];
+    for (int d = 0; d < 3; d++) half[d] = vec3_dot(matrix[d], row[place[c][1]]);
+    s[c] = vec3_dot(row[place[c][0]], half);
+  }
 }
 
 #endif

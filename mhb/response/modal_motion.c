@@ -121,8 +121,7 @@ shb_status mhb_modal_motion_keep(const modal_model *model, const mhb_settings *s
                                  mhb_response *response) {
   mhb_receptance *r      = NULL;
   shb_status      status = SHB_OK;
-  if (settings->run_up || settings->ring || settings->nodal_diameters)
-    return SHB_OK; /* no model of theirs is in a file */
+  if (settings->run_up || settings->ring) return SHB_OK; /* no model of theirs is in a file */
   for (int i = 0; status == SHB_OK && i < response->n_branches; i++)
     status = keep(model, settings, response, &response->branch[i], &r);
   mhb_receptance_destroy(r);

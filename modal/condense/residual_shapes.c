@@ -77,6 +77,13 @@ static shb_status write_shape(hid_t file, const modal_residual_shapes *s) {
   return status;
 }
 
+shb_status modal_residual_weight_write(hid_t file, const modal_residual_shapes *s) {
+  return h5_write_complex(file, "residual/load_weight",
+                          H5_SHAPE((hsize_t)s->n_harmonics + 1, (hsize_t)(s->n - s->n_contact)),
+                          s->load_weight, "-",
+                          "share of each load pattern in each harmonic of the load");
+}
+
 shb_status modal_residual_shapes_write(hid_t file, const modal_residual_shapes *s,
                                        const float *stress) {
   if (s->n == 0) return SHB_OK;
@@ -84,10 +91,7 @@ shb_status modal_residual_shapes_write(hid_t file, const modal_residual_shapes *
   SHB_TRY(h5_write_single(file, "residual/stress", H5_SHAPE((hsize_t)s->n, (hsize_t)s->n_nodes, 6),
                           stress, "Pa/N",
                           "Cauchy stress of the same: xx, yy, zz, xy, yz, xz in mesh axes"));
-  return h5_write_complex(file, "residual/load_weight",
-                          H5_SHAPE((hsize_t)s->n_harmonics + 1, (hsize_t)(s->n - s->n_contact)),
-                          s->load_weight, "-",
-                          "share of each load pattern in each harmonic of the load");
+  return modal_residual_weight_write(file, s);
 }
 
 void modal_residual_shapes_free(modal_residual_shapes *s) {

@@ -23,6 +23,9 @@ shb_status modal_residual_shapes_create(const fem_system *system, const modal_ei
 shb_status modal_residual_shapes_write(hid_t file, const modal_residual_shapes *shapes,
                                        const float *stress);
 
+/* The last of them alone. */
+shb_status modal_residual_weight_write(hid_t file, const modal_residual_shapes *shapes);
+
 void modal_residual_shapes_free(modal_residual_shapes *shapes); /* also on a zeroed struct */
 
 #endif

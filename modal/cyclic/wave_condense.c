@@ -34,17 +34,16 @@ typedef struct {
 
 /* ------------------------------------------------------------------ dofs */
 
-/* X[:, c] = C^H b_(first + c) for c < count; the other columns are zeroed. */
-static void spread(const workspace *w, int first, int count, double complex *X) {
-  const modal_dofs *dofs  = &w->column;
-  const size_t      order = w->op->order;
-  memset(X, 0, (size_t)w->batch * order * sizeof *X);
+void wave_spread(const wave_operator *op, const modal_dofs *dofs, int first, int count, int columns,
+                 double complex *X) {
+  const size_t order = op->order;
+  memset(X, 0, (size_t)columns * order * sizeof *X);
   for (int c = 0; c < count; c++)
     for (int e = dofs->start[first + c]; e < dofs->start[first + c + 1]; e++) {
-      const int      row = w->op->sector->row[dofs->node[e]];
+      const int      row = op->sector->row[dofs->node[e]];
       double complex v[3];
       if (row < 0) continue;
-      fem_sector_force(w->op->sector, dofs->node[e], w->op->phase, dofs->weight + 3 * (size_t)e, v);
+      fem_sector_force(op->sector, dofs->node[e], op->phase, dofs->weight + 3 * (size_t)e, v);
       for (int d = 0; d < 3; d++) X[(size_t)c * order + 3 * (size_t)row + (size_t)d] += v[d];
     }
 }
@@ -201,7 +200,7 @@ static void column_products(const workspace *w, const double complex *X, const d
 static shb_status compute_chain(workspace *w, int first, int count, bool single_batch) {
   const int       last = single_batch ? BLOCKS : BLOCKS - 1, b = w->batch;
   double complex *V = w->X, *next = w->Y;
-  spread(w, first, count, w->MX);
+  wave_spread(w->op, &w->column, first, count, w->batch, w->MX);
   SHB_TRY(solve(w, w->MX, V));
   for (int i = 0;; i++) {
     if (i < BLOCKS) {

@@ -9,6 +9,10 @@
 #include "modal/cyclic/wave_modes.h"
 #include "modal/model/nodal_diameters.h"
 
+/* X[:, c] = C^H b_(first + c) for c < count; the other of the columns are zeroed. */
+void wave_spread(const wave_operator *op, const modal_dofs *dofs, int first, int count, int columns,
+                 double complex *X);
+
 /* Fill model, imaginary and backward of modal/model/nodal_diameters.h, zeroed first, except probe
  * names, interfaces, normals and areas. backward is left zero where the load is real, both where
  * the wave is. Errors: SHB_ERR_IO no memory; SHB_INTERRUPTED. */

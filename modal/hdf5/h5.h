@@ -66,6 +66,9 @@ shb_status h5_write_single(hid_t at, const char *path, h5_shape shape, const flo
                            const char *units, const char *long_name);
 shb_status h5_write_complex(hid_t at, const char *path, h5_shape shape, const double complex *data,
                             const char *units, const char *long_name);
+shb_status h5_write_complex_single(hid_t at, const char *path, h5_shape shape,
+                                   const float complex *data, const char *units,
+                                   const char *long_name);
 shb_status h5_write_int(hid_t at, const char *path, h5_shape shape, const int *data,
                         const char *units, const char *long_name);
 /* Replace the values of a dataset of a created file. Its shape stays. Errors: as above; SHB_ERR_IO

@@ -96,6 +96,21 @@ shb_status h5_write_complex(hid_t at, const char *path, h5_shape shape, const do
   return describe(at, path, units, long_name);
 }
 
+shb_status h5_write_complex_single(hid_t at, const char *path, h5_shape shape,
+                                   const float complex *data, const char *units,
+                                   const char *long_name) {
+  hid_t type = H5Tcreate(H5T_COMPOUND, sizeof *data);
+  if (type < 0) return h5_failed(SHB_ERR_IO, at, path, "cannot be written");
+  shb_status status = SHB_OK;
+  if (H5Tinsert(type, "r", 0, H5T_NATIVE_FLOAT) < 0 ||
+      H5Tinsert(type, "i", sizeof(float), H5T_NATIVE_FLOAT) < 0)
+    status = h5_failed(SHB_ERR_IO, at, path, "cannot be written");
+  if (status == SHB_OK) status = write_dataset(at, path, shape, type, data);
+  H5Tclose(type);
+  SHB_TRY(status);
+  return describe(at, path, units, long_name);
+}
+
 shb_status h5_write_strings(hid_t at, const char *path, int n, const char *const *text,
                             const char *long_name) {
   hid_t type = h5_text_type();

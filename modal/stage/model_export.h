@@ -8,6 +8,13 @@
 #include "modal/condense/contact_patches.h"
 #include "modal/model/model.h"
 
+/* Mode shapes, their stresses, and those of the residual shapes, at every node. */
+typedef struct {
+  double *shape;           /* [m][n_nodes][3] kg^-1/2 */
+  float  *stress;          /* [m][n_nodes][6] Pa kg^-1/2 */
+  float  *residual_stress; /* [columns][n_nodes][6] Pa/N */
+} modal_fields;
+
 /* Write /mesh/{nodes [n][3], connectivity [e][10 or 20], sets/NAME [f][6 or 8]}, and with several
  * volumes /mesh/{volume, material [e]}. */
 shb_status modal_export_mesh(hid_t file, const mesh_fe *mesh);

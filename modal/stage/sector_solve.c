@@ -66,14 +66,14 @@ static shb_status list_diameters(const modal_settings *settings, modal_sector *o
   return status;
 }
 
-static shb_status expand_shapes(const wave_operator *op, const wave_modes *modes, int n_nodes,
-                                double complex **shape) {
-  const size_t stride = 3 * (size_t)n_nodes;
-  *shape              = malloc((size_t)modes->n * stride * sizeof **shape);
-  SHB_CHECK(*shape, SHB_ERR_IO, "out of memory for the mode shapes");
-  for (size_t i = 0; i < (size_t)modes->n; i++)
-    fem_sector_expand(op->sector, op->phase, modes->phi + i * modes->order, *shape + i * stride);
-  return SHB_OK;
+/* Residual columns are kept as long as those of all nodal diameters take less than this in the
+ * file. */
+static const double MOST_COLUMN_BYTES = 512 << 20;
+
+/* Whether nodal diameter 0 has columns, and all of them fit into the file. */
+static bool has_columns(const modal_result *first, int n) {
+  const double each = 9. * sizeof(float complex) * first->residual.n * first->residual.n_nodes;
+  return first->residual.n > 0 && n * each <= MOST_COLUMN_BYTES;
 }
 
 /* Modes and condensation with a factor. */
@@ -82,7 +82,8 @@ static shb_status solve_with(const work *w, int i, wave_operator *op, wave_modes
   modal_nodal_diameters *all    = &w->out->models;
   SHB_TRY(wave_modes_solve(op, &wanted, w->body, w->state, modes));
   w->out->check[i] = modes->check;
-  SHB_TRY(expand_shapes(op, modes, w->body->mesh->n_nodes, &w->out->shape[i]));
+  SHB_TRY(wave_fields_create(op, modes, &w->first->to, w->body, w->state,
+                             has_columns(w->first, all->n), &w->out->fields[i]));
   SHB_TRY(wave_condense(op, modes, &w->first->to, &all->model[i], &all->imaginary[i],
                         &all->backward[i]));
   return modal_label(w->settings, &w->first->patches, &all->model[i]);
@@ -105,9 +106,17 @@ static double bytes_each(const work *w) {
   return fem_hermitian_bytes(w->order) + 16 * order * (5 * modes + 40 + 4 * 30);
 }
 
+/* Bytes of the fields of all nodal diameters, which stay until the file is written. */
+static double bytes_kept(const work *w) {
+  const double nodes = w->body->mesh->n_nodes, modes = w->settings->modes;
+  return w->out->models.n * nodes *
+         (modes * (3. * sizeof(double complex) + 6. * sizeof(float complex)) +
+          w->first->residual.n * 9. * sizeof(float complex));
+}
+
 /* Threads that the memory allows; SHB_ERR_INPUT: not even one. */
 static shb_status count_threads(const work *w, int *threads) {
-  const double each = bytes_each(w), left = fem_memory_available();
+  const double each = bytes_each(w), left = fem_memory_available() - bytes_kept(w);
   *threads = omp_get_max_threads();
   SHB_CHECK(each <= left, SHB_ERR_INPUT,
             "a nodal diameter of this mesh (%d free nodes) needs %.3g GB more memory, and %.3g GB "
@@ -164,10 +173,10 @@ static PetscErrorCode drop_factor(modal_result *first) {
 static shb_status allocate(modal_sector *out, work *w) {
   const size_t n = (size_t)out->models.n;
   out->check     = calloc(n, sizeof *out->check);
-  out->shape     = calloc(n, sizeof *out->shape);
+  out->fields    = calloc(n, sizeof *out->fields);
   w->status      = calloc(n, sizeof *w->status);
   w->message     = calloc(n, sizeof *w->message);
-  SHB_CHECK(out->check && out->shape && w->status && w->message, SHB_ERR_IO,
+  SHB_CHECK(out->check && out->fields && w->status && w->message, SHB_ERR_IO,
             "out of memory for the nodal diameters");
   return SHB_OK;
 }
@@ -178,6 +187,7 @@ static shb_status solve(work *w, shb_progress *progress, modal_result *first) {
   w->out->models.model[0] = first->model;
   w->out->check[0]        = first->eigen.check;
   FEM_PETSC(drop_factor(first));
+  if (!has_columns(first, w->out->models.n)) first->residual.n = 0;
   FEM_PETSC(fem_sector_create(w->body, w->state, &first->system, &w->matrices));
   SHB_TRY(fem_hermitian_analyse(&w->matrices.blocks, &w->order));
   SHB_TRY(count_threads(w, &threads));
@@ -218,9 +228,9 @@ shb_status modal_sector_solve(const mesh_fe *mesh, const modal_settings *setting
 void modal_sector_free(modal_sector *sector, const modal_result *first) {
   if (sector->models.model && sector->models.model[0].frequency == first->model.frequency)
     memset(&sector->models.model[0], 0, sizeof sector->models.model[0]);
-  for (int i = 0; sector->shape && i < sector->models.n; i++) free(sector->shape[i]);
+  for (int i = 0; sector->fields && i < sector->models.n; i++) wave_fields_free(&sector->fields[i]);
   modal_nodal_diameters_free(&sector->models);
-  free(sector->shape);
+  free(sector->fields);
   free(sector->check);
   memset(sector, 0, sizeof *sector);
 }

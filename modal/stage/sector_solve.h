@@ -2,13 +2,14 @@
 #ifndef MODAL_STAGE_SECTOR_SOLVE_H
 #define MODAL_STAGE_SECTOR_SOLVE_H
 
+#include "modal/cyclic/wave_fields.h"
 #include "modal/model/nodal_diameters.h"
 #include "modal/stage/solve.h"
 
 typedef struct {
   modal_nodal_diameters models; /* model[0] is shared with the result of modal_solve */
   modal_check          *check;  /* [n] */
-  double complex      **shape;  /* [n] [modes][n_nodes][3] of all but the first, which is NULL */
+  wave_fields          *fields; /* [n], of the first zero */
 } modal_sector;
 
 /* Can a sector with these settings be solved? Errors: SHB_ERR_INPUT several speeds or ranks, modes:

@@ -36,16 +36,9 @@ static shb_status gather_shapes(const modal_result *result, int rank, double **s
   return SHB_OK;
 }
 
-/* Mode shapes, their stresses, and those of the residual shapes, on rank 0. */
-typedef struct {
-  double *shape;           /* [m][n_nodes][3] kg^-1/2 */
-  float  *stress;          /* [m][n_nodes][6] Pa kg^-1/2 */
-  float  *residual_stress; /* [columns][n_nodes][6] Pa/N */
-} fields;
-
 /* Compute the stresses about the static equilibrium, if there is one. */
 static shb_status find_stresses(const mesh_fe *mesh, const modal_settings *settings,
-                                const modal_result *result, fields *of) {
+                                const modal_result *result, modal_fields *of) {
   const int     modes = result->eigen.n, columns = result->residual.n;
   const size_t  each  = (size_t)mesh->n_nodes * FEM_STRESSES * sizeof(float);
   const double *state = result->deflection.at.displacement;
@@ -71,7 +64,7 @@ typedef struct {
   const modal_result   *result;
   const modal_speeds   *speeds; /* n = 0: one speed */
   const modal_sector   *sector; /* models.n = 0: a clamped blade */
-  const fields         *of;
+  const modal_fields   *of;
   const shb_provenance *provenance;
 } contents;
 
@@ -79,9 +72,9 @@ static shb_status write_all(hid_t file, const contents *c) {
   const mesh_fe      *mesh   = c->mesh;
   const modal_result *result = c->result;
   const modal_speeds *speeds = c->speeds;
-  const fields       *of     = c->of;
+  const modal_fields *of     = c->of;
   if (c->sector->models.n > 0)
-    return modal_sector_write(file, mesh, result, of->shape, c->sector, c->provenance);
+    return modal_sector_write(file, mesh, result, of, c->sector, c->provenance);
   SHB_TRY(modal_model_write(file, &result->model, c->provenance));
   if (speeds->n > 0) SHB_TRY(modal_speeds_write(file, speeds));
   SHB_TRY(modal_export_mesh(file, mesh));
@@ -159,7 +152,7 @@ static shb_status run(MPI_Comm comm, int rank, const char *out_path, const mesh_
   modal_result result;
   modal_speeds speeds = {0};
   modal_sector sector = {0};
-  fields       of     = {NULL, NULL, NULL};
+  modal_fields of     = {NULL, NULL, NULL};
   shb_status   status;
   if (mesh->image) SHB_TRY(modal_sector_check(comm, settings));
   if (settings->n_speeds > 1)
@@ -169,9 +162,9 @@ static shb_status run(MPI_Comm comm, int rank, const char *out_path, const mesh_
   if (status == SHB_OK) status = gather_shapes(&result, rank, &of.shape);
   if (status == SHB_OK && mesh->image)
     status = modal_sector_solve(mesh, settings, progress, &result, &sector);
-  else if (status == SHB_OK)
+  if (status == SHB_OK)
     status = modal_agree(comm, rank == 0 ? find_stresses(mesh, settings, &result, &of) : SHB_OK);
-  if (status == SHB_OK && !mesh->image)
+  if (status == SHB_OK)
     modal_phase(comm, progress, "stress", "%d modes at %d nodes", result.eigen.n, mesh->n_nodes);
   if (status == SHB_OK) {
     shb_progress_show(progress, 96, "writing %s", out_path);

@@ -4,32 +4,65 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "mhb/structure/relative_motion.h"
 #include "modal/hdf5/h5.h"
+#include "modal/model/nodal_diameters.h"
 
-static shb_status read_residual(hid_t file, post_blade_field *f) {
-  h5_shape stress = H5_SHAPE(0, (hsize_t)f->n_nodes, POST_STRESSES), weight = H5_SHAPE(0, 0);
-  if (!h5_exists(file, "/residual") || !h5_exists(file, "/residual/stress")) return SHB_OK;
-  SHB_TRY(h5_read_double(file, "/residual/stress", &stress, &f->residual));
-  SHB_TRY(h5_read_complex(file, "/residual/load_weight", &weight, &f->load_weight));
+enum { PATH = 96 };
+
+/* Sizes and weights of /residual in a group of the modal file. */
+static shb_status read_columns(hid_t at, post_blade_field *f) {
+  h5_shape stress, weight = H5_SHAPE(0, 0);
+  if (!h5_exists(at, "residual") || !h5_exists(at, "residual/stress")) return SHB_OK;
+  SHB_TRY(h5_shape_of(at, "residual/stress", &stress));
+  SHB_TRY(h5_read_complex(at, "residual/load_weight", &weight, &f->load_weight));
   f->n_column  = (int)stress.dim[0];
   f->n_contact = f->n_column - (int)weight.dim[1];
   f->n_load    = (int)weight.dim[0] - 1;
   SHB_CHECK(f->n_contact >= 0 && f->n_load >= 0, SHB_ERR_INPUT,
-            "/residual/load_weight has %d columns, /residual/stress %d; make the file again",
+            "residual/load_weight has %d columns, residual/stress %d; make the file again",
             (int)weight.dim[1], f->n_column);
   return SHB_OK;
 }
 
-static shb_status read_all(hid_t file, post_blade_field *f) {
-  h5_shape nodes = H5_SHAPE(0, 3);
-  if (!h5_exists(file, "/mesh") || !h5_exists(file, "/modes/stress")) return SHB_OK;
-  SHB_TRY(h5_read_double(file, "/mesh/nodes", &nodes, &f->nodes));
-  f->n_nodes      = (int)nodes.dim[0];
-  h5_shape stress = H5_SHAPE(0, nodes.dim[0], POST_STRESSES);
+static shb_status read_stress(hid_t file, post_blade_field *f) {
+  const hsize_t n      = (hsize_t)f->n_nodes;
+  h5_shape      stress = H5_SHAPE((hsize_t)f->n_modes, n, POST_STRESSES);
+  h5_shape      column = H5_SHAPE((hsize_t)f->n_column, n, POST_STRESSES);
   SHB_TRY(h5_read_double(file, "/modes/stress", &stress, &f->stress));
-  f->n_modes = (int)stress.dim[0];
-  SHB_TRY(read_residual(file, f));
-  h5_shape at_speed = H5_SHAPE(nodes.dim[0], POST_STRESSES);
+  if (f->n_column == 0) return SHB_OK;
+  return h5_read_double(file, "/residual/stress", &column, &f->residual);
+}
+
+/* The group of a modal model: the root, or that of nodal diameter 0. */
+static shb_status read_model(hid_t file, post_blade_field *f) {
+  hid_t at = H5Gopen2(file, f->n_waves > 0 ? "/nodal_diameter_0" : "/", H5P_DEFAULT);
+  SHB_CHECK(at >= 0, SHB_ERR_INPUT, "/nodal_diameter_0 is missing");
+  h5_shape   nodes = H5_SHAPE(0, 3), stress = {0};
+  shb_status status = SHB_OK;
+  if (h5_exists(at, "modes") && h5_exists(at, "modes/stress")) {
+    status = h5_read_double(file, "/mesh/nodes", &nodes, &f->nodes);
+    if (status == SHB_OK) status = h5_shape_of(at, "modes/stress", &stress);
+    f->n_nodes = status == SHB_OK ? (int)nodes.dim[0] : 0;
+    f->n_modes = status == SHB_OK ? (int)stress.dim[0] : 0;
+    if (status == SHB_OK) status = read_columns(at, f);
+  }
+  H5Gclose(at);
+  return status;
+}
+
+static shb_status read_all(hid_t file, post_blade_field *f) {
+  if (!h5_exists(file, "/mesh")) return SHB_OK;
+  SHB_TRY(h5_read_attribute_ints(file, "/", "nodal_diameters", &f->n_waves, &f->diameter));
+  SHB_TRY(h5_read_attribute_int(file, "/", "blades", 0, &f->blades));
+  SHB_TRY(read_model(file, f));
+  if (f->n_nodes == 0) return SHB_OK;
+  if (f->n_waves > 0) {
+    f->wave = calloc((size_t)f->n_waves, sizeof *f->wave);
+    SHB_CHECK(f->wave, SHB_ERR_IO, "out of memory for the nodal diameters");
+  } else
+    SHB_TRY(read_stress(file, f));
+  h5_shape at_speed = H5_SHAPE((hsize_t)f->n_nodes, POST_STRESSES);
   if (!h5_exists(file, "/static") || !h5_exists(file, "/static/nodal_stress")) return SHB_OK;
   return h5_read_double(file, "/static/nodal_stress", &at_speed, &f->static_stress);
 }
@@ -60,8 +93,8 @@ static shb_status read_motion(hid_t file, post_blade_field *f) {
   h5_shape      shape   = H5_SHAPE((hsize_t)f->n_modes, n, 3);
   h5_shape      columns = H5_SHAPE((hsize_t)f->n_column, n, 3), at_speed = H5_SHAPE(n, 3);
   SHB_TRY(read_mesh(file, f));
-  SHB_TRY(h5_read_double(file, "/modes/shape", &shape, &f->shape));
-  if (f->n_column > 0)
+  if (f->n_waves == 0) SHB_TRY(h5_read_double(file, "/modes/shape", &shape, &f->shape));
+  if (f->n_waves == 0 && f->n_column > 0)
     SHB_TRY(h5_read_double(file, "/residual/shape", &columns, &f->residual_shape));
   if (!h5_exists(file, "/static") || !h5_exists(file, "/static/displacement")) return SHB_OK;
   return h5_read_double(file, "/static/displacement", &at_speed, &f->static_displacement);
@@ -69,7 +102,7 @@ static shb_status read_motion(hid_t file, post_blade_field *f) {
 
 static shb_status read_file(const char *path, bool motion, post_blade_field *field) {
   hid_t file;
-  memset(field, 0, sizeof *field);
+  *field = (post_blade_field){.motion = motion};
   SHB_TRY(h5_open(path, &file));
   shb_status status = read_all(file, field);
   if (status == SHB_OK && motion && field->n_nodes > 0) status = read_motion(file, field);
@@ -86,6 +119,14 @@ shb_status post_blade_field_read_motion(const char *path, post_blade_field *fiel
 }
 
 void post_blade_field_free(post_blade_field *f) {
+  for (int i = 0; f->wave && i < f->n_waves; i++) {
+    free(f->wave[i].stress);
+    free(f->wave[i].residual);
+    free(f->wave[i].shape);
+    free(f->wave[i].residual_shape);
+  }
+  free(f->wave);
+  free(f->diameter);
   free(f->nodes);
   free(f->stress);
   free(f->residual);
@@ -157,7 +198,60 @@ shb_status post_blade_regions(const char *path, int n_nodes, int n, const char *
   return status;
 }
 
-shb_status post_blade_field_match(const post_blade_field *f, const mhb_response *response,
+/* One dataset of a nodal diameter, of the field's sizes. */
+static shb_status read_wave_data(hid_t file, int diameter, const char *name, int rows, int nodes,
+                                 int width, double complex **data) {
+  h5_shape shape = H5_SHAPE((hsize_t)rows, (hsize_t)nodes, (hsize_t)width);
+  char     path[PATH];
+  snprintf(path, sizeof path, "/nodal_diameter_%d/%s", diameter, name);
+  return h5_read_complex(file, path, &shape, data);
+}
+
+static shb_status read_wave(hid_t file, const post_blade_field *f, int i) {
+  post_wave_field *w = &f->wave[i];
+  const int        n = f->n_nodes, d = f->diameter[i], m = f->n_modes, c = f->n_column;
+  SHB_TRY(read_wave_data(file, d, "modes/stress", m, n, POST_STRESSES, &w->stress));
+  if (f->motion) SHB_TRY(read_wave_data(file, d, "modes/shape", m, n, 3, &w->shape));
+  if (c == 0) return SHB_OK;
+  SHB_TRY(read_wave_data(file, d, "residual/stress", c, n, POST_STRESSES, &w->residual));
+  if (f->motion) SHB_TRY(read_wave_data(file, d, "residual/shape", c, n, 3, &w->residual_shape));
+  return SHB_OK;
+}
+
+int post_blade_wave(const post_blade_field *f, const mhb_branch *b, int k, bool *backward) {
+  *backward = false;
+  if (f->n_waves == 0) return 0;
+  const mhb_settings own = {
+      .engine_order = f->engine_order, .blades = f->blades, .subharmonics = b->order};
+  const long shift = mhb_wave_shift(&own);
+  const long wave  = k * ((f->engine_order + f->blades * shift) / b->order);
+  const int  n     = modal_nodal_diameter(wave, f->blades);
+  *backward        = (wave - n) % f->blades != 0;
+  for (int i = 0; i < f->n_waves; i++)
+    if (f->diameter[i] == n) return i;
+  return -1;
+}
+
+/* The nodal diameters that the kept points of a branch need. */
+static shb_status read_waves(hid_t file, const post_blade_field *f, const mhb_branch *b,
+                             const char *path) {
+  int top = -1;
+  for (int a = 0; a < b->modal.n; a++) {
+    const int here = post_blade_harmonics(b, f->n_modes, a);
+    if (here > top) top = here;
+  }
+  for (int k = 0; k <= top; k++) {
+    bool      backward;
+    const int i = post_blade_wave(f, b, k, &backward);
+    SHB_CHECK(i >= 0, SHB_ERR_INPUT,
+              "%s: lacks the nodal diameter of harmonic %d of the response; run shroudhb mhb again",
+              path, k);
+    if (!f->wave[i].stress) SHB_TRY(read_wave(file, f, i));
+  }
+  return SHB_OK;
+}
+
+shb_status post_blade_field_match(post_blade_field *f, const mhb_response *response,
                                   const char *path) {
   SHB_CHECK(f->n_modes == response->n_modes, SHB_ERR_INPUT,
             "%s: has the stress of %d modes, but the response %d modes; run shroudhb mhb again",
@@ -168,7 +262,15 @@ shb_status post_blade_field_match(const post_blade_field *f, const mhb_response 
               "%s: /residual has %d contact dofs, but the response %d; run shroudhb mhb again",
               path, f->n_contact, m->n_contact);
   }
-  return SHB_OK;
+  if (f->n_waves == 0) return SHB_OK;
+  hid_t file;
+  f->engine_order = response->engine_order;
+  SHB_TRY(h5_open(path, &file));
+  shb_status status = SHB_OK;
+  for (int i = 0; status == SHB_OK && i < response->n_branches; i++)
+    status = read_waves(file, f, &response->branch[i], path);
+  h5_close(file);
+  return status;
 }
 
 int post_blade_harmonics(const mhb_branch *b, int n_modes, int kept) {
@@ -242,12 +344,59 @@ static shb_status sum_up(const post_blade_field *f, const mhb_branch *b, int kep
   return status;
 }
 
+/* sum[width] = or += sum of weight[rows] field[rows][width] */
+static void add_wave(int rows, int width, const double complex *weight, const double complex *field,
+                     bool add, double complex *sum) {
+  const double complex one = 1, beta = add;
+  if (rows > 0)
+    cblas_zgemv(CblasRowMajor, CblasTrans, rows, width, &one, field, width, weight, 1, &beta, sum,
+                1);
+}
+
+/* One harmonic of a disc: out[2][width], real and imaginary.
+ *   scratch  [n_modes + n_column + width] */
+static void sum_wave(const post_blade_field *f, const mhb_branch *b, int kept, int k,
+                     int components, double complex *scratch, double *out) {
+  bool                   backward;
+  const post_wave_field *w = &f->wave[post_blade_wave(f, b, k, &backward)];
+  const size_t           m = (size_t)f->n_modes, n = m + (size_t)f->n_column;
+  const int              width = components * f->n_nodes;
+  const bool             moves = components == 3;
+  double complex        *sum   = scratch + n;
+  memcpy(scratch,
+         b->modal.amplitude + ((size_t)kept * ((size_t)b->n_harmonics + 1) + (size_t)k) * m,
+         m * sizeof *scratch);
+  post_blade_forces(f, b, kept, k, scratch + m);
+  /* conj(field) q is the conjugate of field conj(q) */
+  for (size_t i = 0; i < n && backward; i++) scratch[i] = conj(scratch[i]);
+  add_wave(f->n_modes, width, scratch, moves ? w->shape : w->stress, false, sum);
+  add_wave(f->n_column, width, scratch + m, moves ? w->residual_shape : w->residual, true, sum);
+  for (int i = 0; i < width; i++) {
+    out[i]         = creal(sum[i]);
+    out[width + i] = backward ? -cimag(sum[i]) : cimag(sum[i]);
+  }
+}
+
+static shb_status sum_waves(const post_blade_field *f, const mhb_branch *b, int kept,
+                            int components, double *out) {
+  const size_t    width = (size_t)components * (size_t)f->n_nodes;
+  double complex *scratch =
+      malloc(((size_t)f->n_modes + (size_t)f->n_column + width) * sizeof *scratch);
+  SHB_CHECK(scratch, SHB_ERR_IO, "out of memory for the field of a point");
+  for (int k = 0; k <= post_blade_harmonics(b, f->n_modes, kept); k++)
+    sum_wave(f, b, kept, k, components, scratch, out + 2 * (size_t)k * width);
+  free(scratch);
+  return SHB_OK;
+}
+
 shb_status post_blade_stress(const post_blade_field *f, const mhb_branch *b, int kept,
                              double *out) {
+  if (f->n_waves > 0) return sum_waves(f, b, kept, POST_STRESSES, out);
   return sum_up(f, b, kept, POST_STRESSES, f->stress, f->residual, out);
 }
 
 shb_status post_blade_displacement(const post_blade_field *f, const mhb_branch *b, int kept,
                                    double *out) {
+  if (f->n_waves > 0) return sum_waves(f, b, kept, 3, out);
   return sum_up(f, b, kept, 3, f->shape, f->residual_shape, out);
 }

@@ -11,6 +11,15 @@
 /* Components xx, yy, zz, xy, yz, xz. */
 enum { POST_STRESSES = 6 };
 
+/* Fields of one nodal diameter of a disc, as those of a blade below; all NULL where no harmonic of
+ * the response has it. */
+typedef struct {
+  double complex *stress, *residual;
+  double complex *shape, *residual_shape; /* with motion */
+} post_wave_field;
+
+/* Of a disc the fields are those of one sector. They are in wave, and stress, residual, shape and
+ * residual_shape are NULL. */
 typedef struct {
   int             n_nodes, n_modes;    /* n_nodes = 0: the file has no stresses */
   int             n_contact, n_column; /* columns of /residual: contact dofs, load patterns */
@@ -20,6 +29,13 @@ typedef struct {
   double         *residual;            /* [n_column][n][6] Pa/N */
   double complex *load_weight;         /* [K + 1][n_column - n_contact] */
   double         *static_stress;       /* [n][6] Pa; NULL at rest */
+  /* of a disc; they come with post_blade_field_match */
+  int              n_waves;      /* nodal diameters in the file; 0: a blade without a disc */
+  int              blades;       /* N */
+  int              engine_order; /* of the response */
+  int             *diameter;     /* [n_waves] */
+  post_wave_field *wave;         /* [n_waves] */
+  bool             motion;       /* whether shapes are wanted */
   /* only of post_blade_field_read_motion */
   mesh_fe mesh;                /* kind, elements and nodes; owns the connectivity only */
   double *shape;               /* [n_modes][n][3] kg^-1/2 */
@@ -34,10 +50,15 @@ shb_status post_blade_field_read(const char *path, post_blade_field *field);
 shb_status post_blade_field_read_motion(const char *path, post_blade_field *field);
 void       post_blade_field_free(post_blade_field *field); /* also on a zeroed struct */
 
-/* SHB_ERR_INPUT unless the response has as many modes and contact dofs as the field; path of the
- * modal file, for the message. */
-shb_status post_blade_field_match(const post_blade_field *field, const mhb_response *response,
+/* SHB_ERR_INPUT unless the response has as many modes and contact dofs as the field. Of a disc, the
+ * nodal diameters that its kept points need are read from the modal file at path. Errors: those of
+ * h5_open and h5_read_complex too. */
+shb_status post_blade_field_match(post_blade_field *field, const mhb_response *response,
                                   const char *path);
+
+/* Index in field->wave of the nodal diameter of harmonic k of a branch. -1: the file lacks it. Of a
+ * blade without a disc it is 0. *backward: the harmonic has the conjugate fields. */
+int post_blade_wave(const post_blade_field *field, const mhb_branch *branch, int k, bool *backward);
 
 /* The highest harmonic in which anything moves at a kept point. */
 int post_blade_harmonics(const mhb_branch *branch, int n_modes, int kept);

@@ -103,14 +103,37 @@ static double apply(const functional *f, const double *displacement) {
   return sum;
 }
 
+static double complex apply_to_wave(const functional *f, const double complex *displacement) {
+  double complex sum = 0;
+  for (int i = 0; i < f->n; i++)
+    for (int d = 0; d < 3; d++)
+      sum += f->row[i][d] * displacement[3 * (size_t)f->node[i] + (size_t)d];
+  return sum;
+}
+
+static void evaluate_wave(const post_blade_field *field, const functional *f, int i,
+                          post_gauge *gauge) {
+  const post_wave_field *w = &field->wave[i];
+  const size_t           n = 3 * (size_t)field->n_nodes, m = (size_t)field->n_modes;
+  const size_t           columns = (size_t)field->n_column;
+  if (!w->shape) return; /* no harmonic has it */
+  for (size_t k = 0; k < m; k++)
+    gauge->mode[(size_t)i * m + k] = apply_to_wave(f, w->shape + n * k);
+  for (size_t c = 0; c < columns; c++)
+    gauge->residual[(size_t)i * columns + c] = apply_to_wave(f, w->residual_shape + n * c);
+}
+
 static shb_status evaluate(const post_blade_field *field, const functional *f, post_gauge *gauge) {
-  const size_t n  = 3 * (size_t)field->n_nodes;
-  gauge->mode     = malloc((size_t)field->n_modes * sizeof *gauge->mode + 1);
-  gauge->residual = malloc((size_t)field->n_column * sizeof *gauge->residual + 1);
+  const size_t n     = 3 * (size_t)field->n_nodes,
+               waves = field->n_waves > 0 ? (size_t)field->n_waves : 1;
+  gauge->mode        = calloc(waves * (size_t)field->n_modes + 1, sizeof *gauge->mode);
+  gauge->residual    = calloc(waves * (size_t)field->n_column + 1, sizeof *gauge->residual);
   SHB_CHECK(gauge->mode && gauge->residual, SHB_ERR_IO, "out of memory for the gauge %s",
             gauge->name);
-  for (int i = 0; i < field->n_modes; i++) gauge->mode[i] = apply(f, field->shape + n * (size_t)i);
-  for (int c = 0; c < field->n_column; c++)
+  for (int i = 0; i < field->n_waves; i++) evaluate_wave(field, f, i, gauge);
+  for (int i = 0; i < field->n_modes && field->shape; i++)
+    gauge->mode[i] = apply(f, field->shape + n * (size_t)i);
+  for (int c = 0; c < field->n_column && field->residual_shape; c++)
     gauge->residual[c] = apply(f, field->residual_shape + n * (size_t)c);
   gauge->at_speed = field->static_displacement ? apply(f, field->static_displacement) : NAN;
   return SHB_OK;
@@ -168,10 +191,16 @@ shb_status post_gauge_strain(const post_blade_field *field, const post_gauge *ga
   double complex       *force   = malloc(columns * sizeof *force + 1);
   SHB_CHECK(force, SHB_ERR_IO, "out of memory for the gauge %s", gauge->name);
   for (size_t k = 0; k < K; k++) {
-    strain[k] = 0;
-    for (size_t i = 0; i < m; i++) strain[k] += q[k * m + i] * gauge->mode[i];
+    bool      backward;
+    const int wave = post_blade_wave(field, b, (int)k, &backward);
+    strain[k]      = 0;
+    if (wave < 0) continue; /* above those that move */
+    const double complex *mode     = gauge->mode + (size_t)wave * m;
+    const double complex *residual = gauge->residual + (size_t)wave * columns;
+    for (size_t i = 0; i < m; i++) strain[k] += q[k * m + i] * (backward ? conj(mode[i]) : mode[i]);
     post_blade_forces(field, b, kept, (int)k, force);
-    for (size_t c = 0; c < columns; c++) strain[k] += force[c] * gauge->residual[c];
+    for (size_t c = 0; c < columns; c++)
+      strain[k] += force[c] * (backward ? conj(residual[c]) : residual[c]);
   }
   free(force);
   return SHB_OK;

@@ -8,21 +8,21 @@
 
 /* Where a gauge is wanted, and where it is. */
 typedef struct {
-  const char *name;
-  double      at[3];        /* m, mesh axes */
-  double      direction[3]; /* of any length */
-  double      foot[3];      /* m, nearest point of the surface */
-  double      along[3];     /* unit vector along the surface: direction without its normal part */
-  double     *mode;         /* [n_modes] kg^-1/2/m: strain of each mode */
-  double     *residual;     /* [n_column] 1/N */
-  double      at_speed;     /* static strain */
+  const char     *name;
+  double          at[3];        /* m, mesh axes */
+  double          direction[3]; /* of any length */
+  double          foot[3];      /* m, nearest point of the surface */
+  double          along[3]; /* unit vector along the surface: direction without its normal part */
+  double complex *mode; /* [wave][n_modes] kg^-1/2/m: strain of each mode; one wave of a blade */
+  double complex *residual; /* [wave][n_column] 1/N */
+  double          at_speed; /* static strain */
 } post_gauge;
 
 /* Place a gauge and evaluate its modes. The strain is along . sym(grad u) along of the element's
  * shape functions at the foot; nothing is averaged over elements. The field is one of
- * post_blade_field_read_motion. SHB_ERR_INPUT: the point is farther from the surface than
- * MESH_FE_NEAR times the size of the blade, or the direction is normal to the surface. SHB_ERR_IO:
- * no memory. */
+ * post_blade_field_read_motion, of a disc after post_blade_field_match. SHB_ERR_INPUT: the point is
+ * farther from the surface than MESH_FE_NEAR times the size of the blade, or the direction is
+ * normal to the surface. SHB_ERR_IO: no memory. */
 shb_status post_gauge_place(const post_blade_field *field, post_gauge *gauge);
 void       post_gauge_free(post_gauge *gauge);
 

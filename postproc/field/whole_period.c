@@ -87,22 +87,11 @@ void post_period_turn_vectors(const post_period *p, int blade, int n, double *ve
   }
 }
 
-/* s <- R s R^T; components xx, yy, zz, xy, yz, xz. */
-static void turn_stress(double row[3][3], double s[POST_STRESSES]) {
-  static const int place[POST_STRESSES][2] = {{0, 0}, {1, 1}, {2, 2}, {0, 1}, {1, 2}, {0, 2}};
-  const double     matrix[3][3] = {{s[0], s[3], s[5]}, {s[3], s[1], s[4]}, {s[5], s[4], s[2]}};
-  for (int c = 0; c < POST_STRESSES; c++) {
-    double half[3];
-    for (int d = 0; d < 3; d++) half[d] = vec3_dot(matrix[d], row[place[c][1]]);
-    s[c] = vec3_dot(row[place[c][0]], half);
-  }
-}
-
 void post_period_turn_stresses(const post_period *p, int blade, int n, double *stresses) {
   double row[3][3];
   if (blade == 0) return;
   rotation(p, blade, row);
-  for (int i = 0; i < n; i++) turn_stress(row, stresses + POST_STRESSES * (size_t)i);
+  for (int i = 0; i < n; i++) vec3_turn_tensor(row, stresses + POST_STRESSES * (size_t)i);
 }
 
 void post_period_at(const post_period *p, int blade, double instant, double *displacement,

@@ -55,7 +55,10 @@ static shb_status add_model(const post_job *job, work *w) {
   if (!job->modal) return SHB_OK;
   SHB_TRY(modal_model_read(job->modal, &w->model));
   if (w->model.n_pairs == w->response->n_pairs) w->analysis->area = w->model.area;
-  return job->html ? post_blade_field_read_motion(job->modal, &w->field) : SHB_OK;
+  if (!job->html) return SHB_OK;
+  SHB_TRY(post_blade_field_read_motion(job->modal, &w->field));
+  if (w->field.n_waves > 0) post_blade_field_free(&w->field); /* the picture has real modes */
+  return SHB_OK;
 }
 
 /* Frequencies of the ring with stuck contacts over the nodal diameter. */

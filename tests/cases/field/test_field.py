@@ -49,6 +49,29 @@ mhb: {{frequency: [230 Hz, 330 Hz], harmonics: 3}}
 """
 
 
+# of 60 sectors; harmonics 1 to 3 run backwards at nodal diameters 4, 8, 12 with engine order 56
+DISC = f"""name: disc
+mesh:
+  blade:
+    disc: {{bore: 150 mm, web: 15 mm, rim: 25 mm}}
+    elements: tet10
+    root: {{length: 50 mm, width: 26 mm, height: 14 mm}}
+    sections:
+      - {{radius: 300 mm, chord: 42 mm, thickness: 6.5 mm, camber: 7 mm, twist: -12 deg}}
+      - {{radius: 460 mm, chord: 35 mm, thickness: 3.2 mm, camber: 3 mm, twist: -38 deg}}
+    shroud: {{length: 36 mm, thickness: 6 mm, contact: 18 mm}}
+    size: 20 mm
+rotor: {{blades: 60, axis: x, speed: 1500 rpm}}
+material: {{E: 205 GPa, nu: 0.3, rho: 7850, fatigue: {{endurance: 300 MPa, ultimate: 900 MPa}}}}
+modal: {{modes: 8, damping: 0.003}}
+excitation: {{engine_order: 56, pressure: 2 kPa, harmonics: {{1: [1, 0 deg], 2: [0.5, 40 deg]}}}}
+probe: {{tip: [0 mm, 0 mm, 466 mm]}}
+contact: {{to: neighbour, psi: 30 deg, mu: 0.3, ku: 1 MN/m, kv: 1.5 MN/m, n0: 60 N}}
+gauge: {{g1: {{at: [-18 mm, 3 mm, 380 mm], direction: [0.2, 0, 1]}}}}
+mhb: {{frequency: [150 Hz, 330 Hz], harmonics: 3}}
+"""
+
+
 def run(*words, code=0):
     return programs.run(os.path.join(BIN, words[0]), *words[1:], code=code)
 
@@ -75,23 +98,45 @@ class Point:
         b = response[f'branch_{branch}']
         kept = list(b['modal/point'][:]).index(point)
         self.frequency, self.probe = b['frequency'][point], b['probe'][point, 0]
-        amplitude = b['modal/amplitude'][kept]
-        self.u = np.tensordot(amplitude, modal['modes/shape'][:], 1)
-        self.s = np.tensordot(amplitude, modal['modes/stress'][:].astype(float), 1)
-        if 'residual' in modal:
-            weight = modal['residual/load_weight'][:]
-            load = np.zeros((len(amplitude), weight.shape[1]), complex)
-            load[:len(weight)] = b['modal/scale'][kept] * weight[:len(load)]
-            force = np.hstack([b['modal/force'][kept], load])
-            self.u = self.u + np.tensordot(force, modal['residual/shape'][:].astype(float), 1)
-            self.s = self.s + np.tensordot(force, modal['residual/stress'][:].astype(float), 1)
-        shape, self.nodes = modal['modes/shape'][:], modal['mesh/nodes'][:]
+        amplitude, force = b['modal/amplitude'][kept], b['modal/force'][kept]
+        self.u, self.s = [], []
+        for k in range(len(amplitude)):
+            at, turn = self.group(modal, response, k)
+            u = np.tensordot(amplitude[k], turn(at['modes/shape'][:]), 1)
+            s = np.tensordot(amplitude[k], turn(at['modes/stress'][:]), 1)
+            if 'residual' in at:
+                weight = at['residual/load_weight'][:]
+                load = b['modal/scale'][kept] * weight[k] if k < len(weight) else 0 * weight[0]
+                by = np.hstack([force[k], load])
+                u = u + np.tensordot(by, turn(at['residual/shape'][:]), 1)
+                s = s + np.tensordot(by, turn(at['residual/stress'][:]), 1)
+            self.u.append(u)
+            self.s.append(s)
+        self.u, self.s = np.array(self.u), np.array(self.s)
+        modal = modal['nodal_diameter_0'] if 'nodal_diameter_0' in modal else modal
+        shape, self.nodes = modal['modes/shape'][:], modal.file['mesh/nodes'][:]
         self.tip = int(np.argmin(np.linalg.norm(self.nodes - [0, 0, 0.466], axis=1)))
         axial, x = np.array([1, 0, 0]), self.nodes[self.tip]
         radial = x - axial * (axial @ x)
         radial /= np.linalg.norm(radial)
         self.axes = np.array([np.cross(axial, radial), axial, radial])
         assert largest(shape[:, self.tip] @ self.axes.T - modal['probe/shape'][0].T) < 1e-12
+
+    @staticmethod
+    def group(modal, response, k):
+        """The model of harmonic k, and what makes its fields of those in the file."""
+        if 'nodal_diameter_0' not in modal:
+            return modal, lambda field: field.astype(float)
+        blades = modal.attrs['blades']
+        wave = k * response.attrs['engine_order'] % blades
+        plain = wave <= blades - wave
+        at = modal[f'nodal_diameter_{wave if plain else blades - wave}']
+
+        def turn(field):
+            if field.dtype.names:
+                field = field['r'].astype(float) + 1j * field['i'].astype(float)
+            return field if plain else field.conj()
+        return at, turn
 
     def at(self, instant, field, lag=0):
         k = np.arange(len(field))
@@ -168,7 +213,7 @@ def check_static(name, path):
         assert not file['VTKHDF/Steps/PointDataOffsets/static_stress'][:].any()
 
 
-def check_ring(name, branch, point, path, steps, blades, order):
+def check_ring_motion(name, branch, point, path, steps, blades, order):
     p = Point(name, branch, point)
     n, worst, right = len(p.nodes), 0, 0
     with h5py.File(path) as file:
@@ -186,11 +231,32 @@ def check_ring(name, branch, point, path, steps, blades, order):
             worst = max(worst, largest(u[t, b] - wanted))
     check('places of the blades', right, 1e-15 * 10)
     check('ring, single precision', worst / largest(u), 1e-7)
+    return mises
+
+
+def check_ring(name, branch, point, path, steps, blades, order):
+    mises = check_ring_motion(name, branch, point, path, steps, blades, order)
     # in whole steps the lag is exact: blade b at t is blade 0 at t - b E/N
     assert steps % blades == 0
     shifted = [np.roll(mises[:, 0], b * order * steps // blades, axis=0) for b in range(blades)]
     check('stress of the blades', max(largest(mises[:, b] - shifted[b]) for b in range(blades)) /
           largest(mises), 1e-6)
+
+
+def check_sides(path, blades):
+    """Where two sectors meet, both move alike and have the same stress, at every step."""
+    with h5py.File('disc.modal.h5') as modal, h5py.File(path) as file:
+        nodes = modal['mesh/nodes'][:]
+        right, left = (np.unique(modal[f'mesh/sets/cyclic_{side}'][:]) for side in
+                       ('right', 'left'))
+        n, data = len(nodes), file['VTKHDF/PointData']
+        u = data['displacement'][:].reshape(-1, blades, n, 3)
+        mises = data['von_mises'][:].reshape(-1, blades, n)
+    there = nodes[left] @ rotation(2 * np.pi / blades).T
+    partner = [left[np.linalg.norm(there - x, axis=1).argmin()] for x in nodes[right]]
+    for name, field in ('displacement', u), ('von Mises', np.abs(mises)):
+        jump = field[:, :, right] - np.roll(field, -1, axis=1)[:, :, partner]
+        check(f'{name} where sectors meet', largest(jump) / largest(field[:, :, right]), 1e-6)
 
 
 def check_vtk(path):
@@ -308,6 +374,67 @@ def without_residuals():
             for name in list(out[group]):
                 if any(word in name for word in ('residual', 'inertia', 'fourth')):
                     del out[group][name]
+
+
+def disc_of_blades():
+    """The blade as a disc that couples nothing: the same model at every nodal diameter."""
+    with h5py.File('own.modal.h5') as source, h5py.File('rigid.modal.h5', 'w') as out:
+        for name, value in source.attrs.items():
+            out.attrs[name] = value
+        out.attrs['format_version'] = np.int32(3)
+        out.attrs['blades'] = np.int32(BLADES)
+        out.attrs['nodal_diameters'] = np.arange(BLADES // 2 + 1, dtype=np.int32)
+        source.copy('mesh', out)
+        for n in range(BLADES // 2 + 1):
+            group = out.create_group(f'nodal_diameter_{n}')
+            for name in source:
+                if name != 'mesh':
+                    source.copy(name, group)
+
+
+def check_rigid_disc(branch, point):
+    """A disc that couples nothing moves as the clamped blades do, all round the ring."""
+    disc_of_blades()
+    write('rigid.yaml', OWN.replace('own', 'rigid'))
+    run('shroudhb', 'mhb', '--quiet', 'rigid.yaml')
+    run('shroudhb', 'field', '--ring', '--steps', '14', 'rigid.response.h5')
+    with h5py.File('own.ring.vtkhdf') as own, h5py.File('rigid.ring.vtkhdf') as file:
+        assert (file.attrs['branch'], file.attrs['point']) == (branch, point)
+        for name in 'displacement', 'von_mises':
+            a, b = (f[f'VTKHDF/PointData/{name}'][:] for f in (file, own))
+            check(f'{name} on a disc that couples nothing', largest(a - b) / largest(b), 1e-6)
+
+
+def check_disc():
+    """A sector of a disc that gives: its fields by sums of the nodal diameters' own."""
+    write('disc.yaml', DISC)
+    run('shroudhb', 'run', '--quiet', 'disc.yaml')
+    for order in 56, 4:
+        run('shroudhb', 'mhb', '--quiet', '--set', f'excitation.engine_order={order}', 'disc.yaml')
+        run('shroudhb', 'field', '--steps', '6', 'disc.response.h5')
+        run('shroudhb', 'field', '--ring', '--steps', '4', 'disc.response.h5')
+        with h5py.File('disc.field.vtkhdf') as file:
+            branch, point = int(file.attrs['branch']), int(file.attrs['point'])
+        far = check_blade('disc', branch, point, 'disc.field.vtkhdf', 6)
+        check('probe of a disc, by what the residual columns leave out', far, 1e-4)
+        check_static('disc', 'disc.field.vtkhdf')
+        check_ring_motion('disc', branch, point, 'disc.ring.vtkhdf', 4, 60, order)
+        check_sides('disc.ring.vtkhdf', 60)
+    run('shroudhb', 'post', '--quiet', 'disc.yaml', '--set', 'excitation.engine_order=4')
+    with open('disc.stress.csv', newline='') as table:
+        rows = [r for r in csv.DictReader(table)
+                if int(r['branch']) == branch and int(r['point']) == point]
+    p = Point('disc', branch, point)
+    s = np.array([p.at(t / 96, p.s) for t in range(96)])
+    mises = signed_mises(s - p.s[0].real)
+    wanted = (mises.max(0) - mises.min(0)).max() / 2
+    first = next(r for r in rows if r['place'] == '1')
+    check('worst stress', abs(max(float(r['amplitude_Pa']) for r in rows) / wanted - 1), 5e-3)
+    assert float(first['safety']) > 0
+    with open('disc.gauge.csv', newline='') as source:
+        row = next(r for r in csv.DictReader(source)
+                   if int(r['branch']) == branch and int(r['point']) == point)
+    assert float(row['amplitude']) > 0
 
 
 def check_gauge():
@@ -429,6 +556,8 @@ def main():
         'own', branch, highest, f'own.field_{branch}_{highest}.vtkhdf', 9), 1e-10)
     check_ring('own', branch, highest, 'own.ring.vtkhdf', 14, BLADES, ORDER)
     check_scene('own', branch, highest, 'own.ring.glb', 14, BLADES)
+    check_rigid_disc(branch, highest)
+    check_disc()
 
     check_face()
     free = next(i for i in range(10**6) if i not in points)
@@ -440,7 +569,7 @@ def main():
     refused(['shroudhb', 'field', '--steps', '1', 'blade.response.h5'], 'a number from 2 to 1000')
     refused(['shroudhb', 'field', '--scale', 'x', 'blade.response.h5'], 'a number above 0')
     refused(['shroudhb', 'field', '--modal', 'blade.response.h5', 'blade.response.h5'],
-            'has no /mesh or no /modes/stress')
+            'has no /mesh or no modes/stress')
     run('shroudhb', 'field', 'absent.response.h5', code=4)
 
 

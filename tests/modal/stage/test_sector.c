@@ -5,6 +5,7 @@
 #include <petscksp.h>
 
 #include "fem/body/equilibrium.h"
+#include "fem/body/stress.h"
 #include "mesh/base/constants.h"
 #include "mesh/core/cyclic_sides.h"
 #include "mesh/io/inp_write.h"
@@ -106,18 +107,17 @@ static void add_force(const scene *s, const modal_dofs *dofs, int c, int b, doub
   assert_int_equal(VecRestoreArray(f, &value), 0);
 }
 
-/* Response at the dofs at of sector 0 to the travelling wave sum_c weight[c] dof c.
+/* Response of all nodes of the ring to the travelling wave sum_c weight[c] dof c.
  *   wave  in   n, sector b lags by 2 pi n b/N
- *   out   out  [at->n] */
-static void drive(const scene *s, Mat factor, int wave, const modal_dofs *dofs, int n,
-                  const double complex *weight, const modal_dofs *at, double complex *out) {
-  double *nodal = malloc(3 * (size_t)s->ring.mesh.n_nodes * sizeof *nodal);
-  double *own   = malloc(3 * (size_t)s->mesh.n_nodes * sizeof *own);
-  double *value = malloc(((size_t)at->n + 1) * sizeof *value);
-  Vec     f, x;
-  assert_true(nodal && own && value);
+ *   out   out  [ring nodes][3] */
+static void solve_wave(const scene *s, Mat factor, int wave, const modal_dofs *dofs, int n,
+                       const double complex *weight, double complex *out) {
+  const size_t size  = 3 * (size_t)s->ring.mesh.n_nodes;
+  double      *nodal = malloc(size * sizeof *nodal);
+  Vec          f, x;
+  assert_non_null(nodal);
   assert_int_equal(MatCreateVecs(s->whole.K, &f, &x), 0);
-  memset(out, 0, (size_t)at->n * sizeof *out);
+  memset(out, 0, size * sizeof *out);
   for (int imaginary = 0; imaginary < 2; imaginary++) {
     assert_int_equal(VecZeroEntries(f), 0);
     for (int b = 0; b < BLADES; b++)
@@ -127,14 +127,26 @@ static void drive(const scene *s, Mat factor, int wave, const modal_dofs *dofs, 
       }
     assert_int_equal(MatSolve(factor, f, x), 0);
     assert_int_equal(fem_system_gather(&s->whole, x, nodal), 0);
-    for (int i = 0; i < s->mesh.n_nodes; i++)
-      memcpy(own + 3 * i, nodal + 3 * s->ring.node[i], 3 * sizeof *own);
-    modal_dofs_sample_nodal(at, own, value);
-    for (int r = 0; r < at->n; r++) out[r] += (imaginary ? I : 1) * value[r];
+    for (size_t i = 0; i < size; i++) out[i] += (imaginary ? I : 1) * nodal[i];
   }
   VecDestroy(&f);
   VecDestroy(&x);
-  free(nodal), free(own), free(value);
+  free(nodal);
+}
+
+/* The same at the dofs at of sector 0: out[at->n]. */
+static void drive(const scene *s, Mat factor, int wave, const modal_dofs *dofs, int n,
+                  const double complex *weight, const modal_dofs *at, double complex *out) {
+  double complex *all = malloc(3 * (size_t)s->ring.mesh.n_nodes * sizeof *all);
+  assert_non_null(all);
+  solve_wave(s, factor, wave, dofs, n, weight, all);
+  for (int r = 0; r < at->n; r++) {
+    out[r] = 0;
+    for (int e = at->start[r]; e < at->start[r + 1]; e++)
+      for (int d = 0; d < 3; d++)
+        out[r] += at->weight[3 * e + d] * all[3 * s->ring.node[at->node[e]] + d];
+  }
+  free(all);
 }
 
 /* ------------------------------------------------------------------ the models of the file */
@@ -285,6 +297,152 @@ static void receptances_of_the_ring(void **state) {
   }
 }
 
+/* Stress of the ring in a complex motion of all its nodes. */
+static void ring_stress(const scene *s, const double complex *motion, double complex *stress) {
+  const size_t n = (size_t)s->ring.mesh.n_nodes;
+  fem_body body  = {&s->ring.mesh, &steel, make_element_tables(FEM_STANDARD), {MESH_AXIS_X, 0}, 0};
+  double  *part  = malloc(6 * n * sizeof *part);
+  float   *value = malloc(12 * n * sizeof *value);
+  assert_true(part && value);
+  for (size_t i = 0; i < 3 * n; i++) part[i] = creal(motion[i]), part[3 * n + i] = cimag(motion[i]);
+  assert_int_equal(fem_nodal_stress_change(&body, NULL, 2, part, value), 0);
+  for (size_t i = 0; i < 6 * n; i++) stress[i] = CMPLX(value[i], value[6 * n + i]);
+  free((void *)body.element), free(part), free(value);
+}
+
+/* The wave of a shape [n_nodes][3] of the sector, on all nodes of the ring. */
+static void spread_shape(const scene *s, int wave, const double complex *shape,
+                         double complex *motion) {
+  for (int b = 0; b < BLADES; b++)
+    for (int i = 0; i < s->mesh.n_nodes; i++) {
+      const double complex phase = cexp(-I * SHB_TWO_PI * wave * b / BLADES);
+      double               part[2][3];
+      for (int d = 0; d < 3; d++) {
+        part[0][d] = creal(phase * shape[3 * i + d]);
+        part[1][d] = cimag(phase * shape[3 * i + d]);
+      }
+      for (int p = 0; p < 2; p++)
+        mesh_axis_rotate(MESH_AXIS_X, SHB_TWO_PI * b / BLADES, part[p], part[p]);
+      for (int d = 0; d < 3; d++)
+        motion[3 * s->ring.node[b * s->mesh.n_nodes + i] + d] = CMPLX(part[0][d], part[1][d]);
+    }
+}
+
+/* Largest difference of a field of the sector and that of sector 0 in the ring, relative. sides:
+ * the same at the nodes of cyclic_right alone. */
+static double off_by(const scene *s, int width, const double complex *own,
+                     const double complex *ring, double *sides) {
+  double off = 0, most = 0, at_sides = 0;
+  for (int i = 0; i < s->mesh.n_nodes; i++)
+    for (int c = 0; c < width; c++) {
+      const double complex there = ring[width * s->ring.node[i] + c];
+      const double         here  = cabs(own[width * i + c] - there);
+      most                       = fmax(most, cabs(there));
+      off                        = fmax(off, here);
+      if (s->mesh.image[i] >= 0) at_sides = fmax(at_sides, here);
+    }
+  *sides = at_sides / most;
+  return off / most;
+}
+
+static double complex *read_field(hid_t file, int n, const char *name, int rows, int nodes,
+                                  int width) {
+  h5_shape        shape = H5_SHAPE((hsize_t)rows, (hsize_t)nodes, (hsize_t)width);
+  double complex *data;
+  char            path[64];
+  snprintf(path, sizeof path, "/nodal_diameter_%d/%s", n, name);
+  assert_ok(h5_read_complex(file, path, &shape, &data));
+  return data;
+}
+
+/* The stress of each mode is that of the ring in the mode's wave. On the cyclic sides the elements
+ * of two sectors meet. */
+static void stresses_of_the_ring(void **state) {
+  scene          *s    = *state;
+  const size_t    ring = (size_t)s->ring.mesh.n_nodes, n = (size_t)s->mesh.n_nodes;
+  double complex *motion = malloc(3 * ring * sizeof *motion);
+  double complex *wanted = malloc(6 * ring * sizeof *wanted);
+  hid_t           file;
+  assert_true(motion && wanted);
+  assert_ok(h5_open(scratch("sector.modal.h5"), &file));
+  for (int d = 0; d <= BLADES / 2; d++) {
+    double complex *phi    = read_field(file, d, "modes/shape", MODES, s->mesh.n_nodes, 3);
+    double complex *stress = read_field(file, d, "modes/stress", MODES, s->mesh.n_nodes, 6);
+    double          worst = 0, worst_side = 0, side;
+    for (size_t i = 0; i < MODES; i += 3) {
+      spread_shape(s, d, phi + 3 * n * i, motion);
+      ring_stress(s, motion, wanted);
+      worst      = fmax(worst, off_by(s, 6, stress + 6 * n * i, wanted, &side));
+      worst_side = fmax(worst_side, side);
+    }
+    print_message("nodal diameter %d: stress of the modes off by %.1e, on the sides %.1e\n", d,
+                  worst, worst_side);
+    check_below(worst, 3e-7, "stress of a mode, in single precision");
+    free(phi), free(stress);
+  }
+  assert_ok(h5_close(file));
+  free(motion), free(wanted);
+}
+
+/* Modes and residual columns together give motion and stress of the ring at every node. It bears a
+ * static wave of unit forces, forwards and backwards. */
+static void columns_of_the_ring(void **state) {
+  scene               *s       = *state;
+  const modal_dofs    *dof     = &s->result.to.contact;
+  const int            columns = dof->n + s->result.to.load.dofs.n, nodes = s->mesh.n_nodes;
+  const size_t         ring = (size_t)s->ring.mesh.n_nodes, n = (size_t)nodes;
+  const double complex one    = 1;
+  double complex      *motion = malloc(3 * ring * sizeof *motion), *u = malloc(3 * n * sizeof *u);
+  double complex *wanted = malloc(6 * ring * sizeof *wanted), *sigma = malloc(6 * n * sizeof *u);
+  Mat             factor = factor_at(s, 0);
+  hid_t           file;
+  assert_true(motion && wanted && u && sigma);
+  assert_ok(h5_open(scratch("sector.modal.h5"), &file));
+  for (int wave = 0; wave < BLADES; wave++) {
+    const int       d        = modal_nodal_diameter(wave, BLADES);
+    const bool      backward = d != wave;
+    double complex *phi      = read_field(file, d, "modes/shape", MODES, nodes, 3);
+    double complex *stress   = read_field(file, d, "modes/stress", MODES, nodes, 6);
+    double complex *column   = read_field(file, d, "residual/shape", columns, nodes, 3);
+    double complex *pressed  = read_field(file, d, "residual/stress", columns, nodes, 6);
+    double          worst[2] = {0}, side;
+    modal_wave      w;
+    int             missing;
+    assert_true(modal_nodal_diameters_wave(&s->models, wave, &w, &missing));
+    for (int c = 0; c < dof->n; c++) {
+      modal_dofs single = *dof;
+      single.n          = 1;
+      single.start      = dof->start + c;
+      solve_wave(s, factor, wave, &single, 1, &one, motion);
+      ring_stress(s, motion, wanted);
+      for (size_t i = 0; i < 3 * n; i++) u[i] = column[3 * n * (size_t)c + i];
+      for (size_t i = 0; i < 6 * n; i++) sigma[i] = pressed[6 * n * (size_t)c + i];
+      if (backward)
+        for (size_t i = 0; i < 6 * n; i++) {
+          sigma[i] = conj(sigma[i]);
+          if (i < 3 * n) u[i] = conj(u[i]);
+        }
+      for (size_t i = 0; i < MODES; i++) {
+        const double complex q =
+            conj(contact_shape(&w, c, (int)i)) / pow(SHB_TWO_PI * w.model->frequency[i], 2);
+        for (size_t k = 0; k < 3 * n; k++)
+          u[k] += q * (backward ? conj(phi[3 * n * i + k]) : phi[3 * n * i + k]);
+        for (size_t k = 0; k < 6 * n; k++)
+          sigma[k] += q * (backward ? conj(stress[6 * n * i + k]) : stress[6 * n * i + k]);
+      }
+      worst[0] = fmax(worst[0], off_by(s, 3, u, motion, &side));
+      worst[1] = fmax(worst[1], off_by(s, 6, sigma, wanted, &side));
+    }
+    print_message("wave %d: static motion off by %.1e, stress %.1e\n", wave, worst[0], worst[1]);
+    check_below(worst[0], 1e-6, "motion, columns in single precision");
+    check_below(worst[1], 1e-6, "stress, in single precision");
+    free(phi), free(stress), free(column), free(pressed);
+  }
+  assert_ok(h5_close(file));
+  MatDestroy(&factor);
+  free(motion), free(wanted), free(u), free(sigma);
+}
+
 /* The shapes in the file move the sides as a wave does. The check of completeness and the contact
  * patches are there; the root has no model. */
 static void content_of_the_file(void **state) {
@@ -342,7 +500,7 @@ static void at_speed(void **state) {
   fem_system           system;
   modal_eigen_settings wanted = {.modes = 12};
   modal_eigen          eigen;
-  double               all[BLADES * MODES], off = 0, most = 0, worst = 0, *u;
+  double               all[BLADES * MODES], off = 0, most = 0, worst = 0, *u, *stress;
   int                  n_all = 0;
   settings.speed             = 1500;
   settings.pressure          = 1e6;
@@ -357,7 +515,22 @@ static void at_speed(void **state) {
   h5_shape shape = H5_SHAPE((hsize_t)s->mesh.n_nodes, 3);
   assert_ok(h5_open(scratch("speed.modal.h5"), &file));
   assert_ok(h5_read_double(file, "/static/displacement", &shape, &u));
+  shape.dim[1] = 6;
+  assert_ok(h5_read_double(file, "/static/nodal_stress", &shape, &stress));
   assert_ok(h5_close(file));
+  double(*wanted_stress)[FEM_STRESSES] =
+      malloc((size_t)s->ring.mesh.n_nodes * sizeof *wanted_stress);
+  double stressed = 0, apart = 0;
+  assert_non_null(wanted_stress);
+  assert_int_equal(fem_nodal_stress(&body, ring.displacement, wanted_stress), 0);
+  for (int i = 0; i < 6 * s->mesh.n_nodes; i++) {
+    const double there = wanted_stress[s->ring.node[i / 6]][i % 6];
+    stressed           = fmax(stressed, fabs(there));
+    apart              = fmax(apart, fabs(stress[i] - there));
+  }
+  print_message("static stress %.3g MPa off by %.1e\n", stressed / 1e6, apart / stressed);
+  check_below(apart, 1e-9 * stressed, "static stress");
+  free(wanted_stress), free(stress);
   for (int i = 0; i < 3 * s->mesh.n_nodes; i++) {
     const double there = ring.displacement[3 * s->ring.node[i / 3] + i % 3];
     most               = fmax(most, fabs(there));
@@ -500,6 +673,8 @@ static int tear_down(void **state) {
 int main(int argc, char **argv) {
   modal_session           session;
   const struct CMUnitTest tests[] = {cmocka_unit_test(receptances_of_the_ring),
+                                     cmocka_unit_test(stresses_of_the_ring),
+                                     cmocka_unit_test(columns_of_the_ring),
                                      cmocka_unit_test(content_of_the_file),
                                      cmocka_unit_test(at_speed),
                                      cmocka_unit_test(a_list_of_nodal_diameters),
