@@ -70,7 +70,10 @@ shb_status case_resize_mesh(const case_file *file, double factor, const char *pa
   int         n      = 0;
   shb_status  status = SHB_ERR_INPUT;
   if (root) status = find_patches(file, root, factor, patches, &n);
-  if (!root) shb_fail(status, __FILE__, __LINE__, "%s: not YAML", file->path);
+  if (!root && issues.no_memory)
+    status = shb_fail(SHB_ERR_IO, __FILE__, __LINE__, "%s: out of memory", file->path);
+  else if (!root)
+    shb_fail(status, __FILE__, __LINE__, "%s: not YAML", file->path);
   case_document_free(root);
   case_issues_free(&issues);
   SHB_TRY(status);

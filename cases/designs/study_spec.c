@@ -211,10 +211,7 @@ shb_status study_spec_read(const char *path, bool check, FILE *errors, study_spe
   SHB_CHECK(s->path && s->folder, SHB_ERR_IO, "%s: out of memory", path);
   reading r = {case_issues_start(path, s->text, length), s};
   read_document(&r, check, errors);
-  int n = r.issues.n;
-  case_issues_print(&r.issues, errors);
-  case_issues_free(&r.issues);
-  return n == 0 ? SHB_OK : shb_fail(SHB_ERR_INPUT, __FILE__, __LINE__, "%s", "");
+  return case_issues_finish(&r.issues, errors);
 }
 
 void study_spec_free(study_spec *s) {

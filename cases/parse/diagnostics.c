@@ -1,11 +1,8 @@
 #include "cases/parse/diagnostics.h"
 
 #include <stdarg.h>
-#include <stdbool.h>
 #include <stdlib.h>
 #include <string.h>
-
-#include "mesh/base/status.h"
 
 enum { WIDTH = 120 }; /* columns of a source line */
 
@@ -22,16 +19,25 @@ void case_issue_add(case_issues *issues, int line, int column, const char *key, 
   va_end(args);
   snprintf(full, sizeof full, "%s%s%s", key ? key : "", key && key[0] ? ": " : "", text);
   shb_plain_text(full);
-  int at = issues->n++; /* an issue is counted even if there is no memory for its text */
+  int at = issues->n++;
   if (at >= issues->capacity) {
     int         capacity = issues->capacity ? 2 * issues->capacity : 16;
     case_issue *grown    = realloc(issues->issue, (size_t)capacity * sizeof *grown);
-    if (!grown) return;
+    if (!grown) {
+      issues->no_memory = true;
+      return;
+    }
     memset(grown + issues->capacity, 0, (size_t)(capacity - issues->capacity) * sizeof *grown);
     issues->issue    = grown;
     issues->capacity = capacity;
   }
   issues->issue[at] = (case_issue){line, column, strdup(full)};
+  if (!issues->issue[at].text) issues->no_memory = true;
+}
+
+void case_issues_no_memory(case_issues *issues) {
+  issues->n++;
+  issues->no_memory = true;
 }
 
 static int by_place(const void *left, const void *right) {
@@ -112,6 +118,7 @@ static void print_override(const char *text, FILE *out) {
 }
 
 void case_issues_print(case_issues *issues, FILE *out) {
+  if (issues->no_memory) return;
   int kept = issues->n < issues->capacity ? issues->n : issues->capacity;
   /* the order of issues at one place does not matter, so qsort may be unstable */
   if (kept > 0) qsort(issues->issue, (size_t)kept, sizeof *issues->issue, by_place);
@@ -120,7 +127,7 @@ void case_issues_print(case_issues *issues, FILE *out) {
     fprintf(out, "%s:", issues->path);
     if (issue->line < 0) print_override(issues->override[-1 - issue->line], out);
     if (issue->line > 0) fprintf(out, "%d:%d:", issue->line, issue->column);
-    fprintf(out, " error: %s\n", issue->text ? issue->text : "out of memory");
+    fprintf(out, " error: %s\n", issue->text);
     print_source(issues, issue, out);
   }
   if (issues->n > CASE_ISSUES_SHOWN)
@@ -133,4 +140,12 @@ void case_issues_free(case_issues *issues) {
   for (int i = 0; i < kept; i++) free(issues->issue[i].text);
   free(issues->issue);
   *issues = (case_issues){0};
+}
+
+shb_status case_issues_finish(case_issues *issues, FILE *out) {
+  const case_issues found = *issues;
+  case_issues_print(issues, out);
+  case_issues_free(issues);
+  SHB_CHECK(!found.no_memory, SHB_ERR_IO, "%s: out of memory", found.path);
+  return found.n == 0 ? SHB_OK : shb_fail(SHB_ERR_INPUT, __FILE__, __LINE__, "%s", "");
 }

@@ -2,8 +2,11 @@
 #ifndef CASES_PARSE_DIAGNOSTICS_H
 #define CASES_PARSE_DIAGNOSTICS_H
 
+#include <stdbool.h>
 #include <stddef.h>
 #include <stdio.h>
+
+#include "mesh/base/status.h"
 
 enum { CASE_ISSUES_SHOWN = 50 }; /* issues of a file that are printed */
 
@@ -19,7 +22,8 @@ typedef struct {
   const char *const
              *override; /* texts of the overrides: an issue at the line -1 - i is shown with i */
   int         n, capacity;
-  case_issue *issue; /* [capacity]; the first min(n, capacity) hold a text */
+  case_issue *issue;     /* [capacity]; the first min(n, capacity) hold a text */
+  bool        no_memory; /* memory was short: other issues may only follow from that */
 } case_issues;
 
 case_issues case_issues_start(const char *path, const char *text, size_t length);
@@ -28,10 +32,17 @@ case_issues case_issues_start(const char *path, const char *text, size_t length)
 void case_issue_add(case_issues *issues, int line, int column, const char *key, const char *format,
                     ...) __attribute__((format(printf, 5, 6)));
 
+/* Memory was short while the file was read. It counts as an issue. */
+void case_issues_no_memory(case_issues *issues);
+
 /* Print each issue as "file:line:col: error: key: text" with its source line and a caret. "N
- * errors" follows. The issues are sorted by place. */
+ * errors" follows. The issues are sorted by place. Nothing is printed where memory was short. */
 void case_issues_print(case_issues *issues, FILE *out);
 
 void case_issues_free(case_issues *issues);
+
+/* Print and free the issues. SHB_ERR_INPUT: there were some; the message is empty, because they are
+ * printed. SHB_ERR_IO: memory was short. */
+shb_status case_issues_finish(case_issues *issues, FILE *out);
 
 #endif

@@ -70,7 +70,7 @@ static void read_default(case_reader *r, const case_key *key, char *base) {
   case_issues none = case_issues_start("default", key->fallback, strlen(key->fallback));
   case_node  *node = case_document_parse(&none);
   bool        good = node && case_value_read(&none, key, key->path, node, r->file, base + key->at);
-  if (!good) case_issue_add(r->issues, 0, 0, NULL, "out of memory");
+  if (!good) case_issues_no_memory(r->issues);
   case_document_free(node);
   case_issues_free(&none);
 }

@@ -91,7 +91,7 @@ static bool read_saved(const case_value_context *c, const case_node *node, void 
 }
 
 static bool keep_text(const case_value_context *c, const case_node *node, void *slot, char *copy) {
-  if (!copy) case_issue_add(c->issues, node->line, node->column, c->path, "out of memory");
+  if (!copy) case_issues_no_memory(c->issues);
   free(*(char **)slot);
   *(char **)slot = copy;
   return copy != NULL;

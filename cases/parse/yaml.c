@@ -96,7 +96,7 @@ static void syntax_issue(builder *b) {
   const yaml_parser_t *p = &b->parser;
   int                  line, column;
   if (p->error == YAML_MEMORY_ERROR) {
-    case_issue_add(b->issues, 0, 0, NULL, "out of memory");
+    case_issues_no_memory(b->issues);
   } else if (p->error == YAML_READER_ERROR) {
     place_of(b->issues, p->problem_offset, &line, &column);
     case_issue_add(b->issues, line, column, NULL, "not UTF-8 text: %s", p->problem);
@@ -136,7 +136,7 @@ static case_node *add_child(builder *b, case_node *parent) {
     case_node *grown    = realloc(parent->child, (size_t)capacity * sizeof *grown);
     if (grown) parent->child = grown;
     if (!grown) {
-      case_issue_add(b->issues, 0, 0, NULL, "out of memory");
+      case_issues_no_memory(b->issues);
       return NULL;
     }
   }
@@ -258,7 +258,7 @@ static bool build_scalar(builder *b, const yaml_event_t *event, const char *path
   out->kind = is_null(event) ? CASE_NULL : CASE_SCALAR;
   out->text = strdup((const char *)event->data.scalar.value);
   if (out->text && b->indexed) set_index_brackets(out->text, "<>", "[]");
-  if (!out->text) case_issue_add(b->issues, 0, 0, NULL, "out of memory");
+  if (!out->text) case_issues_no_memory(b->issues);
   return out->text != NULL;
 }
 
@@ -324,7 +324,7 @@ case_node *case_document_parse(case_issues *issues) {
   char   *text = calloc(issues->length + 1, 1);
   if (!text || !yaml_parser_initialize(&b.parser)) {
     free(text);
-    case_issue_add(issues, 0, 0, NULL, "out of memory");
+    case_issues_no_memory(issues);
     return NULL;
   }
   memcpy(text, issues->text, issues->length);
@@ -334,7 +334,7 @@ case_node *case_document_parse(case_issues *issues) {
   yaml_event_t event;
   if (first_event(&b, &event)) {
     root = calloc(1, sizeof *root);
-    if (!root) case_issue_add(issues, 0, 0, NULL, "out of memory");
+    if (!root) case_issues_no_memory(issues);
     bool good = root && build(&b, &event, "", 0, root) && expect_end(&b);
     yaml_event_delete(&event);
     if (!good) {

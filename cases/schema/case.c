@@ -146,13 +146,11 @@ shb_status case_read_with(const char *path, const case_overrides *overrides, int
   case_issues issues = case_issues_start(path, out->text, length);
   bool        lost   = read_document(&issues, overrides, stages, out);
   int         n      = issues.n;
-  case_issues_print(&issues, errors);
-  case_issues_free(&issues);
-  if (n == 0) return note_overrides(overrides, out);
+  shb_status  status = case_issues_finish(&issues, errors);
+  if (status == SHB_OK) return note_overrides(overrides, out);
   case_free(out);
-  /* The errors are printed, so the closing line has no text. If the only error is an input file
-   * that cannot be read, the case file itself is in order: SHB_ERR_IO. */
-  return shb_fail(lost && n == 1 ? SHB_ERR_IO : SHB_ERR_INPUT, __FILE__, __LINE__, "%s", "");
+  /* where the only error is an input file that cannot be read, the case file itself is in order */
+  return lost && n == 1 ? SHB_ERR_IO : status;
 }
 
 void case_free(case_file *file) {

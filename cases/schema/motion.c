@@ -89,14 +89,11 @@ shb_status case_motion_read(const char *path, FILE *errors, case_motion *out) {
   SHB_TRY(case_text_read(path, &text, &length));
   case_issues issues = case_issues_start(path, text, length);
   bool        memory = read_document(&issues, out);
-  int         n      = issues.n;
-  case_issues_print(&issues, errors);
-  case_issues_free(&issues);
+  if (!memory) case_issues_no_memory(&issues);
+  shb_status status = case_issues_finish(&issues, errors);
   free(text);
-  if (n == 0 && memory) return SHB_OK;
-  case_motion_free(out);
-  SHB_CHECK(memory, SHB_ERR_IO, "%s: out of memory", path);
-  return shb_fail(SHB_ERR_INPUT, __FILE__, __LINE__, "%s", "");
+  if (status != SHB_OK) case_motion_free(out);
+  return status;
 }
 
 void case_motion_free(case_motion *motion) {

@@ -51,7 +51,7 @@ static case_node *into_mapping(case_issues *issues, case_node *node, const char 
   }
   case_node *found = entry(node, name, length);
   if (!found) found = append_entry(node, name, length, line);
-  if (!found) case_issue_add(issues, line, 0, NULL, "out of memory");
+  if (!found) case_issues_no_memory(issues);
   return found;
 }
 
@@ -120,10 +120,11 @@ static void apply(case_issues *issues, const char *text, int line, case_node *ro
   case_issues own   = case_issues_start("--set", equals + 1, strlen(equals + 1));
   case_node  *value = case_document_parse(&own);
   int         place = (int)(equals - text) + 2;
-  if (!value || own.n > 0) {
+  if (own.no_memory) {
+    case_issues_no_memory(issues);
+  } else if (!value || own.n > 0) {
     case_issue_add(issues, line, place, NULL, "%s",
-                   own.n > 0 && own.capacity > 0 && own.issue[0].text ? own.issue[0].text
-                                                                      : "the value is empty");
+                   own.n > 0 ? own.issue[0].text : "the value is empty");
   } else {
     case_node *node = find(issues, root, text, equals, line);
     if (node) replace(node, value, line, place);
@@ -135,6 +136,7 @@ static void apply(case_issues *issues, const char *text, int line, case_node *ro
 void case_overrides_apply(case_issues *issues, const case_overrides *o, case_node **root) {
   issues->override = o->text;
   if (o->n > 0 && !*root) *root = calloc(1, sizeof **root);
+  if (o->n > 0 && !*root) case_issues_no_memory(issues);
   if (!*root) return;
   for (int i = 0; i < o->n; i++) apply(issues, o->text[i], -1 - i, *root);
 }

@@ -62,6 +62,15 @@ static void insert_section_edges(builder *b) {
 
 /* ------------------------------------------------------------------ gmsh's coarse mesh */
 
+static shb_status no_memory(void) {
+  SHB_FAIL(SHB_ERR_IO, "no memory for a plan");
+}
+
+static shb_status add_point(const double at[2], double size, int *point) {
+  GMSH_TRY("mesh.blade.size", *point = gmshModelGeoAddPoint(at[0], at[1], 0, size, -1, &ierr));
+  return SHB_OK;
+}
+
 static shb_status add_line(int from, int to, int parts, int *line) {
   GMSH_TRY("mesh.blade.size", *line = gmshModelGeoAddLine(from, to, -1, &ierr));
   GMSH_TRY("mesh.blade.size",
@@ -69,22 +78,19 @@ static shb_status add_line(int from, int to, int parts, int *line) {
   return SHB_OK;
 }
 
+static shb_status add_curve_loop(int n, const int *line, int *loop) {
+  GMSH_TRY("mesh.blade.size", *loop = gmshModelGeoAddCurveLoop(line, (size_t)n, -1, 0, &ierr));
+  return SHB_OK;
+}
+
 /* Add a loop of straight lines through n points. */
 static shb_status add_loop(int n, const double (*at)[2], const int *parts, double size, int *loop) {
   int       *point = malloc((size_t)n * sizeof *point), *line = malloc((size_t)n * sizeof *line);
-  shb_status status = point && line ? SHB_OK : SHB_ERR_IO;
-  for (int i = 0; i < n && status == SHB_OK; i++) {
-    int ierr = 0;
-    point[i] = gmshModelGeoAddPoint(at[i][0], at[i][1], 0, size, -1, &ierr);
-    if (ierr) status = SHB_ERR_INPUT;
-  }
+  shb_status status = point && line ? SHB_OK : no_memory();
+  for (int i = 0; i < n && status == SHB_OK; i++) status = add_point(at[i], size, &point[i]);
   for (int i = 0; i < n && status == SHB_OK; i++)
     status = add_line(point[i], point[(i + 1) % n], parts ? parts[i] : 1, &line[i]);
-  if (status == SHB_OK) {
-    int ierr = 0;
-    *loop    = gmshModelGeoAddCurveLoop(line, (size_t)n, -1, 0, &ierr);
-    if (ierr) status = SHB_ERR_INPUT;
-  }
+  if (status == SHB_OK) status = add_curve_loop(n, line, loop);
   free(point);
   free(line);
   return status;
@@ -103,7 +109,7 @@ static shb_status mesh_region(const mesh_planar *section, int n_corners, const d
   const int n        = section->n_contour / 4;
   int       loops[2] = {0, 0}, half[16], surface = 0;
   double(*hole)[2] = malloc((size_t)n * sizeof *hole);
-  SHB_CHECK(hole, SHB_ERR_IO, "no memory for a plan");
+  if (!hole) return no_memory();
   for (int i = 0; i < n; i++)
     memcpy(hole[i], section->at[section->contour[4 * (size_t)i]], sizeof *hole);
   for (int i = 0; i < n_corners; i++) half[i] = parts[i] / 2;
@@ -131,8 +137,7 @@ static shb_status take_cells(const int *index, int type, int corners, coarse *me
   }
   gmshFree(tags);
   gmshFree(nodes);
-  SHB_CHECK(grow, SHB_ERR_IO, "no memory for a plan");
-  return SHB_OK;
+  return grow ? SHB_OK : no_memory();
 }
 
 /* Node of the section at a point of its contour, or -1. */
@@ -154,7 +159,7 @@ static shb_status take_coarse(const mesh_planar *section, coarse *mesh) {
   for (size_t i = 0; i < n; i++) top = tags[i] > top ? tags[i] : top;
   int *index        = malloc((top + 1) * sizeof *index);
   mesh->at          = malloc((n + 1) * sizeof *mesh->at);
-  shb_status status = index && mesh->at ? SHB_OK : SHB_ERR_IO;
+  shb_status status = index && mesh->at ? SHB_OK : no_memory();
   for (size_t i = 0; status == SHB_OK && i < n; i++) {
     int known      = on_contour(section, xyz + 3 * i);
     index[tags[i]] = known >= 0 ? known : section->n_nodes + mesh->n_nodes;
@@ -180,7 +185,7 @@ static shb_status allocate(const mesh_planar *section, const coarse *mesh, build
   plan->at           = malloc(nodes * sizeof *plan->at);
   plan->quad         = malloc(quads * sizeof *plan->quad);
   plan->contour      = malloc((size_t)section->n_contour * sizeof *plan->contour);
-  SHB_CHECK(b->slot && plan->at && plan->quad && plan->contour, SHB_ERR_IO, "no memory for a plan");
+  if (!b->slot || !plan->at || !plan->quad || !plan->contour) return no_memory();
   memset(b->slot, -1, (size_t)b->n_slots * sizeof *b->slot);
   plan->n_nodes = plan->n_section_nodes = section->n_nodes;
   plan->n_quads = plan->n_section_quads = section->n_quads;

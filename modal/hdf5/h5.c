@@ -208,8 +208,10 @@ static shb_status create_from(const char *path, char *image, size_t size, hid_t 
 }
 
 shb_status h5_create_like(const char *earlier, const char *path, hid_t *file) {
-  *file = H5I_INVALID_HID;
-  SHB_CHECK(h5_stamp_check(earlier) == H5_INTACT, SHB_ERR_INPUT,
+  *file                      = H5I_INVALID_HID;
+  const h5_stamp_state stamp = h5_stamp_check(earlier);
+  SHB_CHECK(stamp != H5_UNREADABLE, SHB_ERR_IO, "%s: cannot be read: %s", earlier, strerror(errno));
+  SHB_CHECK(stamp == H5_INTACT, SHB_ERR_INPUT,
             "%s: was changed since it was written, or by another program", earlier);
   char      *image;
   size_t     size;
@@ -276,6 +278,7 @@ shb_status h5_open(const char *path, hid_t *file) {
   H5Eset_auto2(H5E_DEFAULT, NULL, NULL);
   SHB_TRY(check_readable(path));
   const h5_stamp_state stamp = h5_stamp_check(path);
+  SHB_CHECK(stamp != H5_UNREADABLE, SHB_ERR_IO, "%s: cannot be read: %s", path, strerror(errno));
   SHB_CHECK(stamp != H5_SHORT, SHB_ERR_IO, "%s: is truncated; write or copy it again", path);
   if (stamp == H5_CHANGED) warn_changed(path);
   hid_t list = access_list(false);
@@ -341,7 +344,8 @@ shb_status h5_check_earlier(const char *path) {
   if (access(path, F_OK) != 0) return SHB_OK;
   SHB_TRY(check_readable(path));
   const h5_stamp_state stamp = h5_stamp_check(path);
-  const bool           whole = stamp == H5_INTACT || (stamp == H5_UNSTAMPED && survives(path));
+  SHB_CHECK(stamp != H5_UNREADABLE, SHB_ERR_IO, "%s: cannot be read: %s", path, strerror(errno));
+  const bool whole = stamp == H5_INTACT || (stamp == H5_UNSTAMPED && survives(path));
   SHB_CHECK(whole, SHB_ERR_IO, "%s: is damaged, or was changed since it was written", path);
   return SHB_OK;
 }

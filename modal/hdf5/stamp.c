@@ -1,16 +1,16 @@
 #include "modal/hdf5/stamp.h"
 
 #include <endian.h>
+#include <errno.h>
 #include <inttypes.h>
 #include <stdbool.h>
 #include <stdint.h>
 #include <stdio.h>
-#include <stdlib.h>
 #include <string.h>
 
 static const char title[] = "shroudhb file";
 
-enum { BLOCK = 1 << 20 }; /* a multiple of 8 */
+enum { BLOCK = 1 << 16 }; /* a multiple of 8; on the stack, so that memory cannot fail */
 
 /* One-to-one in both arguments, so that two different words give two different sums. */
 static uint64_t add_word(uint64_t sum, uint64_t word) {
@@ -47,21 +47,24 @@ static bool read_stamp(FILE *file, size_t *length, uint64_t *sum) {
 }
 
 static h5_stamp_state check(FILE *file) {
-  size_t   length, found = 0;
-  uint64_t wanted, sum   = 0;
-  if (!read_stamp(file, &length, &wanted)) return H5_UNSTAMPED;
-  unsigned char *block = malloc(BLOCK);
-  if (!block) return H5_CHANGED;
+  size_t        length, found = 0;
+  uint64_t      wanted, sum   = 0;
+  unsigned char block[BLOCK];
+  const bool    stamped = read_stamp(file, &length, &wanted);
+  if (ferror(file)) return H5_UNREADABLE;
+  if (!stamped) return H5_UNSTAMPED;
   for (size_t n; (n = fread(block, 1, BLOCK, file)) > 0; found += n) sum = add_bytes(sum, block, n);
-  free(block);
+  if (ferror(file)) return H5_UNREADABLE;
   if (found < length) return H5_SHORT;
   return found == length && add_word(sum, length) == wanted ? H5_INTACT : H5_CHANGED;
 }
 
 h5_stamp_state h5_stamp_check(const char *path) {
   FILE *file = fopen(path, "rb");
-  if (!file) return H5_UNSTAMPED;
+  if (!file) return H5_UNREADABLE;
   const h5_stamp_state state = check(file);
+  const int            why   = errno;
   fclose(file);
+  errno = why;
   return state;
 }

@@ -12,13 +12,13 @@ enum { H5_STAMP = 512 };
 typedef enum {
   H5_UNSTAMPED, /* of another program, or of an earlier version */
   H5_INTACT,
-  H5_CHANGED, /* damaged, or edited by another program */
-  H5_SHORT    /* the file ends early */
+  H5_CHANGED,   /* damaged, or edited by another program */
+  H5_SHORT,     /* the file ends early */
+  H5_UNREADABLE /* there is no file, or the system does not let it be read: errno */
 } h5_stamp_state;
 
 void h5_stamp_make(const void *image, size_t size, char stamp[H5_STAMP]);
 
-/* A file that cannot be read is H5_UNSTAMPED. */
 h5_stamp_state h5_stamp_check(const char *path);
 
 #endif

@@ -88,6 +88,8 @@ def verdict(call, code, said, name, old, whole):
     ended = library_ended(code, said)
     if code not in (0, 2, 3, 4) and not ended:
         return f'exit code {code}'
+    if call == 'malloc' and code == 2:
+        return 'short memory is called an error of the input'
     lines = [line for line in said.splitlines() if line.strip()]
     if code and not lines:
         return 'no reason given'

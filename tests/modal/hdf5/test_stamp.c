@@ -1,6 +1,8 @@
 /* The stamp of a file: every damaged byte is found, and other programs read past it. An earlier
  * result that would crash HDF5 is told apart. */
+#include <errno.h>
 #include <signal.h>
+#include <sys/resource.h>
 #include <sys/wait.h>
 
 #include "modal/hdf5/stamp.h"
@@ -37,7 +39,7 @@ static void every_damaged_byte_is_found(void **state) {
   data[0] = 'S';
   spill(scratch("b.h5"), data, size);
   assert_int_equal(h5_stamp_check(scratch("b.h5")), H5_UNSTAMPED);
-  assert_int_equal(h5_stamp_check(scratch("none.h5")), H5_UNSTAMPED);
+  assert_int_equal(h5_stamp_check(scratch("none.h5")), H5_UNREADABLE);
   free(data);
 }
 
@@ -62,6 +64,28 @@ static void other_programs_read_and_edit_it(void **state) {
   assert_true(read[1] == 7);
   free(read);
   assert_ok(h5_close(file));
+}
+
+/* A process that may open no further file. */
+static void a_file_that_cannot_be_opened_is_not_taken_for_another(void **state) {
+  (void)state;
+  struct rlimit before, none;
+  hid_t         file;
+  write_sample("a.h5");
+  assert_int_equal(getrlimit(RLIMIT_NOFILE, &before), 0);
+  none          = before;
+  none.rlim_cur = 0;
+  setrlimit(RLIMIT_NOFILE, &none);
+  const h5_stamp_state found   = h5_stamp_check(scratch("a.h5"));
+  const int            why     = errno;
+  const shb_status     opened  = h5_open(scratch("a.h5"), &file);
+  const shb_status     earlier = h5_check_earlier(scratch("a.h5"));
+  setrlimit(RLIMIT_NOFILE, &before);
+  assert_int_equal(found, H5_UNREADABLE);
+  assert_int_equal(why, EMFILE);
+  assert_refused(opened, SHB_ERR_IO, "a.h5: cannot be opened: Too many open files");
+  assert_refused(earlier, SHB_ERR_IO, "a.h5: cannot be opened: Too many open files");
+  assert_int_equal(h5_stamp_check(scratch("a.h5")), H5_INTACT);
 }
 
 static void earlier_results_are_tried(void **state) {
@@ -113,6 +137,7 @@ int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(every_damaged_byte_is_found),
       cmocka_unit_test(other_programs_read_and_edit_it),
+      cmocka_unit_test(a_file_that_cannot_be_opened_is_not_taken_for_another),
       cmocka_unit_test(earlier_results_are_tried),
       cmocka_unit_test(a_crash_is_one_line),
   };
