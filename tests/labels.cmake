@@ -52,12 +52,16 @@ set(TIMEOUT_nightly 86400)
 set(TIMEOUT_unit 100)
 set(TIMEOUT_integration 600)
 set(TIMEOUT_slow 900)
-if(SHROUDHB_SANITIZE OR CMAKE_BUILD_TYPE STREQUAL "Debug") # no optimisation, every access checked
+# no optimisation, or every access checked
+if(SHROUDHB_SANITIZE OR SHROUDHB_TSAN OR CMAKE_BUILD_TYPE STREQUAL "Debug")
   foreach(label unit integration slow)
     math(EXPR TIMEOUT_${label} "10 * ${TIMEOUT_${label}}")
   endforeach()
 endif()
 
+if(SHROUDHB_TSAN)
+  list(APPEND SLOW_TESTS robust.threads)
+endif()
 if(TARGET shroudhb-study)
   list(APPEND SLOW_TESTS cases.scenes.shroud_angle cases.scenes.robust_preload)
   list(APPEND INTEGRATION_TESTS cases.scenes.soft_contact)

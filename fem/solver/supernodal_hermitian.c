@@ -1,7 +1,6 @@
 #include "fem/solver/supernodal_hermitian.h"
 
-#define HOT __attribute__((target_clones("arch=x86-64-v3", "default")))
-#define KERNEL static inline __attribute__((always_inline))
+#include "fem/solver/supernodal_solve_internal.h"
 
 enum { GROUP = 4 }; /* columns that are processed together */
 
@@ -13,20 +12,20 @@ typedef struct {
   const double *value; /* [columns][rows][2] */
 } supernode;
 
-KERNEL supernode get(const cholmod_factor *L, size_t s) {
+FEM_KERNEL supernode get(const cholmod_factor *L, size_t s) {
   const int *super = L->super, *pi = L->pi, *px = L->px;
   return (supernode){super[s + 1] - super[s], pi[s + 1] - pi[s], (const int *)L->s + pi[s],
                      (const double *)L->x + 2 * (size_t)px[s]};
 }
 
 /* w -= l v */
-KERNEL void take(const double *l, const fem_complex_lanes *v, fem_complex_lanes *w) {
+FEM_KERNEL void take(const double *l, const fem_complex_lanes *v, fem_complex_lanes *w) {
   w->re = w->re - l[0] * v->re + l[1] * v->im;
   w->im = w->im - l[0] * v->im - l[1] * v->re;
 }
 
 /* w_i -= L_ij w_j for the four columns from j and all rows i below them. */
-KERNEL void take_four(const double *l, size_t rows, size_t j, fem_complex_lanes *w) {
+FEM_KERNEL void take_four(const double *l, size_t rows, size_t j, fem_complex_lanes *w) {
   const double           *l0 = l, *l1 = l0 + 2 * rows, *l2 = l1 + 2 * rows, *l3 = l2 + 2 * rows;
   const fem_complex_lanes v0 = w[j], v1 = w[j + 1], v2 = w[j + 2], v3 = w[j + 3];
   for (size_t i = j + GROUP; i < rows; i++) {
@@ -40,7 +39,7 @@ KERNEL void take_four(const double *l, size_t rows, size_t j, fem_complex_lanes 
 }
 
 /* Solve L w = w. */
-KERNEL void forward(const supernode *s, fem_complex_lanes *w) {
+FEM_KERNEL void forward(const supernode *s, fem_complex_lanes *w) {
   const size_t rows = (size_t)s->rows, columns = (size_t)s->columns;
   for (size_t j = 0; j < columns; j += GROUP) {
     const double *l     = s->value + 2 * j * rows;
@@ -58,14 +57,14 @@ KERNEL void forward(const supernode *s, fem_complex_lanes *w) {
 }
 
 /* sum += conj(l) w */
-KERNEL void add(const double *l, const fem_complex_lanes *w, fem_complex_lanes *sum) {
+FEM_KERNEL void add(const double *l, const fem_complex_lanes *w, fem_complex_lanes *sum) {
   sum->re = sum->re + l[0] * w->re + l[1] * w->im;
   sum->im = sum->im + l[0] * w->im - l[1] * w->re;
 }
 
 /* sum_a = conj(L_ij) w_i over the rows below four columns. */
-KERNEL void sum_four(const double *l, size_t rows, size_t j, const fem_complex_lanes *w,
-                     fem_complex_lanes sum[GROUP]) {
+FEM_KERNEL void sum_four(const double *l, size_t rows, size_t j, const fem_complex_lanes *w,
+                         fem_complex_lanes sum[GROUP]) {
   const double     *l0 = l, *l1 = l0 + 2 * rows, *l2 = l1 + 2 * rows, *l3 = l2 + 2 * rows;
   fem_complex_lanes s0 = {{0}, {0}}, s1 = s0, s2 = s0, s3 = s0;
   for (size_t i = j + GROUP; i < rows; i++) {
@@ -79,7 +78,7 @@ KERNEL void sum_four(const double *l, size_t rows, size_t j, const fem_complex_l
 }
 
 /* Solve L^H w = w. */
-KERNEL void backward(const supernode *s, fem_complex_lanes *w) {
+FEM_KERNEL void backward(const supernode *s, fem_complex_lanes *w) {
   const size_t rows = (size_t)s->rows, columns = (size_t)s->columns;
   for (size_t left = columns; left > 0;) {
     const size_t      group = left % GROUP ? left % GROUP : GROUP, j = left - group;
@@ -98,8 +97,8 @@ KERNEL void backward(const supernode *s, fem_complex_lanes *w) {
   }
 }
 
-HOT void fem_supernodal_solve_hermitian(const cholmod_factor *L, fem_complex_lanes *x,
-                                        fem_complex_lanes *work) {
+FEM_HOT void fem_supernodal_solve_hermitian(const cholmod_factor *L, fem_complex_lanes *x,
+                                            fem_complex_lanes *work) {
   for (size_t k = 0; k < L->nsuper; k++) {
     const supernode s = get(L, k);
     for (int i = 0; i < s.rows; i++) work[i] = x[s.row[i]];

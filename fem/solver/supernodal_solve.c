@@ -1,7 +1,6 @@
 #include "fem/solver/supernodal_solve.h"
 
-#define HOT __attribute__((target_clones("arch=x86-64-v3", "default")))
-#define KERNEL static inline __attribute__((always_inline))
+#include "fem/solver/supernodal_solve_internal.h"
 
 enum { GROUP = 8 }; /* columns that are processed together */
 
@@ -12,7 +11,7 @@ typedef struct {
   const double *value; /* [columns][rows] */
 } supernode;
 
-KERNEL supernode get(const cholmod_factor *L, size_t s) {
+FEM_KERNEL supernode get(const cholmod_factor *L, size_t s) {
   const int *super = L->super, *pi = L->pi, *px = L->px;
   return (supernode){super[s + 1] - super[s], pi[s + 1] - pi[s], (const int *)L->s + pi[s],
                      (const double *)L->x + px[s]};
@@ -28,7 +27,7 @@ size_t fem_supernodal_rows(const cholmod_factor *L) {
 }
 
 /* w_i -= L_ij w_j for the eight columns from j and all rows i below them. */
-KERNEL void take_eight(const double *l, size_t rows, size_t j, fem_lanes *w) {
+FEM_KERNEL void take_eight(const double *l, size_t rows, size_t j, fem_lanes *w) {
   const double   *l0 = l, *l1 = l0 + rows, *l2 = l1 + rows, *l3 = l2 + rows;
   const double   *l4 = l3 + rows, *l5 = l4 + rows, *l6 = l5 + rows, *l7 = l6 + rows;
   const fem_lanes v0 = w[j], v1 = w[j + 1], v2 = w[j + 2], v3 = w[j + 3];
@@ -39,7 +38,7 @@ KERNEL void take_eight(const double *l, size_t rows, size_t j, fem_lanes *w) {
 }
 
 /* Solve L w = w. */
-KERNEL void forward(const supernode *s, fem_lanes *w) {
+FEM_KERNEL void forward(const supernode *s, fem_lanes *w) {
   const size_t rows = (size_t)s->rows, columns = (size_t)s->columns;
   for (size_t j = 0; j < columns; j += GROUP) {
     const double *l     = s->value + j * rows;
@@ -54,8 +53,8 @@ KERNEL void forward(const supernode *s, fem_lanes *w) {
 }
 
 /* sum_a = L_ij w_i over the rows below eight columns. */
-KERNEL void sum_eight(const double *l, size_t rows, size_t j, const fem_lanes *w,
-                      fem_lanes sum[GROUP]) {
+FEM_KERNEL void sum_eight(const double *l, size_t rows, size_t j, const fem_lanes *w,
+                          fem_lanes sum[GROUP]) {
   const double *l0 = l, *l1 = l0 + rows, *l2 = l1 + rows, *l3 = l2 + rows;
   const double *l4 = l3 + rows, *l5 = l4 + rows, *l6 = l5 + rows, *l7 = l6 + rows;
   fem_lanes     s0 = {0}, s1 = {0}, s2 = {0}, s3 = {0}, s4 = {0}, s5 = {0}, s6 = {0}, s7 = {0};
@@ -69,7 +68,7 @@ KERNEL void sum_eight(const double *l, size_t rows, size_t j, const fem_lanes *w
 }
 
 /* Solve L^T w = w. */
-KERNEL void backward(const supernode *s, fem_lanes *w) {
+FEM_KERNEL void backward(const supernode *s, fem_lanes *w) {
   const size_t rows = (size_t)s->rows, columns = (size_t)s->columns;
   for (size_t left = columns; left > 0;) {
     const size_t  group = left % GROUP ? left % GROUP : GROUP, j = left - group;
@@ -86,7 +85,7 @@ KERNEL void backward(const supernode *s, fem_lanes *w) {
   }
 }
 
-HOT void fem_supernodal_solve(const cholmod_factor *L, fem_lanes *x, fem_lanes *work) {
+FEM_HOT void fem_supernodal_solve(const cholmod_factor *L, fem_lanes *x, fem_lanes *work) {
   for (size_t k = 0; k < L->nsuper; k++) {
     const supernode s = get(L, k);
     for (int i = 0; i < s.rows; i++) work[i] = x[s.row[i]];

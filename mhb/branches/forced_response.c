@@ -123,10 +123,14 @@ static shb_status copy_curves(const mhb_response *own, mhb_response **out) {
   return SHB_OK;
 }
 
+/* Under the lock: a thread that ends a preload gives its curves away. */
 static preload_curves *preload_of(sweep *s, const mhb_response *own) {
+  preload_curves *found = NULL;
+  mhb_publisher_lock(&s->publisher, true);
   for (int i = 0; i < s->settings->n_preloads; i++)
-    if (s->preload[i].own == own) return &s->preload[i];
-  return NULL;
+    if (s->preload[i].own == own) found = &s->preload[i];
+  mhb_publisher_lock(&s->publisher, false);
+  return found;
 }
 
 /* ---- the monitor ---- */

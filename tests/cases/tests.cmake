@@ -20,7 +20,7 @@ shb_test(cases/commands contact_points shb_cases_commands tests_models)
 target_sources(test_cases_commands_contact_points PRIVATE bench/shroud_face.c)
 add_test(NAME cases.commands.commands
   COMMAND sh ${CMAKE_CURRENT_SOURCE_DIR}/cases/commands/test_commands.sh $<TARGET_FILE:shroudhb>)
-if(NOT SHROUDHB_SANITIZE AND NOT SHROUDHB_FUZZ) # sanitizers reserve more than any limit
+if(NOT SHROUDHB_SANITIZE AND NOT SHROUDHB_FUZZ AND NOT SHROUDHB_TSAN) # they reserve more
   add_test(NAME cases.commands.address_space
     COMMAND sh ${CMAKE_CURRENT_SOURCE_DIR}/cases/commands/test_address_space.sh
             $<TARGET_FILE_DIR:shroudhb>)

@@ -15,7 +15,15 @@ if(SHROUDHB_PYTHON)
   set(CONFIGURATION CONFIGURATIONS nightly)
   shb_robust_test(kills_many kills ${SCENE} 170)
   unset(CONFIGURATION)
-  if(NOT SHROUDHB_SANITIZE AND NOT SHROUDHB_FUZZ) # sanitizers replace the same functions
+  if(SHROUDHB_TSAN) # the target thread_test builds what the test needs
+    add_executable(race robust/race.c)
+    target_link_libraries(race PRIVATE OpenMP::OpenMP_C)
+    add_custom_target(thread_test DEPENDS race shroudhb-mesh shroudhb-modal shroudhb-mhb
+      shroudhb-integrate shroudhb-design shroudhb-study)
+    shb_robust_test(threads threads $<TARGET_FILE:race> ${SCENE})
+  endif()
+  # sanitizers replace the same functions
+  if(NOT SHROUDHB_SANITIZE AND NOT SHROUDHB_FUZZ AND NOT SHROUDHB_TSAN)
     add_library(fail_nth MODULE robust/fail_nth.c)
     target_link_libraries(fail_nth PRIVATE PkgConfig::HDF5 ${CMAKE_DL_LIBS})
     target_compile_definitions(fail_nth PRIVATE _GNU_SOURCE)
