@@ -373,6 +373,10 @@ static const case_key table[] = {
     {"mhb.output", CASE_LABEL, "", AT(mhb.output), .stages = CASE_MHB, .when = CASE_IF_TRACKED,
      .help = "whose peak: a probe, or contact for the first contact point; default: the first "
              "probe"},
+    {"mhb.output_harmonic", CASE_INTEGER, "", 1, 15, .fallback = "1", AT(mhb.output_harmonic),
+     .stages = CASE_MHB, .when = CASE_IF_TRACKED,
+     .help = "harmonic of the excitation whose amplitude that is; of the motion there must be as "
+             "many, times mhb.subharmonics"},
     {"mhb.harmonics", CASE_AUTO, "", 1, MOST_HARMONICS, .fallback = "3", AT(mhb.harmonics),
      .stages = CASE_MHB,
      .help = "harmonics of the balance, counted in the fundamental; auto: chosen at each point by "

@@ -9,10 +9,10 @@
 
 /* Points of the coarse curve below 1 - SLACK - SPREAD error of its highest are not sampled, but at
  * least below LEAST. The error is the largest at its maxima, or UNKNOWN where one has no fine
- * solution. Three harmonics are 8 % off on z_notch_blade at low preloads, 0.1 % at high ones. Between
- * maxima they lack narrow superharmonic resonances of a contact that slips all the time. Of 400
- * random contacts one such peak is 3.5 % higher than the coarse curve there, 2.4 % below its
- * highest: a SLACK of 0.03 is not enough. */
+ * solution. Three harmonics are 8 % off on z_notch_blade at low preloads, 0.1 % at high ones.
+ * Between maxima they lack narrow superharmonic resonances of a contact that slips all the time.
+ * One such peak of 400 random contacts is 3.5 % above the coarse curve, which is 2.4 % below its
+ * highest there. A SLACK of 0.03 is not enough. */
 static const double SLACK = 0.05, SPREAD = 3, LEAST = 0.6, UNKNOWN = 0.1;
 /* Part of the highest point from which on a maximum of the coarse curve is high. */
 static const double HIGH = 0.9;

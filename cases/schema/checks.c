@@ -104,6 +104,24 @@ static void check_tolerance(case_reader *r) {
                       "law is contact.accuracy");
 }
 
+/* The motion must have the harmonic whose peaks are followed. */
+static void check_output_harmonic(case_reader *r) {
+  static const char   path[] = "mhb.output_harmonic";
+  const mhb_settings *mhb    = &r->file->mhb;
+  const int           most   = mhb->harmonics / mhb->subharmonics;
+  if (!case_reader_given(r, path) || !case_reader_good(r, path)) return;
+  if (mhb->track != MHB_TRACK_PEAKS) {
+    case_reader_issue(r, path, "only says something with mhb.track: peak");
+    return;
+  }
+  if (!case_reader_good(r, "mhb.harmonics") || mhb->harmonics == 0 || mhb->output_harmonic <= most)
+    return;
+  case_reader_issue(r, path,
+                    "is %d, but the balance has %d harmonics of the excitation; raise "
+                    "mhb.harmonics, best to twice that and one, or give auto",
+                    mhb->output_harmonic, most);
+}
+
 /* Only one parameter can be the continuation parameter. */
 static void check_followed(case_reader *r) {
   const mhb_settings *mhb    = &r->file->mhb;
@@ -337,6 +355,7 @@ bool case_check_values(case_reader *r, int stages) {
   check_speeds(r);
   check_band(r);
   if (stages & CASE_MHB) check_followed(r);
+  if (stages & CASE_MHB) check_output_harmonic(r);
   if (stages & CASE_MHB) check_run_up(r);
   if (stages & CASE_MHB) check_mistuning(r, stages);
   case_check_interfaces(r, stages);

@@ -19,6 +19,12 @@ int mhb_outputs(const mhb_balance *b) {
   return b->receptance->model->n_probes + 3 * pairs;
 }
 
+int mhb_output_harmonic(const mhb_balance *b) {
+  const int wanted = b->settings->output_harmonic, nu = b->receptance->nu;
+  const int k = nu * (wanted > 1 ? wanted : 1);
+  return k <= b->m ? k : b->m;
+}
+
 /* Change of the contact forces along dx and with the parameter by dvalue, harmonic k. */
 static void force_change(const mhb_balance *b, const double *dx, double dvalue, int k,
                          double complex *dp) {
@@ -101,7 +107,7 @@ static double ring_slope(mhb_balance *b, const mhb_curve_point *point, int k, in
 
 double mhb_output_slope(mhb_balance *b, const mhb_curve_point *point, int o) {
   const mhb_receptance *r      = b->receptance;
-  int                   probes = r->model->n_probes, k = r->nu <= b->m ? r->nu : b->m;
+  int                   probes = r->model->n_probes, k = mhb_output_harmonic(b);
   if (r->ring) return ring_slope(b, point, k, o);
   if (o >= probes) {
     size_t        at = (size_t)(o - probes) * (size_t)b->nb + (size_t)(2 * k - 1);

@@ -11,12 +11,16 @@
  * Without probes the contact motion takes their place. */
 int mhb_outputs(const mhb_balance *balance);
 
+/* The harmonic of the balance whose amplitude outputs have: that of the settings, counted in the
+ * excitation. */
+int mhb_output_harmonic(const mhb_balance *balance);
+
 /* Motion q[3 probes] of harmonic k at a point, m, and its change dq along the tangent. */
 void mhb_probe_change(mhb_balance *balance, const mhb_curve_point *point, int k, double complex *q,
                       double complex *dq);
 
-/* d a^2/ds of output o along the tangent of a point; 0 below 1e-9 a^2. a is the amplitude at the
- * excitation's frequency. For a probe a^2 is the sum over its three components. */
+/* d a^2/ds of output o along the tangent of a point; 0 below 1e-9 a^2. a is the amplitude of
+ * its harmonic. For a probe a^2 is the sum over its three components. */
 double mhb_output_slope(mhb_balance *balance, const mhb_curve_point *point, int o);
 
 #endif

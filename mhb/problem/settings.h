@@ -99,6 +99,7 @@ typedef struct {
   mhb_save_settings   save;      /* points of which modal amplitudes are kept */
   mhb_track           track;     /* followed along the parameter over range, within frequency */
   char                output[MHB_NAME]; /* whose peak: a probe or "contact"; "": the first probe */
+  int output_harmonic; /* of the excitation: of outputs whose peaks are located; 0, 1: the first */
   const struct mhb_speed_table
       *run_up; /* NULL: one speed. Else the modal model follows the frequency. */
   const struct modal_nodal_diameters

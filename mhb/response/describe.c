@@ -35,14 +35,15 @@ static const modal_model *shown(const modal_model *model, const mhb_settings *se
 
 shb_status mhb_response_describe(mhb_response *response, const modal_model *model,
                                  const mhb_settings *settings) {
-  const modal_model *modes = settings->ring ? settings->ring->tuned : shown(model, settings);
-  size_t             m     = (size_t)modes->n_modes;
-  response->n_modes        = modes->n_modes;
-  response->ring           = settings->ring ? settings->ring->blades : 0;
-  response->subharmonics   = settings->subharmonics;
-  response->engine_order   = settings->engine_order;
-  response->blades         = settings->blades;
-  response->run_up         = settings->run_up != NULL;
+  const modal_model *modes  = settings->ring ? settings->ring->tuned : shown(model, settings);
+  size_t             m      = (size_t)modes->n_modes;
+  response->n_modes         = modes->n_modes;
+  response->ring            = settings->ring ? settings->ring->blades : 0;
+  response->subharmonics    = settings->subharmonics;
+  response->output_harmonic = settings->output_harmonic;
+  response->engine_order    = settings->engine_order;
+  response->blades          = settings->blades;
+  response->run_up          = settings->run_up != NULL;
   response->lacks_diameters =
       settings->stability != MHB_STABILITY_NEVER && !mhb_judges_stability(settings);
   response->parameter      = settings->parameter;

@@ -28,11 +28,12 @@ mhb_response *mhb_response_like(const mhb_response *response) {
   mhb_response *like =
       mhb_response_create(response->n_pairs, response->n_probes, response->n_harmonics);
   if (!like) return NULL;
-  like->subharmonics  = response->subharmonics;
-  like->parameter     = response->parameter;
-  like->n_multipliers = response->n_multipliers;
-  like->ring          = response->ring;
-  like->n_interfaces  = response->n_interfaces;
+  like->subharmonics    = response->subharmonics;
+  like->parameter       = response->parameter;
+  like->n_multipliers   = response->n_multipliers;
+  like->ring            = response->ring;
+  like->output_harmonic = response->output_harmonic;
+  like->n_interfaces    = response->n_interfaces;
   return like;
 }
 
@@ -81,13 +82,18 @@ bool mhb_response_is_linear(const mhb_response *r, const mhb_branch *b, int poin
   return true;
 }
 
+int mhb_response_harmonic(const mhb_response *r, const mhb_branch *b) {
+  return (b->order > 1 ? b->order : 1) * (r->output_harmonic > 1 ? r->output_harmonic : 1);
+}
+
 double mhb_response_amplitude(const mhb_response *r, const mhb_branch *b, int point, int place) {
   const size_t          K     = (size_t)b->n_harmonics + 1;
   const bool            probe = place < r->n_probes;
   const size_t          rows  = (size_t)(probe ? r->n_probes : r->n_pairs);
   const size_t          row = (size_t)point * rows + (size_t)(probe ? place : place - r->n_probes);
   const double complex *x   = (probe ? b->probe : b->motion) + row * 3 * K;
-  const size_t          driven = (size_t)b->order < K ? (size_t)b->order : K - 1;
+  const size_t          wanted = (size_t)mhb_response_harmonic(r, b);
+  const size_t          driven = wanted < K ? wanted : K - 1;
   double                square = 0;
   for (size_t axis = 0; axis < 3; axis++) square += pow(cabs(x[axis * K + driven]), 2);
   return sqrt(square);

@@ -22,7 +22,9 @@ const char *mhb_special_name(int special);
 
 /* Whether all contacts stick or are open throughout, at a point. */
 bool mhb_response_is_linear(const mhb_response *response, const mhb_branch *branch, int point);
-/* Amplitude at the excitation's frequency, m; its square is the sum over the three components.
+/* The harmonic of a branch whose amplitude outputs have. */
+int mhb_response_harmonic(const mhb_response *response, const mhb_branch *branch);
+/* Amplitude of that harmonic, m; its square is the sum over the three components.
  *   place  in  a probe, or the number of probes plus a pair, whose motion it is */
 double mhb_response_amplitude(const mhb_response *response, const mhb_branch *branch, int point,
                               int place);

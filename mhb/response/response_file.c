@@ -96,6 +96,8 @@ static shb_status write_tracking(hid_t file, const mhb_response *response) {
   if (!response->track) return SHB_OK;
   SHB_TRY(h5_write_attribute_text(file, "/", "track", response->track));
   SHB_TRY(h5_write_attribute_text(file, "/", "output", response->output));
+  if (response->output_harmonic > 1)
+    SHB_TRY(h5_write_attribute_int(file, "/", "output_harmonic", response->output_harmonic));
   if (o->kind == MHB_OPTIMUM_NONE) return SHB_OK;
   const h5_shape one  = {.rank = 0};
   const char    *unit = mhb_parameter_unit(response->parameter);
@@ -117,6 +119,7 @@ static shb_status read_tracking(hid_t file, const char *path, mhb_response *resp
   char        *kind = NULL;
   SHB_TRY(h5_read_attribute_text(file, "/", "track", &response->track));
   SHB_TRY(h5_read_attribute_text(file, "/", "output", &response->output));
+  SHB_TRY(h5_read_attribute_int(file, "/", "output_harmonic", 1, &response->output_harmonic));
   if (!response->track || !h5_exists(file, "/optimum")) return SHB_OK;
   SHB_TRY(h5_read_attribute_text(file, "/optimum", "kind", &kind));
   int at = 0;

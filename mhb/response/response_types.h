@@ -218,8 +218,9 @@ typedef struct {
   bool    unfinished;      /* the run that makes it has more to do */
   bool    lacks_diameters; /* of its disc, without which stability cannot be judged */
   bool    run_up; /* the speed follows the frequency on the engine order; modes of the top speed */
-  double  psi, phi;       /* rad, mean of the pairs */
-  char   *track, *output; /* with mhb.track: what is followed, of which output; else NULL */
+  double  psi, phi;        /* rad, mean of the pairs */
+  char   *track, *output;  /* with mhb.track: what is followed, of which output; else NULL */
+  int     output_harmonic; /* of the excitation: of the amplitude of outputs; 0, 1: the first */
   mhb_optimum               optimum;
   mhb_samples              *samples; /* of a mistuned ring; NULL: none were drawn */
   const modal_contact_face *face;    /* that the maps are written on; NULL: no maps; not owned */

@@ -3,10 +3,7 @@
 #include <math.h>
 #include <string.h>
 
-/* The harmonic of the excitation. */
-static int driven_harmonic(const mhb_balance *b) {
-  return b->receptance->nu <= b->m ? b->receptance->nu : b->m;
-}
+#include "mhb/continuation/outputs.h"
 
 static double squared(double complex a) {
   return creal(a) * creal(a) + cimag(a) * cimag(a);
@@ -79,7 +76,7 @@ static void of_probe(mhb_balance *b, int probe, int k, mhb_amplitude *out) {
 }
 
 void mhb_output_amplitude(mhb_balance *b, const double *x, int output, mhb_amplitude *out) {
-  int k = driven_harmonic(b), probes = b->receptance->model->n_probes;
+  int k = mhb_output_harmonic(b), probes = b->receptance->model->n_probes;
   out->amplitude = out->by_omega = out->by_scale = out->by_damping = 0;
   memset(out->by_x, 0, sizeof(double) * (size_t)b->n);
   memset(out->weight, 0, sizeof(double complex) * 3 * (size_t)b->n_pairs);
@@ -89,7 +86,7 @@ void mhb_output_amplitude(mhb_balance *b, const double *x, int output, mhb_ampli
 
 double mhb_amplitude_by_parameter(const mhb_balance *b, const mhb_amplitude *amplitude,
                                   mhb_parameter parameter, const double *by_parameter) {
-  int    k   = driven_harmonic(b);
+  int    k   = mhb_output_harmonic(b);
   double sum = 0;
   if (parameter == MHB_IN_FREQUENCY) return amplitude->by_omega;
   if (parameter == MHB_IN_SCALE) return amplitude->by_scale;

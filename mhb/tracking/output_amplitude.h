@@ -2,8 +2,8 @@
  *
  *   A = (sum over the three components of |a_k|^2)^(1/2)
  *
- * a_k is the harmonic of the excitation's frequency, of a probe or of the relative motion of a
- * contact pair. A probe answers the load and the contact forces p(x), so its gradient by x passes
+ * a_k is the harmonic of the output (mhb_output_harmonic), of a probe or of the relative motion of
+ * a contact pair. A probe answers the load and the contact forces p(x), so its gradient by x passes
  * through dp/dx. */
 #ifndef MHB_TRACKING_OUTPUT_AMPLITUDE_H
 #define MHB_TRACKING_OUTPUT_AMPLITUDE_H

@@ -37,6 +37,13 @@ static const double HIGHER = 1e-4;
 
 enum { N_SWEEPS = 5, MOST_FURTHER_SWEEPS = 30, MOST_HARMONICS = 31, LEAST_HARMONICS = 7 };
 
+/* The fewest harmonics where the program chooses: twice that of the output, and one more. */
+static int least_harmonics(const mhb_settings *s) {
+  int m = LEAST_HARMONICS;
+  while (m < 2 * s->output_harmonic + 1) m = 2 * m + 1;
+  return m;
+}
+
 typedef struct {
   const modal_model  *model;
   const mhb_settings *asked;
@@ -121,7 +128,7 @@ static shb_status sweep_at(const tracking_run *run, double value, bool coarse,
   s.search.starts = 0;
   s.resume        = false;
   if (coarse && s.motion_tolerance > 0) {
-    s.harmonics        = LEAST_HARMONICS * s.subharmonics;
+    s.harmonics        = least_harmonics(&s) * s.subharmonics;
     s.motion_tolerance = 0;
   }
   shb_progress quiet  = shb_progress_start("mhb", true, false);
@@ -222,7 +229,7 @@ static shb_status follow_with(tracking_run *run, const mhb_branch *from, int poi
  * cannot be followed is lost; it counts if it is the highest of its sweep. */
 static shb_status follow(tracking_run *run, const mhb_branch *from, int point, double value,
                          bool high) {
-  int  fixed = run->asked->harmonics, m = fixed > 0 ? fixed : LEAST_HARMONICS;
+  int  fixed = run->asked->harmonics, m = fixed > 0 ? fixed : least_harmonics(run->asked);
   bool found = false, good = false;
   for (;; m = 2 * m + 1) {
     bool last = fixed > 0 || m >= MOST_HARMONICS;

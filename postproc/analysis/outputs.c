@@ -121,6 +121,11 @@ double post_peak_to_peak(int n, int m, const double complex *a) {
 
 post_output post_output_primary(const mhb_response *response) {
   if (response->ring) return (post_output){POST_PLACE_WORST, 0, POST_WHOLE};
+  if (response->output && strcmp(response->output, "contact") == 0)
+    return (post_output){POST_PLACE_CONTACT, 0, POST_WHOLE};
+  for (int i = 0; response->output && i < response->n_probes; i++)
+    if (strcmp(response->output, response->probe_name[i]) == 0)
+      return (post_output){POST_PLACE_PROBE, i, POST_WHOLE};
   return (post_output){response->n_probes > 0 ? POST_PLACE_PROBE : POST_PLACE_CONTACT, 0,
                        POST_WHOLE};
 }
@@ -128,6 +133,16 @@ post_output post_output_primary(const mhb_response *response) {
 int post_first_harmonic(const mhb_branch *branch) {
   int first = branch->order > 1 ? branch->order : 1;
   return first <= branch->n_harmonics ? first : branch->n_harmonics;
+}
+
+int post_output_harmonic(const mhb_response *response, const mhb_branch *branch) {
+  const int k = mhb_response_harmonic(response, branch);
+  return k <= branch->n_harmonics ? k : branch->n_harmonics;
+}
+
+void post_harmonic_name(const mhb_response *response, char out[32]) {
+  snprintf(out, 32, "first harmonic");
+  if (response->output_harmonic > 1) snprintf(out, 32, "harmonic %d", response->output_harmonic);
 }
 
 /* Harmonics of an output at a point: [n][m + 1]. */
@@ -199,7 +214,7 @@ double post_amplitude(const mhb_response *response, const mhb_branch *branch, in
 
 shb_status post_series(const mhb_response *response, const mhb_branch *branch, post_output output,
                        post_quantity quantity, double **values) {
-  int     points = branch->n_points, first = post_first_harmonic(branch);
+  int     points = branch->n_points, first = post_output_harmonic(response, branch);
   double *out = malloc((size_t)(points > 0 ? points : 1) * sizeof *out);
   SHB_CHECK(out, SHB_ERR_IO, "not enough memory for a curve of %d points", points);
   for (int p = 0; p < points; p++) out[p] = value_of(response, branch, p, output, quantity, first);

@@ -34,11 +34,15 @@ double post_semi_major_axis(int n, const double complex *a, int stride);
  * instants to rounding. NAN if out of memory. */
 double post_peak_to_peak(int n, int m, const double complex *a);
 
-/* Default output of a response: the first probe, else the first contact; of a ring of different
- * blades on the one that swings highest. */
+/* Default output of a response: that of mhb.track, else the first probe, else the first contact. Of
+ * a ring of different blades it is on the one that swings highest. */
 post_output post_output_primary(const mhb_response *response);
 /* Harmonic index of the excitation's first harmonic: the order of the branch. */
 int post_first_harmonic(const mhb_branch *branch);
+/* Harmonic index of the amplitude that outputs have: the first but with mhb.output_harmonic. */
+int post_output_harmonic(const mhb_response *response, const mhb_branch *branch);
+/* Its name: "first harmonic", "harmonic 3". */
+void post_harmonic_name(const mhb_response *response, char out[32]);
 
 /* Amplitude of harmonic k of an output at a point of a branch, m; 0 above its harmonics. */
 double post_amplitude(const mhb_response *response, const mhb_branch *branch, int point,

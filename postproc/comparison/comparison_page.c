@@ -122,11 +122,12 @@ static void put_legend(const post_comparison *c, post_buffer *out) {
 static void put_curves(const post_comparison *c, post_buffer *out) {
   const post_analysis *a    = c->run[0].analysis;
   const post_unit      unit = post_unit_length(largest(c));
-  char                 place[128], label[256], below[POST_LABEL];
+  char                 place[128], label[256], below[POST_LABEL], harmonic[32];
   double               y[2], x[2];
   find_ranges(c, y, x);
   post_place_name(a->response, a->primary, place);
-  snprintf(label, sizeof label, "%s %s, first harmonic, %s", place, post_axis_name(a->primary),
+  post_harmonic_name(a->response, harmonic);
+  snprintf(label, sizeof label, "%s %s, %s, %s", place, post_axis_name(a->primary), harmonic,
            unit.name);
   post_abscissa_label(&a->abscissa, "", below);
   post_put(out, "<section>\n<h2>Curves</h2>\n<div class=\"card\"><figure><div class=\"chart\">\n");

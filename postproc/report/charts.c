@@ -13,9 +13,10 @@ enum { SHOWN_HARMONICS = 8 };
 
 /* Label such as "tip motion, first harmonic, µm". */
 static void amplitude_label(const post_analysis *analysis, const char *unit, char out[256]) {
-  char place[128];
+  char place[128], harmonic[32];
   post_place_name(analysis->response, analysis->primary, place);
-  snprintf(out, 256, "%s %s, first harmonic, %s", place, post_axis_name(analysis->primary), unit);
+  post_harmonic_name(analysis->response, harmonic);
+  snprintf(out, 256, "%s %s, %s, %s", place, post_axis_name(analysis->primary), harmonic, unit);
 }
 
 /* Range of the groups' highest peaks. */

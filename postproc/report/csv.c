@@ -65,8 +65,9 @@ static void put_header(const mhb_response *response, post_buffer *out) {
 }
 
 /* The columns of one place from its harmonics, [3][m + 1]. */
-static void put_place(const mhb_branch *branch, const double complex *a, post_buffer *out) {
-  int m = branch->n_harmonics, first = post_first_harmonic(branch);
+static void put_place(const mhb_response *response, const mhb_branch *branch,
+                      const double complex *a, post_buffer *out) {
+  int m = branch->n_harmonics, first = post_output_harmonic(response, branch);
   for (int i = 0; i < 3; i++) {
     const double complex *axis = a + i * (m + 1);
     put_number(out, cabs(axis[first]));
@@ -153,9 +154,9 @@ static void put_point(const mhb_response *response, int b, int point, post_buffe
   if (followed(response)) put_number(out, branch->value[point]);
   if (response->ring) put_ring(response, branch, point, out);
   for (size_t q = 0; q < probes; q++)
-    put_place(branch, branch->probe + (i * probes + q) * 3 * m1, out);
+    put_place(response, branch, branch->probe + (i * probes + q) * 3 * m1, out);
   for (size_t p = 0; p < pairs; p++) {
-    put_place(branch, branch->motion + (i * pairs + p) * 3 * m1, out);
+    put_place(response, branch, branch->motion + (i * pairs + p) * 3 * m1, out);
     for (size_t s = 0; s < 3; s++) put_number(out, branch->state[(i * pairs + p) * 3 + s]);
     put_number(out, branch->dissipation[i * pairs + p]);
   }

@@ -223,9 +223,11 @@ static shb_status put_folds(const post_analysis *analysis, double *const *values
 static shb_status put_output(const post_analysis *analysis, const column *c, sheet *sheets,
                              post_buffer *out) {
   double **values;
+  char     harmonic[32];
+  post_harmonic_name(analysis->response, harmonic);
   SHB_TRY(post_values(analysis->response, c->output, c->quantity, &values));
   post_put(out, ",\"axis\":\"%s\",\"quantity\":\"%s\"", post_axis_name(c->output),
-           c->quantity == POST_QUANTITY_FIRST_HARMONIC ? "first harmonic" : "peak to peak");
+           c->quantity == POST_QUANTITY_FIRST_HARMONIC ? harmonic : "peak to peak");
   shb_status status = put_track(analysis, values, out);
   if (status == SHB_OK) status = put_resonances(analysis, values, out);
   if (status == SHB_OK) status = put_peaks(analysis, values, out);

@@ -86,18 +86,21 @@ static void put_header(const post_analysis *analysis, const post_origin *source,
 
 /* ---------------------------------------------------------------- main chart */
 
-static void put_tools(post_buffer *out) {
+static void put_tools(const mhb_response *response, post_buffer *out) {
+  char harmonic[32];
+  post_harmonic_name(response, harmonic);
   post_put(out,
            "<div class=\"tools\">\n<label>Where<select id=\"place\"></select></label>\n"
            "<label>Motion<select id=\"axis\"></select></label>\n"
            "<fieldset><legend>Measure</legend><span class=\"switch\">"
-           "<button type=\"button\" data-quantity=\"first harmonic\">First harmonic</button>"
+           "<button type=\"button\" data-quantity=\"%s\">%c%s</button>"
            "<button type=\"button\" data-quantity=\"peak to peak\">Peak to "
            "peak</button></span></fieldset>\n"
            "<fieldset><legend>Amplitude</legend><span class=\"switch\">"
            "<button type=\"button\" data-scale=\"linear\">Linear</button>"
            "<button type=\"button\" data-scale=\"log\">Logarithmic</button></span></fieldset>\n"
-           "<button type=\"button\" id=\"whole\">Whole range</button>\n</div>\n");
+           "<button type=\"button\" id=\"whole\">Whole range</button>\n</div>\n",
+           harmonic, toupper(harmonic[0]), harmonic + 1);
 }
 
 static void put_key(const post_group *group, int index, post_buffer *out) {
@@ -124,11 +127,12 @@ static void put_keys(const post_analysis *analysis, post_buffer *out) {
 }
 
 static void put_main(const post_analysis *analysis, const char *case_name, post_buffer *out) {
-  char frequency[POST_PLACE];
+  char frequency[POST_PLACE], harmonic[32];
+  post_harmonic_name(analysis->response, harmonic);
   post_put(out, "<section id=\"chart\">\n<h2>%s%s</h2>\n<div class=\"card\"><figure>\n",
            analysis->response->track ? "Tracked peaks" : "Forced response",
            post_frequency_text(analysis, frequency));
-  put_tools(out);
+  put_tools(analysis->response, out);
   post_put(out, "<div class=\"chart\">\n");
   post_chart_response(analysis, case_name, out);
   post_put(out, "<div id=\"readout\" class=\"readout\" hidden></div>\n</div>\n");
@@ -138,9 +142,8 @@ static void put_main(const post_analysis *analysis, const char *case_name, post_
       "<figcaption class=\"note\">Solid: stable. Dashed: modulated. Dotted: beyond a fold, never "
       "seen. Thin: not judged. Bands and bars: the whole ring, from the mean to the worst blade. "
       "Small circles: folds; full ones: flips (period doubling) and Neimark-Sacker points. "
-      "Dashed grey: the linear limits, contact open (long) and stuck (short). Amplitude of the "
-      "first "
-      "harmonic: the largest displacement it reaches in a cycle.</figcaption>\n"
+      "Dashed grey: the linear limits, contact open (long) and stuck (short). Amplitude, %s: "
+      "the largest displacement it reaches in a cycle.</figcaption>\n"
       "<p class=\"hint\">Point at a curve to read it, click or tap it to see its contact, "
       "harmonics and "
       "motion below. Drag a rectangle, turn the wheel (after a click into the chart, or with Ctrl) "
@@ -149,7 +152,8 @@ static void put_main(const post_analysis *analysis, const char *case_name, post_
       "and "
       "between curves, Enter chooses, Escape resets.</p>\n<p id=\"spoken\" class=\"hidden\" "
       "aria-live=\"polite\"></p>\n"
-      "</figure></div>\n</section>\n");
+      "</figure></div>\n</section>\n",
+      harmonic);
 }
 
 /* ---------------------------------------------------------------- chosen point */

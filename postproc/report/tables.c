@@ -70,19 +70,20 @@ static void put_fold_row(const post_analysis *analysis, int b, const post_fold *
 
 void post_table_peaks(const post_analysis *analysis, post_buffer *out) {
   post_unit unit = post_unit_length(analysis->largest);
-  char      place[128], label[POST_LABEL], frequency[POST_PLACE];
+  char      place[128], label[POST_LABEL], frequency[POST_PLACE], harmonic[32];
   bool      widths = !post_at_one_frequency(analysis);
   post_place_name(analysis->response, analysis->primary, place);
   post_abscissa_label(&analysis->abscissa, "", label);
   label[0] = (char)toupper(label[0]);
+  post_harmonic_name(analysis->response, harmonic);
   post_put(out, "<div class=\"scroll\"><table><caption>Peaks%s and folds of ",
            widths ? "" : ", valleys");
   post_put_escaped(out, place);
   post_put(out,
-           " %s%s, first harmonic.%s</caption>\n<thead><tr>"
+           " %s%s, %s.%s</caption>\n<thead><tr>"
            "<th scope=\"col\">Curve</th><th scope=\"col\" class=\"words\">What</th><th "
            "scope=\"col\">%s</th><th scope=\"col\">Amplitude, %s</th>%s</tr></thead>\n<tbody>\n",
-           post_axis_name(analysis->primary), post_frequency_text(analysis, frequency),
+           post_axis_name(analysis->primary), post_frequency_text(analysis, frequency), harmonic,
            widths ? " Damping is that of a linear resonance as wide at half power; &ldquo;–&rdquo; "
                     "where the curve does not fall that far on both sides."
                   : "",

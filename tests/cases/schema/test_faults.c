@@ -74,16 +74,22 @@ static void keys_and_kinds(void **state) {
        "c.yaml:34:3: error: mhb.damping: unknown key; did you mean "
        "'modal.damping'?",
        1},
+      {"  scale: 1.3", "  track: peak\n  vary: {kv: [1 MN/m, 2 MN/m]}\n  output_harmonic: 9",
+       "c.yaml:36:20: error: mhb.output_harmonic: is 9, but the balance has 3 harmonics of the "
+       "excitation; raise mhb.harmonics, best to twice that and one, or give auto",
+       1},
+      {"  scale: 1.3", "  output_harmonic: 2",
+       "c.yaml:34:20: error: mhb.output_harmonic: only says something with mhb.track: peak", 1},
       {"  scale: 1.3", "  zzzzzz: 1.3",
        "c.yaml:34:3: error: mhb.zzzzzz: unknown key; known here: frequency, "
-       "run_up, vary, track, output, harmonics, tolerance, subharmonics, scale, max_points, "
-       "stability, "
+       "run_up, vary, track, output, output_harmonic, harmonics, tolerance, subharmonics, scale, "
+       "max_points, stability, "
        "lasting, save, flips, search",
        1},
       {"  scale: 1.3", "  mhb.scale: 1.3",
        "c.yaml:34:3: error: mhb.mhb.scale: unknown key; known here: "
-       "frequency, run_up, vary, track, output, harmonics, tolerance, subharmonics, scale, "
-       "max_points, stability, "
+       "frequency, run_up, vary, track, output, output_harmonic, harmonics, tolerance, "
+       "subharmonics, scale, max_points, stability, "
        "lasting, save, flips, search",
        1},
       {"  scale: 1.3", "  [a, b]: 1.3",

@@ -137,6 +137,74 @@ static void the_optimum_of_the_stiffness_is_that_of_a_scan(void **state) {
   optimum_of(MHB_IN_KU, 0.1, 1.5);
 }
 
+/* Size of harmonic k of the first probe, m. */
+static double harmonic_at(const mhb_branch *b, int point, int k) {
+  const size_t K      = (size_t)b->n_harmonics + 1;
+  double       square = 0;
+  for (size_t axis = 0; axis < 3; axis++)
+    square += pow(cabs(b->probe[((size_t)point * 3 + axis) * K + (size_t)k]), 2);
+  return sqrt(square);
+}
+
+/* Harmonic k at the point of a sweep nearest to a frequency at which it has a maximum: no lower
+ * than beside it. The sweep is of that neighbourhood.
+ *   frequency  inout  Hz
+ *   first      out    whether the first harmonic has one there too */
+static double maximum_near(const mhb_settings *s, double value, int k, double *frequency,
+                           bool *first) {
+  double       near = INFINITY, wanted = *frequency, amplitude = NAN;
+  mhb_settings local  = *s;
+  local.frequency[0]  = wanted * (1 - 1e-3);
+  local.frequency[1]  = wanted * (1 + 1e-3);
+  mhb_response     *r = sweep_at(&local, value);
+  const mhb_branch *b = &r->branch[0];
+  for (int i = 1; i + 1 < b->n_points; i++) {
+    const double here = harmonic_at(b, i, k), away = fabs(b->frequency[i] - wanted);
+    if (here < harmonic_at(b, i - 1, k) || here < harmonic_at(b, i + 1, k) || away >= near)
+      continue;
+    near       = away;
+    amplitude  = here;
+    *frequency = b->frequency[i];
+    *first     = harmonic_at(b, i, 1) > harmonic_at(b, i - 1, 1) &&
+             harmonic_at(b, i, 1) > harmonic_at(b, i + 1, 1);
+  }
+  mhb_response_destroy(r);
+  return amplitude;
+}
+
+/* The third harmonic has peaks elsewhere than the first. Each tracked one is that of a sweep. */
+static void peaks_of_the_third_harmonic_are_those_of_sweeps(void **state) {
+  (void)state;
+  enum { K = 3 };
+  mhb_settings s     = settings_of(MHB_TRACK_PEAKS, MHB_IN_N0, 0.1, 0.3);
+  double       worst = 0, worst_f = 0;
+  int          points = 0, of_first = 0;
+  s.output_harmonic = K;
+  mhb_response *r   = follow(&s);
+  assert_int_equal(r->output_harmonic, K);
+  for (int b = 0; b < r->n_branches; b++) {
+    const mhb_branch *t = &r->branch[b];
+    print_message("%d points, n0 %.6f to %.6f: %s\n", t->n_points, t->value[0],
+                  t->value[t->n_points - 1], t->reason);
+    for (int i = 1; i + 1 < t->n_points; i += 1 + t->n_points / 5) {
+      bool   first = false;
+      double f = t->frequency[i], swept = maximum_near(&s, t->value[i], K, &f, &first);
+      worst   = fmax(worst, fabs(harmonic_at(t, i, K) / swept - 1));
+      worst_f = fmax(worst_f, fabs(t->frequency[i] / f - 1));
+      of_first += first;
+      points++;
+    }
+  }
+  print_message("%d points, third harmonic to %.1e, frequency to %.1e; %d of the first too\n",
+                points, worst, worst_f, of_first);
+  assert_true(points >= 10);
+  assert_true(of_first < points / 2);
+  assert_below(worst, 1e-6);
+  assert_below(worst_f, 1e-6);
+  assert_true(r->optimum.kind != MHB_OPTIMUM_NONE && r->optimum.verified);
+  mhb_response_destroy(r);
+}
+
 /* Folds of a sweep near a frequency, Hz. */
 static int folds_near(const mhb_settings *s, double value, double frequency) {
   mhb_response *r = sweep_at(s, value);
@@ -179,6 +247,7 @@ int main(void) {
       cmocka_unit_test(the_optimum_of_the_preload_is_that_of_a_scan),
       cmocka_unit_test(the_optimum_of_the_friction_coefficient_is_that_of_a_scan),
       cmocka_unit_test(the_optimum_of_the_stiffness_is_that_of_a_scan),
+      cmocka_unit_test(peaks_of_the_third_harmonic_are_those_of_sweeps),
       cmocka_unit_test(folds_are_followed_to_their_cusps)};
   return cmocka_run_group_tests(tests, set_up, tear_down);
 }
