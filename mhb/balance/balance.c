@@ -365,7 +365,9 @@ static void force_of_pair(mhb_balance *b, mhb_contact_evaluator *contact, const 
   double               *p   = b->eval->p + (size_t)a * block, own[block];
   memcpy(own, x + (size_t)a * block, sizeof own);
   if (lag) turn(b, lag, -1, 3, 1, nb, own);
-  mhb_contact_force(contact, &b->law[a], own, p, dp, &b->eval->info[a]);
+  mhb_contact_info *info = &b->eval->info[a];
+  mhb_contact_force_near(contact, &b->law[a], b->eval->near ? info->slider : NULL, own, p, dp,
+                         info);
   if (!lag) return;
   turn(b, lag, 1, 3, 1, nb, p);
   if (!dp) return;
@@ -514,7 +516,7 @@ static void set_force_by_parameter(mhb_balance *b, const double *x) {
 /* r <- x - free + R p of many pairs. */
 static void residual_by_product(mhb_balance *b, const double *x, double *r) {
   mhb_receptance_product_update(b->product);
-  mhb_receptance_product_apply(b->product, MHB_PRODUCT_VALUE, b->eval->p, r);
+  mhb_receptance_product_apply(b->product, MHB_PRODUCT_VALUE, b->negligible, b->eval->p, r);
   for (int k = 0; k <= b->m; k++) {
     const double complex *free = b->receptance->free + k * 3 * b->n_pairs;
     for (int i = 0; i < 3 * b->n_pairs; i++) {
@@ -529,7 +531,7 @@ static void residual_by_product(mhb_balance *b, const double *x, double *r) {
 static void slope_by_product(mhb_balance *b, double *slope) {
   const int by_frequency = b->parameter == MHB_IN_FREQUENCY, n3 = 3 * b->n_pairs;
   mhb_receptance_product_update(b->product);
-  mhb_receptance_product_apply(b->product, by_frequency ? MHB_PRODUCT_SLOPE : MHB_PRODUCT_VALUE,
+  mhb_receptance_product_apply(b->product, by_frequency ? MHB_PRODUCT_SLOPE : MHB_PRODUCT_VALUE, 0,
                                by_frequency ? b->eval->p : b->eval->by_parameter, slope);
   for (int k = 0; k <= b->m; k++) {
     if (!b->receptance->driven[k] || (!by_frequency && b->parameter != MHB_IN_SCALE)) continue;
@@ -615,8 +617,8 @@ static void subtract_preload(const mhb_balance *b, int stuck, double complex *u)
     mhb_receptance_product_of(b->receptance, 0, b->force_k, u);
 }
 
-/* The same as solve_stuck for many pairs, without R_k. false: the way is not open. */
-static bool solve_many_stuck(mhb_balance *b, int k, const mhb_pair_kind *kind, double complex *u) {
+bool mhb_balance_solve_many_stuck(mhb_balance *b, int k, const mhb_pair_kind *kind,
+                                  double complex *u) {
   const double *range = b->settings->frequency;
   if (!b->product) return false;
   if (!b->stuck && mhb_stuck_solver_create(b->receptance, b->m, &b->stuck) != SHB_OK) return false;
@@ -629,7 +631,7 @@ static shb_status solve_stuck(mhb_balance *b, int k, int stuck, double complex *
   mhb_pair_kind kind[b->n_pairs];
   for (int a = 0; a < b->n_pairs; a++)
     kind[a] = is_stuck(b, a, stuck) ? MHB_PAIR_STUCK : MHB_PAIR_OPEN;
-  if (solve_many_stuck(b, k, kind, u)) return SHB_OK;
+  if (mhb_balance_solve_many_stuck(b, k, kind, u)) return SHB_OK;
   mhb_receptance_update(b->receptance, k);
   enum { FEW = 3 * MHB_MANY_PAIRS };
   const int              n = 3 * b->n_pairs;

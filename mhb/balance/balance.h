@@ -37,14 +37,17 @@ typedef struct {
   mhb_pair_kind      *kind;      /* [pair] of the last linearisation */
   mhb_contact_info   *info;      /* [pair] */
   double             *by_parameter; /* [n] dp/dparameter, of the last evaluation with slope */
+  bool                near; /* in: x is near that of the last evaluation, whose sliders the next one
+                             * starts from; false: the result does not depend on what was before */
   shb_arena           arena;
 } mhb_evaluation;
 
 typedef struct {
-  const mhb_settings      *settings;
-  mhb_receptance          *receptance; /* harmonics 0..m at least */
-  int                      owns_receptance;
-  mhb_receptance_product  *product;  /* of many pairs; NULL: R is formed */
+  const mhb_settings     *settings;
+  mhb_receptance         *receptance; /* harmonics 0..m at least */
+  int                     owns_receptance;
+  mhb_receptance_product *product; /* of many pairs; NULL: R is formed */
+  double negligible; /* in: error of that product in a residual, where I is 1; 0 at first */
   struct mhb_stuck_solver *stuck;    /* linear limits of many pairs; NULL: not used yet */
   mhb_contact_evaluator   *contact;  /* forces to harmonic m: that of thread 0 */
   mhb_contact_evaluator  **contacts; /* [thread] */
@@ -125,6 +128,12 @@ void mhb_balance_linearise(mhb_balance *balance, const double *x, double value, 
  * frequency it stays. */
 void mhb_balance_slope(mhb_balance *balance, const double *x, mhb_parameter parameter,
                        double *slope);
+
+/* u[3 pairs] <- (I + R_k S)^-1 u of many pairs, each stuck or open by kind[pair], without R_k
+ * (stuck_solver.h). The load of harmonic k must be up to date. false: few pairs, a ring or a disc,
+ * or it did not converge; u is then as before. */
+bool mhb_balance_solve_many_stuck(mhb_balance *balance, int k, const mhb_pair_kind *kind,
+                                  double complex *u);
 
 /* Rows of dp that are the mean friction of a pair, [3 nb]; axis 1 u, 2 w. */
 static inline double *mhb_balance_mean_friction_row(const mhb_balance *balance, int pair,

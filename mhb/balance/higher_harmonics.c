@@ -97,7 +97,8 @@ static void pair_force(mhb_higher_harmonics *h, const mhb_balance *balance, cons
       to[2 * k]     = cimag(harmonic_of(h, h->u, k)[3 * pair + c]);
     }
   }
-  mhb_contact_force(h->contact, &balance->law[pair], h->x, h->p, NULL, &info);
+  mhb_contact_force_near(h->contact, &balance->law[pair], balance->eval->info[pair].slider, h->x,
+                         h->p, NULL, &info);
 }
 
 /* D of all pairs, and p_k of the nonlinear ones. */
@@ -215,7 +216,7 @@ static int solve_modes(mhb_higher_harmonics *h, int k, double complex *u) {
 /* ---- all harmonics ---- */
 
 /* h->motion <- R p_k of all harmonics of many pairs. */
-static void set_motions(mhb_higher_harmonics *h) {
+static void set_motions(mhb_higher_harmonics *h, double negligible) {
   int nb = h->product->nb;
   for (int k = h->first; k <= h->last; k++) {
     const double complex *p  = harmonic_of(h, h->force, k);
@@ -226,7 +227,7 @@ static void set_motions(mhb_higher_harmonics *h) {
     }
   }
   mhb_receptance_product_update(h->product);
-  mhb_receptance_product_apply(h->product, MHB_PRODUCT_VALUE, h->change, h->motion);
+  mhb_receptance_product_apply(h->product, MHB_PRODUCT_VALUE, negligible, h->change, h->motion);
 }
 
 /* h->c <- free_k - R_k p_k */
@@ -244,7 +245,7 @@ double mhb_higher_harmonics_estimate(mhb_higher_harmonics *h, const mhb_balance 
                                      const double *x) {
   double sum = 0;
   set_forces(h, balance, x);
-  if (h->product) set_motions(h);
+  if (h->product) set_motions(h, balance->negligible);
   for (int k = h->first; k <= h->last; k++) {
     double complex *u = harmonic_of(h, h->u, k);
     set_free_motion(h, k);
@@ -270,7 +271,8 @@ void mhb_higher_harmonics_feedback(mhb_higher_harmonics *h, const mhb_balance *b
   if (balance->product) {
     memcpy(h->change, change, size);
     mhb_receptance_product_update(balance->product);
-    mhb_receptance_product_apply(balance->product, MHB_PRODUCT_VALUE, h->change, change);
+    mhb_receptance_product_apply(balance->product, MHB_PRODUCT_VALUE, balance->negligible,
+                                 h->change, change);
     return;
   }
   for (int k = 0; k <= balance->m; k++) {

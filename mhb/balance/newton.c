@@ -54,12 +54,12 @@ static int line_search(mhb_newton *w, mhb_balance *b, double value, double *x, d
   return 0;
 }
 
-mhb_reason mhb_newton_solve(mhb_newton *w, mhb_balance *b, double value, double tolerance,
-                            double *x, int *iterations) {
+static mhb_reason solve(mhb_newton *w, mhb_balance *b, double value, double tolerance, double *x,
+                        int *iterations) {
   int n = w->n;
-  if (mhb_newton_bind(w, b) != SHB_OK) return MHB_SINGULAR;
   mhb_balance_linearise(b, x, value, w->r, NULL);
-  double size = mhb_norm(w->r, n);
+  b->eval->near = true;
+  double size   = mhb_norm(w->r, n);
   for (*iterations = 0; *iterations < MAX_ITERATIONS; ++*iterations) {
     if (size <= tolerance * fmax(mhb_norm(x, n), DBL_MIN)) return MHB_CONVERGED;
     memcpy(w->step, w->r, sizeof(double) * (size_t)n);
@@ -71,4 +71,12 @@ mhb_reason mhb_newton_solve(mhb_newton *w, mhb_balance *b, double value, double 
                                                       : MHB_NO_DESCENT;
   }
   return MHB_MAX_ITERATIONS;
+}
+
+mhb_reason mhb_newton_solve(mhb_newton *w, mhb_balance *b, double value, double tolerance,
+                            double *x, int *iterations) {
+  if (mhb_newton_bind(w, b) != SHB_OK) return MHB_SINGULAR;
+  mhb_reason reason = solve(w, b, value, tolerance, x, iterations);
+  b->eval->near     = false;
+  return reason;
 }

@@ -13,6 +13,10 @@ static const double NEGLIGIBLE = 0.1;
 /* Distance of the evaluation that measures the curvature, relative to the vibration. */
 static const double NEARBY = 0.1;
 
+/* Error of the products with the receptance of many pairs. The estimate is a few per cent off
+ * anyhow, and an error above 1e-5 is one. */
+static const double COARSE = 1e-8;
+
 static int least(int a, int b) {
   return a < b ? a : b;
 }
@@ -38,12 +42,13 @@ shb_status mhb_truncation_create(const mhb_balance *balance, mhb_truncation **ou
       mhb_receptance_create_beside(balance->receptance, &t->settings, top, &t->receptance);
   if (status == SHB_OK) status = mhb_balance_create_on(t->receptance, &t->settings, &t->doubled);
   if (status == SHB_OK) {
-    size_t n    = (size_t)t->doubled->n;
-    t->x        = shb_arena_take(&t->arena, n, sizeof(double));
-    t->step     = shb_arena_take(&t->arena, n, sizeof(double));
-    t->r        = shb_arena_take(&t->arena, n, sizeof(double));
-    t->trial    = shb_arena_take(&t->arena, n, sizeof(double));
-    t->feedback = shb_arena_take(&t->arena, n, sizeof(double));
+    t->doubled->negligible = COARSE;
+    size_t n               = (size_t)t->doubled->n;
+    t->x                   = shb_arena_take(&t->arena, n, sizeof(double));
+    t->step                = shb_arena_take(&t->arena, n, sizeof(double));
+    t->r                   = shb_arena_take(&t->arena, n, sizeof(double));
+    t->trial               = shb_arena_take(&t->arena, n, sizeof(double));
+    t->feedback            = shb_arena_take(&t->arena, n, sizeof(double));
     if (t->arena.failed) status = shb_fail(SHB_ERR_IO, __FILE__, __LINE__, "out of memory");
   }
   if (status == SHB_OK && balance->receptance->ring)
@@ -143,10 +148,14 @@ double mhb_truncation_error(mhb_truncation *t, const double *x) {
   t->kind        = MHB_TRUNCATION_NONE;
   if (mhb_balance_is_linear(t->balance)) return 0;
   mhb_balance_set_operating_point(b, &t->balance->eval->at);
-  t->part = 1;
+  for (int a = 0; a < b->n_pairs; a++)
+    memcpy(b->eval->info[a].slider, t->balance->eval->info[a].slider, sizeof(double[2]));
+  b->eval->near = true;
+  t->part       = 1;
   t->kind = t->ring && t->factors && mhb_ring_truncation_step(t->ring, t->factors, t->x, t->step)
                 ? MHB_TRUNCATION_NEWTON
                 : set_step(t);
+  b->eval->near = false;
   return size > 0 ? hypot(mhb_norm(t->step, b->n), t->higher_size) / size : 0;
 }
 

@@ -262,7 +262,20 @@ static void drop_friction(mhb_contact_evaluator *c) {
   c->info->lost                                          = 1;
 }
 
-static void friction_force(mhb_contact_evaluator *c) {
+/* The periodic slider of a contact that stays closed and slips. slider: of a motion nearby, N; not
+ * a number: none. */
+static int periodic_slider(mhb_contact_evaluator *c, const double *slider) {
+  const mhb_static_friction *stuck = &c->static_friction;
+  double                     z[2];
+  int                        near = isfinite(slider[0] + slider[1]);
+  for (int k = 0; k < 2; k++)
+    z[k] = near ? slider[k] / c->scale : c->coefficients[(1 + k) * c->nb] - stuck->c[k];
+  int ok = mhb_slider_periodic(c, near, z);
+  for (int k = 0; k < 2; k++) c->info->slider[k] = c->scale * z[k];
+  return ok;
+}
+
+static void friction_force(mhb_contact_evaluator *c, const double *slider) {
   if (c->intervals.always_open) {
     c->info->share[MHB_SEPARATE] = 1;
     return;
@@ -278,8 +291,7 @@ static void friction_force(mhb_contact_evaluator *c) {
       finish_stuck(c);
       return;
     }
-    ok = mhb_slider_periodic(c, (double[2]){c->coefficients[c->nb] - c->static_friction.c[0],
-                                            c->coefficients[2 * c->nb] - c->static_friction.c[1]});
+    ok = periodic_slider(c, slider);
   } else {
     ok = mhb_slider_with_openings(c);
     mhb_force_integrals_collect(c);
@@ -306,9 +318,17 @@ static double relative_error(const mhb_contact_evaluator *c, const mhb_law *law,
 
 void mhb_contact_force(mhb_contact_evaluator *c, const mhb_law *law, const double *motion,
                        double *force, double *jacobian, mhb_contact_info *info) {
+  mhb_contact_force_near(c, law, NULL, motion, force, jacobian, info);
+}
+
+void mhb_contact_force_near(mhb_contact_evaluator *c, const mhb_law *law, const double *slider,
+                            const double *motion, double *force, double *jacobian,
+                            mhb_contact_info *info) {
   int    nb = c->nb, nf = c->nf;
   size_t size = (size_t)nf * 3;
+  const double start[2] = {slider ? slider[0] : NAN, slider ? slider[1] : NAN}; /* may be info's */
   memset(info, 0, offsetof(mhb_contact_info, transition));
+  info->slider[0] = info->slider[1] = NAN;
   memset(force, 0, sizeof(double) * size);
   c->info = info;
   if (!set_signals(c, law, motion)) { /* at rest without preload, or not finite */
@@ -323,7 +343,7 @@ void mhb_contact_force(mhb_contact_evaluator *c, const mhb_law *law, const doubl
   c->mode   = jacobian ? MHB_ALL_COLUMNS : MHB_NO_COLUMNS;
   c->record = 1;
   mhb_force_integrals_clear(c);
-  friction_force(c);
+  friction_force(c, start);
   for (int i = 0; i < 2 * nf; i++) {
     force[nf + i] = c->scale * c->f[i];
     if (!jacobian) continue;

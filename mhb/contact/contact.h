@@ -29,6 +29,8 @@ typedef struct {
   int            undetermined; /* the mean friction is a convention (stuck throughout) */
   int            laps;         /* until the slider was periodic */
   int            lost;         /* 1: no periodic slider or panel to tolerance; error says how far */
+  double         slider[2];    /* N, Ku s0 at phase 0 of a contact that stays closed and slips; else
+                                * not a number */
   int            n_transitions;
   mhb_transition transition[MHB_MAX_TRANSITIONS];
 } mhb_contact_info;
@@ -51,6 +53,12 @@ void       mhb_contact_evaluator_destroy(mhb_contact_evaluator *contact);
  * det(I - DP) is held above 1e-7. */
 void mhb_contact_force(mhb_contact_evaluator *contact, const mhb_law *law, const double *motion,
                        double *force, double *jacobian, mhb_contact_info *info);
+
+/* The same from the slider of a motion nearby: info->slider of it, or NULL. It saves laps; the force
+ * is the same to the tolerance. */
+void mhb_contact_force_near(mhb_contact_evaluator *contact, const mhb_law *law,
+                            const double *slider, const double *motion, double *force,
+                            double *jacobian, mhb_contact_info *info);
 
 /* After an evaluation that found the contact stuck throughout: gradient[2] -> [3 (2m+1)] <- d/d
  * motion of the mean friction, N/m. The stiffnesses give all other derivatives. */

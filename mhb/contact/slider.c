@@ -195,6 +195,9 @@ int mhb_slider_with_openings(mhb_contact_evaluator *c) {
 
 enum { MAX_LAPS = 100, MAX_RECORDS = 5 };
 
+/* Error of the slider of the contact that sticks, in units of the friction. */
+static const double FAR = .03;
+
 /* One lap from slider z0: P(z0) and, in the columns, its derivative. 0: a panel failed. */
 static int run_lap(mhb_contact_evaluator *c, const double z0[2], double P[2]) {
   slider s = {.state = MHB_STICK, .t = 0, .z = {z0[0], z0[1]}, .onset = -1};
@@ -233,6 +236,7 @@ static int run_lap(mhb_contact_evaluator *c, const double z0[2], double P[2]) {
 typedef struct {
   double tolerance; /* accepted error after a step */
   double last_step; /* infinite before the first */
+  double left;      /* expected error of z */
   int    linear;    /* convergence is linear: the error is of the size of the step */
 } newton_progress;
 
@@ -252,7 +256,7 @@ static double remaining_error(const mhb_contact_evaluator *c, newton_progress *a
  * replaces it where it does not gain. At a double root, where slip just begins, the step is
  * extrapolated. Each lap is as accurate as its step requires. */
 static int iterate_slider(mhb_contact_evaluator *c, newton_progress *a, double z[2]) {
-  double before = INFINITY, left = a->last_step < 1 ? a->last_step : .03, P[2], step[2];
+  double before = INFINITY, left = a->last_step < 1 ? a->last_step : a->left, P[2], step[2];
   int    plain = 0, newton = 0;
   c->record = 0;
   c->mode   = MHB_SLIDER_COLUMN;
@@ -317,13 +321,19 @@ static double record_lap(mhb_contact_evaluator *c, mhb_sensitivity_mode columns,
   return ok ? 2 / SHB_TWO_PI * most / c->friction_level : -1;
 }
 
-int mhb_slider_periodic(mhb_contact_evaluator *c, const double guess[2]) {
+int mhb_slider_periodic(mhb_contact_evaluator *c, int near, double z[2]) {
   mhb_sensitivity_mode wanted = c->mode == MHB_ALL_COLUMNS ? MHB_ALL_COLUMNS : MHB_SLIDER_COLUMN;
-  double z[2] = {guess[0], guess[1]}, left = 0, gap = 0, step = 0, sharp = .1 * c->tolerance;
+  double               left = 0, gap = 0, step = 0, sharp = .1 * c->tolerance;
   newton_progress a = {.tolerance = wanted == MHB_ALL_COLUMNS ? sharp : .1 * sqrt(c->tolerance),
-                       .last_step = INFINITY};
+                       .last_step = INFINITY,
+                       .left      = near ? 0 : FAR};
   int             reached = 0, close = 0;
   double          accept = wanted == MHB_ALL_COLUMNS ? 30 * sharp : 3 * a.tolerance;
+  if (near && wanted == MHB_SLIDER_COLUMN) { /* the lap that it may end with */
+    left    = record_lap(c, wanted, z, &gap, &step);
+    a.left  = fmin(step * step, FAR);
+    reached = close = left >= 0 && left < accept && step * step < c->tolerance;
+  }
   for (int tries = 0; tries < MAX_RECORDS && !close && left >= 0; tries++) {
     reached     = iterate_slider(c, &a, z);
     double last = a.last_step;

@@ -9,7 +9,9 @@
 int mhb_slider_with_openings(mhb_contact_evaluator *contact);
 
 /* Friction of a contact that stays closed and slips: the fixed point of the lap map P(z) = z by
- * Newton's method from guess. 0: not reached. */
-int mhb_slider_periodic(mhb_contact_evaluator *contact, const double guess[2]);
+ * Newton's method from z. 0: not reached.
+ *   near  in     z is the slider of a motion nearby
+ *   z     inout  slider at phase 0, in units of the force scale */
+int mhb_slider_periodic(mhb_contact_evaluator *contact, int near, double z[2]);
 
 #endif

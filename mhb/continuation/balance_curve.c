@@ -43,13 +43,17 @@ static void evaluation_destroy(mhb_curve_system *system, mhb_evaluation *evaluat
 static void linearise(mhb_curve_system *system, mhb_curve_point *point) {
   mhb_balance *b = of(system)->balance;
   mhb_balance_use(b, point->evaluation);
+  b->eval->near = point->near;
   mhb_balance_linearise(b, point->x, point->value, point->r, point->slope);
+  b->eval->near = false;
 }
 
 static void evaluate(mhb_curve_system *system, mhb_curve_point *point) {
   mhb_balance *b = of(system)->balance;
   mhb_balance_use(b, point->evaluation);
+  b->eval->near = point->near;
   mhb_balance_evaluate(b, point->x, point->value, point->r, NULL, NULL);
+  b->eval->near = false;
 }
 
 static int factor(mhb_curve_system *system, const mhb_curve_point *point, const double *column,

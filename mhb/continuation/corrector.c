@@ -87,12 +87,13 @@ static int alternates(const double *seen, int last) {
   return 1;
 }
 
-int mhb_arclength_correct(mhb_arclength *curve, const double *normal, double clip,
-                          mhb_curve_point *point) {
+static int correct(mhb_arclength *curve, const double *normal, double clip,
+                   mhb_curve_point *point) {
   double unit = mhb_arclength_unit(curve), before = INFINITY, cut = 0;
   double seen[MAX_CORRECTIONS + 1];
   for (point->iterations = 0; point->iterations <= MAX_CORRECTIONS; point->iterations++) {
     if (!measure_damped(curve, before, cut, unit, point)) return 0;
+    point->near = true;
     if (point->residual <= curve->tolerance) return 1;
     bool stagnates = point->residual > 0.5 * before;
     if (stagnates && point->residual < curve->roundoff_level) return 1;
@@ -108,6 +109,14 @@ int mhb_arclength_correct(mhb_arclength *curve, const double *normal, double cli
     if (!(point->value >= curve->system->least)) return 0;
   }
   return 0;
+}
+
+int mhb_arclength_correct(mhb_arclength *curve, const double *normal, double clip,
+                          mhb_curve_point *point) {
+  point->near = false;
+  int ok      = correct(curve, normal, clip, point);
+  point->near = false;
+  return ok;
 }
 
 /* [J slope; along] t = [0; 1], scaled to unit length. */

@@ -19,6 +19,7 @@ typedef struct {
   mhb_evaluation *evaluation;  /* of a balance: forces, derivative, kinds of pairs; else NULL */
   int             orientation; /* sign of det [J slope; tangent]: constant but at bifurcations */
   int             iterations;  /* corrections that led here */
+  bool            near;        /* x is near that of the last evaluation, which may help the next */
   double          residual;    /* |r|/|x| */
   double          truncation;  /* relative error of the harmonics left out */
   double          modal;       /* relative error of the modes left out */

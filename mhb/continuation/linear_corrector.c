@@ -41,8 +41,17 @@ void mhb_linear_corrector_destroy(mhb_linear_corrector *s) {
 
 static int factor(mhb_linear_corrector *s, const mhb_balance *b, int k) {
   const size_t n = (size_t)s->n;
+  mhb_receptance_update(b->receptance, k);
   mhb_stick_matrix(b->n_pairs, b->law, s->kind, k, b->receptance->R + (size_t)k * n * n, s->A);
   return mhb_factor_complex(s->n, s->A, s->pivot);
+}
+
+/* u <- A_k^-1 u. *factored: whether s->A holds the factors of A_k; many pairs do without. 0:
+ * singular. */
+static int solve(mhb_linear_corrector *s, mhb_balance *b, int k, bool *factored) {
+  if (!*factored && mhb_balance_solve_many_stuck(b, k, s->kind, s->u)) return 1;
+  *factored = *factored || factor(s, b, k);
+  return *factored && mhb_solve_complex(s->n, s->A, s->pivot, 1, s->u);
 }
 
 static void store(const mhb_balance *b, int k, const double complex *in, double *x) {
@@ -53,23 +62,24 @@ static void store(const mhb_balance *b, int k, const double complex *in, double 
 }
 
 /* Harmonic k > 0 of x and slope at the receptance's omega. */
-static int harmonic(mhb_linear_corrector *s, const mhb_balance *b, int k, double *x) {
-  int n = s->n;
+static int harmonic(mhb_linear_corrector *s, mhb_balance *b, int k, double *x) {
+  int  n        = s->n;
+  bool factored = false;
   if (!b->receptance->driven[k]) {
     memset(s->u, 0, sizeof(double complex) * (size_t)n);
     store(b, k, s->u, x);
     store(b, k, s->u, s->slope);
     return 1;
   }
-  mhb_receptance_update(b->receptance, k);
+  mhb_balance_update_probes(b, k);
   memcpy(s->u, b->receptance->free + k * n, sizeof(double complex) * (size_t)n);
-  if (!factor(s, b, k) || !mhb_solve_complex(n, s->A, s->pivot, 1, s->u)) return 0;
+  if (!solve(s, b, k, &factored)) return 0;
   store(b, k, s->u, x);
   memset(s->p, 0, sizeof(double complex) * (size_t)n);
   for (int a = 0; a < b->n_pairs; a++)
     if (s->kind[a] == MHB_PAIR_STUCK) mhb_stick_force(&b->law[a], k, s->u + 3 * a, s->p + 3 * a);
   mhb_receptance_slope(b->receptance, k, s->p, s->u);
-  if (!mhb_solve_complex(n, s->A, s->pivot, 1, s->u)) return 0;
+  if (!solve(s, b, k, &factored)) return 0;
   store(b, k, s->u, s->slope);
   return 1;
 }
@@ -97,7 +107,7 @@ static double product(const mhb_balance *b, const double *x, const double *y) {
   return sum;
 }
 
-int mhb_linear_correct(mhb_linear_corrector *s, const mhb_balance *b, const double *normal,
+int mhb_linear_correct(mhb_linear_corrector *s, mhb_balance *b, const double *normal,
                        double x_weight, double value_weight, double *x, double *omega,
                        int *iterations) {
   double plane = x_weight * product(b, normal, x) + value_weight * normal[b->n] * *omega;

@@ -33,9 +33,9 @@ void mhb_linear_set_states(mhb_linear_corrector *linear, const mhb_evaluation *e
  * to where the harmonics k > 0 are in balance, with the pairs in the regime. The means stay.
  *   iterations  out  of Newton's method for omega
  * 0: there is no such point; x and omega may be changed then. */
-int mhb_linear_correct(mhb_linear_corrector *linear, const mhb_balance *balance,
-                       const double *normal, double x_weight, double value_weight, double *x,
-                       double *omega, int *iterations);
+int mhb_linear_correct(mhb_linear_corrector *linear, mhb_balance *balance, const double *normal,
+                       double x_weight, double value_weight, double *x, double *omega,
+                       int *iterations);
 
 /* A Newton step of the means x_0 alone, at the frequency of the last linearisation.
  *   r      in     [n] residual there

@@ -1,6 +1,7 @@
 #include "mhb/low_rank/receptance_product.h"
 
 #include <cblas.h>
+#include <float.h>
 #include <lapacke.h>
 #include <math.h>
 #include <stdlib.h>
@@ -13,8 +14,11 @@
 /* Singular values below it are left out, in the norm of the contact stiffness, where I is 1. */
 static const double NEGLIGIBLE = 1e-12;
 
-/* Columns of the first sketch. */
-enum { FIRST_SKETCH = 128 };
+/* The same for a product of an iteration. */
+static const double COARSE = 1e-6;
+
+/* Columns of the first sketch, and of the largest one that may be the whole space. */
+enum { FIRST_SKETCH = 128, MOST_WHOLE = 512 };
 
 /* ---- the smooth part ---- */
 
@@ -148,7 +152,9 @@ static void take_smooth(mhb_receptance_product *p, const sketch *s, int rank) {
   double *half = s->work;
   p->n_smooth  = rank;
   p->U         = shb_arena_take(&p->arena, (size_t)n * (size_t)rank, sizeof(double));
-  if (!p->U) return;
+  p->size      = shb_arena_take(&p->arena, (size_t)rank, sizeof(double));
+  if (!p->U || !p->size) return;
+  memcpy(p->size, s->singular, sizeof(double) * (size_t)rank);
   cblas_dgemm(CblasRowMajor, CblasNoTrans, CblasNoTrans, n, rank, q, 1, s->Q, q, s->left, q, 0,
               p->U, rank);
   for (int i = 0; i < n; i++) cblas_dscal(rank, 1 / s->root[i], p->U + i * rank, 1);
@@ -164,13 +170,18 @@ static void take_smooth(mhb_receptance_product *p, const sketch *s, int rank) {
   }
 }
 
+/* Few columns matter to a product of an iteration, or few are left at all. */
+static int saves(const sketch *s, int n, int rank) {
+  return rank < n / 2 || s->singular[n / 2] < COARSE;
+}
+
 /* One sketch. 1: the smooth part is found; 0: more columns are needed; -1: failed. */
 static int try_sketch(mhb_receptance_product *p, sketch *s) {
   if (!sketch_allocate(s, p->n) || !find_range(p, s) || !reduce(p, s)) return -1;
   int rank = 0;
   while (rank < s->columns && s->singular[rank] > NEGLIGIBLE) rank++;
-  if (rank > s->columns - 16) return 0;
-  if (left_out(p, s, rank) > 1e2 * NEGLIGIBLE) return -1;
+  if (rank > s->columns - 16 && s->columns < p->n) return 0;
+  if (left_out(p, s, rank) > 1e2 * NEGLIGIBLE || !saves(s, p->n, rank)) return -1;
   take_smooth(p, s, rank);
   return 1;
 }
@@ -185,10 +196,12 @@ static void find_smooth(mhb_receptance_product *p, const double *stiffness, doub
     s.weight[t] = fmax(series.weight[term_of(t)], 1e-300);
     any |= source_of(p->receptance, t) != NULL;
   }
-  for (int q = FIRST_SKETCH; any && !found && q < p->n; q *= 2) {
-    s.columns = q;
+  for (int q = FIRST_SKETCH; any && !found; q *= 2) {
+    if (q >= p->n && p->n > MOST_WHOLE) break;
+    s.columns = q < p->n ? q : p->n;
     found     = try_sketch(p, &s);
     sketch_free(&s);
+    if (s.columns == p->n) break;
   }
   if (found == 1 || !any) return;
   p->U        = NULL; /* the terms themselves */
@@ -198,17 +211,33 @@ static void find_smooth(mhb_receptance_product *p, const double *stiffness, doub
 
 /* ---- life cycle ---- */
 
+/* The size of own_t, at most the largest sum of a row, and its copy of single precision. */
+static void take_own(mhb_receptance_product *p, int t, const double *stiffness) {
+  const size_t n = (size_t)p->n;
+  if (!p->own[t]) return;
+  for (size_t i = 0; i < n; i++) {
+    double sum = 0;
+    for (size_t j = 0; j < n; j++)
+      sum += sqrt(stiffness[i] * stiffness[j]) * fabs(p->own[t][i * n + j]);
+    p->own_size[t] = fmax(p->own_size[t], sum);
+  }
+  p->coarse[t] = shb_arena_take(&p->arena, n * n, sizeof(float));
+  for (size_t i = 0; p->coarse[t] && i < n * n; i++) p->coarse[t][i] = (float)p->own[t][i];
+}
+
 static void take_arrays(mhb_receptance_product *p) {
   size_t n = (size_t)p->n, K = (size_t)p->m + 1, nb = (size_t)p->nb, s = (size_t)p->n_smooth;
   for (int i = 0; i < MHB_PRODUCTS; i++)
     p->pole[i] = shb_arena_take(&p->arena, K * (size_t)p->n_poles, sizeof(double complex));
-  p->weight      = shb_arena_take(&p->arena, K * MODAL_TERMS * MHB_PRODUCTS, sizeof(double));
-  p->turned      = shb_arena_take(&p->arena, s * nb, sizeof(double));
-  p->weighted    = shb_arena_take(&p->arena, n * nb, sizeof(double));
-  p->coefficient = shb_arena_take(&p->arena, s * nb, sizeof(double));
-  p->response    = shb_arena_take(&p->arena, s * nb, sizeof(double));
-  p->force       = shb_arena_take(&p->arena, n + MHB_BLAS_ROOM, sizeof(double complex));
-  p->motion      = shb_arena_take(&p->arena, n, sizeof(double complex));
+  p->weight        = shb_arena_take(&p->arena, K * MODAL_TERMS * MHB_PRODUCTS, sizeof(double));
+  p->turned        = shb_arena_take(&p->arena, s * nb, sizeof(double));
+  p->weighted      = shb_arena_take(&p->arena, n * nb, sizeof(double));
+  p->coefficient   = shb_arena_take(&p->arena, s * nb, sizeof(double));
+  p->response      = shb_arena_take(&p->arena, s * nb, sizeof(double));
+  p->force         = shb_arena_take(&p->arena, n + MHB_BLAS_ROOM, sizeof(double complex));
+  p->motion        = shb_arena_take(&p->arena, n, sizeof(double complex));
+  p->coarse_force  = shb_arena_take(&p->arena, n * nb, sizeof(float));
+  p->coarse_motion = shb_arena_take(&p->arena, n * nb, sizeof(float));
   p->amplitude =
       shb_arena_take(&p->arena, (size_t)p->n_poles + MHB_BLAS_ROOM, sizeof(double complex));
 }
@@ -227,6 +256,7 @@ shb_status mhb_receptance_product_create(mhb_receptance *r, int first, int m,
   p->omega      = NAN;
   for (int t = 0; t < 2; t++)
     p->own[t] = r->residual_terms->contact[t] ? r->residual_terms->contact[t]->self : NULL;
+  for (int t = 0; t < 2; t++) take_own(p, t, stiffness);
   find_smooth(p, stiffness, m * top / r->nu);
   take_arrays(p);
   if (p->arena.failed) {
@@ -285,16 +315,35 @@ void mhb_receptance_product_update(mhb_receptance_product *p) {
   }
 }
 
+/* The same by numbers of single precision. */
+static void add_own_single(mhb_receptance_product *p, int t, const double *weight,
+                           const double *force, double *out) {
+  const int n = p->n, nb = p->nb;
+  float    *from = p->coarse_force, *to = p->coarse_motion;
+  for (int i = 0; i < n; i++)
+    for (int j = 0; j < nb; j++)
+      from[i * nb + j] =
+          (float)(weight[p->first ? p->first + j / 2 : (j + 1) / 2] * force[i * nb + j]);
+  cblas_sgemm(CblasRowMajor, CblasNoTrans, CblasNoTrans, n, nb, n, 1, p->coarse[t], n, from, nb, 0,
+              to, nb);
+  for (int i = 0; i < n * nb; i++) out[i] += to[i];
+}
+
 /* out += own (weight p) */
-static void add_own(mhb_receptance_product *p, int t, mhb_product_kind kind, const double *force,
-                    double *out) {
+static void add_own(mhb_receptance_product *p, int t, mhb_product_kind kind, double negligible,
+                    const double *force, double *out) {
   const double *weight = weights_of(p, kind, t), *from = force;
-  int           n = p->n, nb = p->nb, none = 1, plain = 1;
+  int           n = p->n, nb = p->nb, plain = 1;
+  double        most = 0;
   for (int k = p->first; k <= p->m; k++) {
-    none &= weight[k] == 0;
+    most = fmax(most, fabs(weight[k]));
     plain &= weight[k] == 1;
   }
-  if (!p->own[t] || none) return;
+  if (!p->own[t] || most == 0 || most * p->own_size[t] < negligible) return;
+  if (p->coarse[t] && most * p->own_size[t] * FLT_EPSILON < negligible) {
+    add_own_single(p, t, weight, force, out);
+    return;
+  }
   for (int i = 0; i < n && !plain; i++)
     for (int j = 0; j < nb; j++)
       p->weighted[i * nb + j] =
@@ -304,9 +353,17 @@ static void add_own(mhb_receptance_product *p, int t, mhb_product_kind kind, con
               out, nb);
 }
 
-/* p->turned <- v with what smooth term t is multiplied by: the weight, times 1 (self), - Re e_k
+/* Columns of U that are larger than this. */
+static int columns_above(const mhb_receptance_product *p, double negligible) {
+  int count = p->n_smooth;
+  while (p->U && count > 0 && p->size[count - 1] < negligible) count--;
+  return count;
+}
+
+/* p->turned <- v[count][nb] with what smooth term t is multiplied by: the weight, times 1 (self), - Re e_k
  * (even) or - j Im e_k (odd). Returns 0 if that is nothing. */
-static int turn(mhb_receptance_product *p, int t, mhb_product_kind kind, const double *v) {
+static int turn(mhb_receptance_product *p, int t, mhb_product_kind kind, int count,
+                const double *v) {
   const double *weight  = weights_of(p, kind, term_of(t));
   const int     is_self = t == MHB_SMOOTH_TERMS - 1, is_odd = !is_self && t % 2;
   int           any = 0, nb = p->nb;
@@ -315,7 +372,7 @@ static int turn(mhb_receptance_product *p, int t, mhb_product_kind kind, const d
     double         factor = weight[k] * (is_self ? 1 : is_odd ? cimag(e) : -creal(e));
     int            re = mhb_product_column(p, k), im = re + 1;
     any |= factor != 0;
-    for (int i = 0; i < p->n_smooth; i++) {
+    for (int i = 0; i < count; i++) {
       const double *from = v + i * nb;
       double       *to   = p->turned + i * nb;
       to[re]             = factor * (is_odd ? (k ? from[im] : 0) : from[re]);
@@ -326,25 +383,26 @@ static int turn(mhb_receptance_product *p, int t, mhb_product_kind kind, const d
 }
 
 /* out += U C_k U^T p_k */
-static void add_smooth(mhb_receptance_product *p, mhb_product_kind kind, const double *force,
-                       double *out) {
-  int           n = p->n, nb = p->nb, s = p->n_smooth;
+static void add_smooth(mhb_receptance_product *p, mhb_product_kind kind, double negligible,
+                       const double *force, double *out) {
+  int           n = p->n, nb = p->nb, s = p->n_smooth, used = columns_above(p, negligible);
   const double *v = force;
   double       *y = out;
-  if (s == 0) return;
+  if (used == 0) return;
   if (p->U) {
-    cblas_dgemm(CblasRowMajor, CblasTrans, CblasNoTrans, s, nb, n, 1, p->U, s, force, nb, 0,
+    cblas_dgemm(CblasRowMajor, CblasTrans, CblasNoTrans, used, nb, n, 1, p->U, s, force, nb, 0,
                 p->coefficient, nb);
     v = p->coefficient;
     y = p->response;
-    memset(y, 0, sizeof(double) * (size_t)s * (size_t)nb);
+    memset(y, 0, sizeof(double) * (size_t)used * (size_t)nb);
   }
   for (int t = 0; t < MHB_SMOOTH_TERMS; t++)
-    if (p->smooth[t] && turn(p, t, kind, v))
-      cblas_dgemm(CblasRowMajor, CblasNoTrans, CblasNoTrans, s, nb, s, 1, p->smooth[t], s,
+    if (p->smooth[t] && turn(p, t, kind, used, v))
+      cblas_dgemm(CblasRowMajor, CblasNoTrans, CblasNoTrans, used, nb, used, 1, p->smooth[t], s,
                   p->turned, nb, 1, y, nb);
   if (p->U)
-    cblas_dgemm(CblasRowMajor, CblasNoTrans, CblasNoTrans, n, nb, s, 1, p->U, s, y, nb, 1, out, nb);
+    cblas_dgemm(CblasRowMajor, CblasNoTrans, CblasNoTrans, n, nb, used, 1, p->U, s, y, nb, 1, out,
+                nb);
 }
 
 /* motion += X diag(pole) X^H force of harmonic k. */
@@ -384,9 +442,9 @@ static void add_poles(mhb_receptance_product *p, mhb_product_kind kind, const do
 }
 
 void mhb_receptance_product_apply(mhb_receptance_product *p, mhb_product_kind kind,
-                                  const double *force, double *out) {
+                                  double negligible, const double *force, double *out) {
   memset(out, 0, sizeof(double) * (size_t)p->n * (size_t)p->nb);
-  for (int t = 0; t < 2; t++) add_own(p, t, kind, force, out);
-  add_smooth(p, kind, force, out);
+  for (int t = 0; t < 2; t++) add_own(p, t, kind, negligible, force, out);
+  add_smooth(p, kind, negligible, force, out);
   add_poles(p, kind, force, out);
 }

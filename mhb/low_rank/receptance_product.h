@@ -21,11 +21,14 @@ enum { MHB_SMOOTH_TERMS = 2 * MODAL_TERMS + 1 }; /* even, odd of each term, self
 
 typedef struct {
   mhb_receptance *receptance;
-  int             n, first, m, nb;          /* 3 pairs; harmonics first..m; columns of a force */
-  int             n_poles;                  /* modes and residual modes */
-  const double   *own[2];                   /* [n][n] of the receptance; NULL: none */
-  int             n_smooth;                 /* columns of U, n without U */
-  double         *U;                        /* [n][smooth] or NULL: the identity */
+  int             n, first, m, nb; /* 3 pairs; harmonics first..m; columns of a force */
+  int             n_poles;         /* modes and residual modes */
+  const double   *own[2];          /* [n][n] of the receptance; NULL: none */
+  float          *coarse[2];       /* [n][n] the same in single precision */
+  double          own_size[2];     /* where I is 1, at weight 1 */
+  int             n_smooth;        /* columns of U, n without U */
+  double         *U;               /* [n][smooth] or NULL: the identity */
+  double         *size;            /* [smooth] of U's columns in the terms, falling, where I is 1 */
   double         *smooth[MHB_SMOOTH_TERMS]; /* [smooth][smooth] U^+ of a term; NULL: none */
 
   /* at a frequency */
@@ -33,12 +36,13 @@ typedef struct {
   double         *weight;             /* [kind][term][k] of the residual terms */
   double complex *pole[MHB_PRODUCTS]; /* [k][poles] */
 
-  double         *weighted;       /* [n][2m+1] */
-  double         *coefficient;    /* [smooth][2m+1] U^T p */
-  double         *turned;         /* [smooth][2m+1] the same with weight and phase of a term */
-  double         *response;       /* [smooth][2m+1] */
-  double complex *force, *motion; /* [n] */
-  double complex *amplitude;      /* [poles] */
+  double         *weighted;    /* [n][2m+1] */
+  double         *coefficient; /* [smooth][2m+1] U^T p */
+  double         *turned;      /* [smooth][2m+1] the same with weight and phase of a term */
+  double         *response;    /* [smooth][2m+1] */
+  float          *coarse_force, *coarse_motion; /* [n][2m+1] */
+  double complex *force, *motion;               /* [n] */
+  double complex *amplitude;                    /* [poles] */
   shb_arena       arena;
 } mhb_receptance_product;
 
@@ -59,8 +63,10 @@ static inline int mhb_product_column(const mhb_receptance_product *product, int 
   return product->first ? 2 * (k - product->first) : k ? 2 * k - 1 : 0;
 }
 
-/* out[n][nb] <- R p or dR/d omega p at the frequency of the last update. */
+/* out[n][nb] <- R p or dR/d omega p at the frequency of the last update. The error may be of the
+ * size `negligible` in the norm of the contact stiffness, where I is 1: small terms are left out,
+ * and single precision is used where it serves. 0: none. */
 void mhb_receptance_product_apply(mhb_receptance_product *product, mhb_product_kind kind,
-                                  const double *p, double *out);
+                                  double negligible, const double *p, double *out);
 
 #endif

@@ -14,6 +14,9 @@ static const double SAME_STIFFNESS = 2;
 /* An axis without stiffness has this part of the largest. */
 static const double LEAST_STIFFNESS = 1e-3;
 
+/* What the products of an iteration may leave out, relative to the tolerance. */
+static const double LEFT_OUT = 0.01;
+
 /* Coefficients at most, and pairs of one product of matrices. */
 enum { MOST_COEFFICIENTS = 240, PAIRS_AT_ONCE = 16 };
 
@@ -86,6 +89,9 @@ shb_status mhb_woodbury_create(mhb_receptance_product *product, const mhb_law *l
   w->force     = shb_arena_take(&w->arena, (size_t)w->n, sizeof(double));
   w->part      = shb_arena_take(&w->arena, 2 * (size_t)w->n3, sizeof(double));
   w->solution  = shb_arena_take(&w->arena, (size_t)w->n + 1, sizeof(double));
+  size_t block = 3 * (size_t)w->nb, ld = (block + MHB_LANES - 1) / MHB_LANES * MHB_LANES;
+  w->turned    = shb_arena_take(&w->arena, block * ld, sizeof(double));
+  w->image     = shb_arena_take(&w->arena, ld, sizeof(double));
   w->border[0] = shb_arena_take(&w->arena, (size_t)w->n + 1, sizeof(double));
   w->border[1] = shb_arena_take(&w->arena, (size_t)w->n + 1, sizeof(double));
   shb_status status =
@@ -179,46 +185,64 @@ static void times_K(const mhb_woodbury *w, CBLAS_TRANSPOSE transpose, const doub
 
 /* ---- T ---- */
 
-/* One row of P of a pair, [3][nb], times X: out[size]. */
-MHB_HOT static void row_times_X(const mhb_contact_basis *b, int nb, int pair, const double *P,
-                                double *restrict out) {
+/* to[size][ld] <- from[size][size] transposed, ld >= size. */
+MHB_HOT static void transpose(int size, const double *restrict from, int ld, double *restrict to) {
+  for (int i = 0; i < size; i++)
+    for (int j = 0; j < size; j++) to[j * ld + i] = from[i * size + j];
+}
+
+/* One column of P X of a pair: out[rows] <- P x, x[3 parts] in harmonic k alone. PT is P by
+ * columns. */
+MHB_HOT static void times_column(int rows, const double *PT, int nb, int k, const double *x,
+                                 int next, double *restrict out) {
+  const double *first = PT + (ptrdiff_t)place(k) * rows, *u = first + (ptrdiff_t)nb * rows,
+               *v = u + (ptrdiff_t)nb * rows;
+  if (k == 0) {
+    for (int i = 0; i < rows; i++) out[i] = x[0] * first[i] + x[next] * u[i] + x[2 * next] * v[i];
+    return;
+  }
+  for (int i = 0; i < rows; i++)
+    out[i] = x[0] * first[i] + x[next] * first[rows + i] + x[2 * next] * u[i] +
+             x[3 * next] * u[rows + i] + x[4 * next] * v[i] + x[5 * next] * v[rows + i];
+}
+
+/* Columns of P X of pair number j of a group of `count`, into w->rows: [k][size][pair axis part].
+ */
+static void add_image(mhb_woodbury *w, int pair, int j, int count) {
+  const mhb_contact_basis *b = w->basis;
+  const int block = 3 * w->nb, size = b->size, ld = (block + MHB_LANES - 1) / MHB_LANES * MHB_LANES;
+  transpose(block, w->full + (size_t)pair * (size_t)block * (size_t)block, ld, w->turned);
   for (int k = 0; k <= b->m; k++) {
-    const int     parts = k ? 2 : 1, wide = parts * b->rank[k];
-    const double *X     = b->X[k] + (size_t)(3 * pair * parts) * (size_t)wide;
-    double *restrict to = out + b->first[k];
-    for (int j = 0; j < wide; j++) to[j] = 0;
-    for (int c = 0; c < 3; c++)
-      for (int p = 0; p < parts; p++, X += wide) {
-        const double factor = P[c * nb + (k ? 2 * k - 1 : 0) + p];
-        for (int j = 0; j < wide; j++) to[j] += factor * X[j];
+    const int     parts = mhb_basis_parts(k), wide = parts * b->rank[k];
+    const double *X = b->X[k] + (size_t)(3 * pair * parts) * (size_t)wide;
+    for (int i = 0; i < wide; i++) {
+      times_column(ld, w->turned, w->nb, k, X + i, wide, w->image);
+      for (int l = 0; l <= b->m; l++) {
+        const int width = 3 * mhb_basis_parts(l);
+        double   *to    = w->rows + (size_t)(3 * place(l) * count) * (size_t)size +
+                     (size_t)((b->first[k] + i) * width * count + width * j);
+        for (int c = 0; c < 3; c++)
+          for (int p = 0; p < width / 3; p++)
+            to[c * (width / 3) + p] = w->image[c * w->nb + place(l) + p];
       }
+    }
   }
 }
 
-/* T += X^H P X of `count` pairs from `first` on, by rows of harmonic. Rows of the buffer: [k][pair
- * axis part]. */
+/* T += X^H P X of `count` pairs, by rows of harmonic. */
 static void add_pairs(mhb_woodbury *w, const int *pair, int count) {
   const mhb_contact_basis *b    = w->basis;
-  int                      size = b->size, block = 3 * w->nb;
+  int                      size = b->size;
   double                   X[PAIRS_AT_ONCE * 6 * (size + 1)];
-  for (int j = 0; j < count; j++) {
-    const double *P = w->full + (size_t)pair[j] * (size_t)block * (size_t)block;
-    for (int c = 0; c < 3; c++)
-      for (int i = 0; i < w->nb; i++) {
-        int k = (i + 1) / 2, parts = mhb_basis_parts(k);
-        int at = 3 * place(k) * count + (3 * j + c) * parts + i - place(k);
-        row_times_X(b, w->nb, pair[j], P + (c * w->nb + i) * block,
-                    w->rows + (size_t)at * (size_t)size);
-      }
-  }
+  for (int j = 0; j < count; j++) add_image(w, pair[j], j, count);
   for (int k = 0; k <= w->m; k++) {
     int parts = mhb_basis_parts(k), wide = parts * b->rank[k], rows = 3 * parts;
     if (wide == 0) continue;
     for (int j = 0; j < count; j++)
       memcpy(X + j * rows * wide, b->X[k] + (size_t)(pair[j] * rows) * (size_t)wide,
              sizeof(double) * (size_t)(rows * wide));
-    cblas_dgemm(CblasRowMajor, CblasTrans, CblasNoTrans, wide, size, rows * count, 1, X, wide,
-                w->rows + (size_t)(3 * place(k) * count) * (size_t)size, size, 1,
+    cblas_dgemm(CblasRowMajor, CblasTrans, CblasTrans, wide, size, rows * count, 1, X, wide,
+                w->rows + (size_t)(3 * place(k) * count) * (size_t)size, rows * count, 1,
                 w->T + (size_t)b->first[k] * (size_t)size, size);
   }
 }
@@ -345,7 +369,7 @@ static int apply(void *context, const double *v, double *z, double *Jz) {
   int           n = w->n;
   if (!precondition(w, v, z)) return 0;
   set_force(w, z);
-  mhb_receptance_product_apply(w->product, MHB_PRODUCT_VALUE, w->force, Jz);
+  mhb_receptance_product_apply(w->product, MHB_PRODUCT_VALUE, w->negligible, w->force, Jz);
   cblas_daxpy(n, 1, z, 1, Jz, 1);
   if (!w->column) return 1;
   cblas_daxpy(n, z[n], w->column, 1, Jz, 1);
@@ -355,6 +379,7 @@ static int apply(void *context, const double *v, double *z, double *Jz) {
 
 int mhb_woodbury_solve(mhb_woodbury *w, double tolerance, double *rhs) {
   int size      = w->n + (w->column != NULL);
+  w->negligible = LEFT_OUT * tolerance;
   int ok        = mhb_gmres_solve(w->gmres, size, apply, w, rhs, tolerance, w->solution);
   w->iterations = w->gmres->iterations;
   if (!ok) return 0;

@@ -43,6 +43,7 @@ typedef struct {
   int              size;         /* basis->size + 1 with a border */
   int              sign;         /* of the small matrix' determinant */
   int              iterations;   /* of the last solution */
+  double           negligible;   /* part of the receptance that this solution leaves out */
 
   double *border[2]; /* [n+1] copies of column and row */
   double *T, *G;     /* [room][room] */
@@ -51,7 +52,8 @@ typedef struct {
   int     room;           /* rows there is room for */
   double *y, *Ky, *small; /* [room] */
   double *force, *part;   /* [n], [n3][2] */
-  double *rows;           /* [16 pairs 3 nb][room] */
+  double *rows;           /* [room][16 pairs 3 nb] */
+  double *turned, *image; /* [3 nb][3 nb in lanes] P of a pair by columns; a column of P X */
   double *solution;       /* [n+1] */
 
   shb_arena arena, of_basis; /* the arrays; those whose size is that of the basis */

@@ -83,11 +83,12 @@ static void check_at(problem *g, double omega, int bordered, double *worst, int 
   const double error  = mhb_truncation_error(t, x);
   const int    direct = mhb_ring_truncation_step(t->ring, ring, t->x, off);
   assert_int_equal(t->kind, MHB_TRUNCATION_NEWTON);
-  if (!direct) return; /* Newton's step was taken */
-  assert_memory_equal(off, t->step, sizeof off);
+  if (!direct) return;                                 /* Newton's step was taken */
+  for (int i = 0; i < HIGH; i++) off[i] -= t->step[i]; /* its sliders began elsewhere */
+  assert_below(mhb_norm(off, HIGH), 1e-6 * mhb_norm(t->step, HIGH));
   assert_near(error, mhb_norm(t->step, HIGH) / mhb_balance_vibration(g->balance, x), 1e-14);
   assert_true(solve_doubled(g, omega, t->x, t->step, away));
-  for (int i = 0; i < HIGH; i++) off[i] -= away[i];
+  for (int i = 0; i < HIGH; i++) off[i] = t->step[i] - away[i];
   *worst = fmax(*worst, mhb_norm(off, HIGH) / mhb_norm(away, HIGH));
   ++*n;
 }

@@ -16,7 +16,7 @@ static const double MOTION[3 * NB] = {.1, .5,  .2, -.1, .05, .02, .07, /* v */
 /* The friction is the same from any first guess, and laps count as they are run. */
 static void fixed_point_forgets_the_guess(void **state) {
   (void)state;
-  const double           guess[][2] = {{0, 0}, {2, -1}, {-7, 5}, {.1, 30}};
+  double                 guess[][2] = {{0, 0}, {2, -1}, {-7, 5}, {.1, 30}};
   mhb_contact_evaluator *c          = NULL;
   double                 force[3 * NF], first[2 * NF];
   mhb_contact_info       info;
@@ -28,7 +28,7 @@ static void fixed_point_forgets_the_guess(void **state) {
     info.laps    = 0;
     c->mode      = MHB_NO_COLUMNS;
     mhb_force_integrals_clear(c);
-    assert_true(mhb_slider_periodic(c, guess[g]));
+    assert_true(mhb_slider_periodic(c, 0, guess[g]));
     mhb_force_integrals_finish(c);
     for (int i = 0; i < 2 * NF; i++) worst = fmax(worst, fabs(c->f[i] - first[i]));
     print_message("guess %d: %d laps, %.1e apart\n", g, info.laps, worst);
@@ -78,11 +78,44 @@ static void openings_are_transitions(void **state) {
   mhb_contact_evaluator_destroy(c);
 }
 
+/* The slider of a motion nearby saves laps. The force is the same to the tolerance, and does not
+ * depend on a slider that is far off. */
+static void slider_nearby_saves_laps(void **state) {
+  (void)state;
+  const double           off[] = {0, 1e-6, 1e-3, 30};
+  mhb_contact_evaluator *c     = NULL;
+  double                 force[3 * NF], near[3 * NF], jacobian[9 * NF * NB], dp[9 * NF * NB];
+  mhb_contact_info       info, of;
+  assert_ok(mhb_contact_evaluator_create(M, H, 1e-10, &c));
+  mhb_contact_force(c, &SLIPPING, MOTION, force, jacobian, &info);
+  for (int i = 0; i < 4; i++) {
+    const double start[2] = {info.slider[0] * (1 + off[i]), info.slider[1] - off[i]};
+    double       worst = 0, worst_dp = 0;
+    mhb_contact_force_near(c, &SLIPPING, start, MOTION, near, dp, &of);
+    for (int j = 0; j < 3 * NF; j++) worst = fmax(worst, fabs(near[j] - force[j]));
+    for (int j = 0; j < 9 * NF * NB; j++) worst_dp = fmax(worst_dp, fabs(dp[j] - jacobian[j]));
+    print_message("slider off by %.0e: %d laps, was %d; force %.0e, derivative %.0e apart\n",
+                  off[i], of.laps, info.laps, worst, worst_dp);
+    assert_below(worst, 1e-9);
+    assert_below(worst_dp, 1e-7);
+    if (i < 2) assert_true(of.laps < info.laps);
+    mhb_contact_force_near(c, &SLIPPING, start, MOTION, near, NULL, &of);
+    for (int j = 0; j < 3 * NF; j++) assert_near(near[j], force[j], 1e-9);
+    if (i == 0) assert_int_equal(of.laps, 0); /* but the one that records */
+  }
+  mhb_contact_force_near(c, &OPENING, info.slider, MOTION, near, NULL, &of);
+  mhb_contact_force(c, &OPENING, MOTION, force, NULL, &info);
+  assert_memory_equal(near, force, sizeof force);
+  assert_true(isnan(info.slider[0]) && isnan(info.slider[1]));
+  mhb_contact_evaluator_destroy(c);
+}
+
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(fixed_point_forgets_the_guess),
       cmocka_unit_test(period_is_consistent),
       cmocka_unit_test(openings_are_transitions),
+      cmocka_unit_test(slider_nearby_saves_laps),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

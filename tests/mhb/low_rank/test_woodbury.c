@@ -46,6 +46,20 @@ static void stiffness_of(const mhb_balance *b, double *stiffness) {
 
 /* ---------------------------------------------------------------- products */
 
+/* What a coarse product leaves out, |S^1/2 (out - wanted)|/|S^-1/2 p|. */
+static double leaves_out(mhb_receptance_product *product, mhb_product_kind kind, double coarse,
+                         const double *p, const double *wanted, const double *stiffness,
+                         double *out) {
+  double of = 0, force = 0;
+  mhb_receptance_product_apply(product, kind, coarse, p, out);
+  for (int i = 0; i < product->n; i++)
+    for (int j = i * product->nb; j < (i + 1) * product->nb; j++) {
+      of += stiffness[i] * (out[j] - wanted[j]) * (out[j] - wanted[j]);
+      force += p[j] * p[j] / stiffness[i];
+    }
+  return sqrt(of / force);
+}
+
 /* Both products against R and against the slope of the motion. */
 static void check_product(const modal_model *model, const mhb_settings *s, double omega,
                           int is_smooth) {
@@ -83,10 +97,15 @@ static void check_product(const modal_model *model, const mhb_settings *s, doubl
         if (k) wanted[i * b->nb + 2 * k] = cimag(sum);
       }
     }
-    mhb_receptance_product_apply(product, kind, p, out);
+    mhb_receptance_product_apply(product, kind, 0, p, out);
     print_message("%d pairs, smooth %d, kind %d: %.1e\n", b->n_pairs, product->n_smooth, (int)kind,
                   difference(out, wanted, n));
     assert_below(difference(out, wanted, n), 1e-11);
+    for (double coarse = 1e-8; coarse < 1e-3; coarse *= 100) {
+      const double left = leaves_out(product, kind, coarse, p, wanted, stiffness, out);
+      print_message("  allowed %.0e: %.1e\n", coarse, left);
+      assert_below(left, 3 * coarse);
+    }
   }
   mhb_receptance_product_destroy(product);
   mhb_balance_destroy(b);
