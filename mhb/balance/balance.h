@@ -37,8 +37,8 @@ typedef struct {
   mhb_pair_kind      *kind;      /* [pair] of the last linearisation */
   mhb_contact_info   *info;      /* [pair] */
   double             *by_parameter; /* [n] dp/dparameter, of the last evaluation with slope */
-  bool                near; /* in: x is near that of the last evaluation, whose sliders the next one
-                             * starts from; false: the result does not depend on what was before */
+  bool                near; /* in: x is near that of the last evaluation, so sliders start from
+                             * theirs; false: nothing from before enters */
   shb_arena           arena;
 } mhb_evaluation;
 

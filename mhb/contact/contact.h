@@ -54,7 +54,7 @@ void       mhb_contact_evaluator_destroy(mhb_contact_evaluator *contact);
 void mhb_contact_force(mhb_contact_evaluator *contact, const mhb_law *law, const double *motion,
                        double *force, double *jacobian, mhb_contact_info *info);
 
-/* The same from the slider of a motion nearby: info->slider of it, or NULL. It saves laps; the force
+/* The same from the slider of a motion nearby: its info->slider, or NULL. It saves laps. The force
  * is the same to the tolerance. */
 void mhb_contact_force_near(mhb_contact_evaluator *contact, const mhb_law *law,
                             const double *slider, const double *motion, double *force,

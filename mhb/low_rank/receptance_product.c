@@ -360,8 +360,8 @@ static int columns_above(const mhb_receptance_product *p, double negligible) {
   return count;
 }
 
-/* p->turned <- v[count][nb] with what smooth term t is multiplied by: the weight, times 1 (self), - Re e_k
- * (even) or - j Im e_k (odd). Returns 0 if that is nothing. */
+/* p->turned <- v[count][nb] with what smooth term t is multiplied by: the weight, times 1 (self),
+ * - Re e_k (even) or - j Im e_k (odd). Returns 0 if that is nothing. */
 static int turn(mhb_receptance_product *p, int t, mhb_product_kind kind, int count,
                 const double *v) {
   const double *weight  = weights_of(p, kind, term_of(t));

@@ -63,9 +63,9 @@ static inline int mhb_product_column(const mhb_receptance_product *product, int 
   return product->first ? 2 * (k - product->first) : k ? 2 * k - 1 : 0;
 }
 
-/* out[n][nb] <- R p or dR/d omega p at the frequency of the last update. The error may be of the
- * size `negligible` in the norm of the contact stiffness, where I is 1: small terms are left out,
- * and single precision is used where it serves. 0: none. */
+/* out[n][nb] <- R p or dR/d omega p at the frequency of the last update. `negligible` is the
+ * error allowed, in the norm of the contact stiffness, where I is 1; 0: none. Small terms are left
+ * out then, and single precision is used where it serves. */
 void mhb_receptance_product_apply(mhb_receptance_product *product, mhb_product_kind kind,
                                   double negligible, const double *p, double *out);
 
