@@ -56,6 +56,7 @@ static shb_status write_all(const char *raw, const char *temporary, const char *
   SHB_TRY(write_raw(raw, path));
   SHB_TRY(copy_file(raw, temporary, path));
   SHB_TRY(mesh_provenance_append(temporary, provenance));
+  unlink(raw); /* before the result is there: no later run would look for it */
   return shb_publish(temporary, path);
 }
 

@@ -30,6 +30,7 @@ if(SHROUDHB_PYTHON)
     shb_robust_test(fail_nth fail_nth $<TARGET_FILE:fail_nth> ${SCENE} 2 mhb post)
     shb_robust_test(fail_nth_mesh fail_nth $<TARGET_FILE:fail_nth> ${SCENE} 12 mesh)
     shb_robust_test(fail_nth_open fail_nth $<TARGET_FILE:fail_nth> ${SCENE} 25 mhb:open)
+    shb_robust_test(fail_nth_plan fail_nth $<TARGET_FILE:fail_nth> ${SCENE} 40 mesh:malloc)
     # while the case and its defaults are read
     shb_robust_test(fail_nth_case fail_nth $<TARGET_FILE:fail_nth> ${SCENE} -110 mhb:malloc)
     shb_robust_test(fail_nth_modal fail_nth $<TARGET_FILE:fail_nth> ${SCENE} 2 modal:malloc)
