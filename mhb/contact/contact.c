@@ -324,8 +324,8 @@ void mhb_contact_force(mhb_contact_evaluator *c, const mhb_law *law, const doubl
 void mhb_contact_force_near(mhb_contact_evaluator *c, const mhb_law *law, const double *slider,
                             const double *motion, double *force, double *jacobian,
                             mhb_contact_info *info) {
-  int    nb = c->nb, nf = c->nf;
-  size_t size = (size_t)nf * 3;
+  int          nb = c->nb, nf = c->nf;
+  size_t       size     = (size_t)nf * 3;
   const double start[2] = {slider ? slider[0] : NAN, slider ? slider[1] : NAN}; /* may be info's */
   memset(info, 0, offsetof(mhb_contact_info, transition));
   info->slider[0] = info->slider[1] = NAN;
