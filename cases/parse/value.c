@@ -90,7 +90,8 @@ static bool read_saved(const case_value_context *c, const case_node *node, void 
   return index >= 0;
 }
 
-static bool keep_text(const case_value_context *c, const case_node *node, void *slot, char *copy) {
+/* Takes over the copy; NULL: no memory. */
+static bool keep_text(const case_value_context *c, void *slot, char *copy) {
   if (!copy) case_issues_no_memory(c->issues);
   free(*(char **)slot);
   *(char **)slot = copy;
@@ -113,7 +114,7 @@ static bool read_word(const case_value_context *c, const case_node *node, void *
         "'%.60s' cannot be a file name: at most 100 characters, no '/', no '.' or '-' first", text);
     return false;
   }
-  return keep_text(c, node, slot, strdup(text));
+  return keep_text(c, slot, strdup(text));
 }
 
 static bool read_label(const case_value_context *c, const case_node *node, void *slot) {
@@ -143,7 +144,7 @@ static bool read_file_name(const case_value_context *c, const case_node *node, v
   bool   here = node->text[0] == '/' || strcmp(c->file->folder, ".") == 0;
   if (path)
     snprintf(path, size, "%s%s%s", here ? "" : c->file->folder, here ? "" : "/", node->text);
-  return keep_text(c, node, slot, path);
+  return keep_text(c, slot, path);
 }
 
 /* List, {file: } or {deviation: , seed: }. */

@@ -206,8 +206,8 @@ static void the_stiffer_material_counts_where_two_meet(void **state) {
 
 static void other_modes_are_refused(void **state) {
   (void)state;
-  const post_blade_field f        = {.n_nodes = 1, .n_modes = 3};
-  mhb_response           response = {.n_modes = 2};
+  post_blade_field f        = {.n_nodes = 1, .n_modes = 3};
+  mhb_response     response = {.n_modes = 2};
   assert_int_equal(post_blade_field_match(&f, &response, "a.modal.h5"), SHB_ERR_INPUT);
   assert_string_equal(shb_message(),
                       "a.modal.h5: has the stress of 3 modes, but the response 2 modes; run "
