@@ -83,7 +83,7 @@ static shb_status make_ring(const case_file *file, case_model *m) {
 }
 
 /* With nodal diameters the model is that of 0. */
-static shb_status read_disc(const char *path, case_model *m) {
+static shb_status read_disc(const char *path, int modes, bool residuals, case_model *m) {
   modal_nodal_diameters *disc = calloc(1, sizeof *disc);
   SHB_CHECK(disc, SHB_ERR_IO, "out of memory");
   shb_status status = modal_nodal_diameters_read(path, disc);
@@ -91,24 +91,26 @@ static shb_status read_disc(const char *path, case_model *m) {
     free(disc);
     return status;
   }
-  m->disc                     = disc;
+  m->disc = disc;
+  if (modes > 0) SHB_TRY(modal_nodal_diameters_reduce(disc, modes, residuals));
   m->model                    = disc->model[0];
   m->settings.nodal_diameters = disc;
   return SHB_OK;
 }
 
 /* What the balance of a disc does not do. */
-static shb_status check_disc(const case_file *file, const char *path, int modes,
-                             const case_model *m) {
-  const char *refused = file->run_up                            ? "mhb.run_up"
-                        : file->mistuning.kind != CASE_TUNED    ? "rotor.mistuning"
-                        : file->points < 0 && !file->modal_file ? "contact.points: auto"
-                        : modes > 0                             ? "a smaller number of modes"
-                                                                : NULL;
-  SHB_CHECK(!refused, SHB_ERR_INPUT,
-            "%s: holds the modes of a disc at its nodal diameters, which %s does not know; clamp "
-            "the blade at its root instead",
-            path, refused);
+static shb_status check_disc(const case_file *file, const char *path, const case_model *m) {
+  SHB_CHECK(!file->run_up, SHB_ERR_INPUT,
+            "mhb.run_up: %s holds the modes of a disc at one speed; leave it out, and give a case "
+            "for each rotor.speed",
+            path);
+  SHB_CHECK(file->mistuning.kind == CASE_TUNED, SHB_ERR_INPUT,
+            "rotor.mistuning: %s holds the modes of a disc, whose sectors are alike; leave it out, "
+            "or clamp the blade at its root",
+            path);
+  SHB_CHECK(file->points >= 0 || file->modal_file, SHB_ERR_INPUT,
+            "contact.points: auto does not know the disc of %s; give the number of points, or all",
+            path);
   SHB_TRY(mhb_receptance_check(&m->settings, 0));
   return check_use(path, &m->model);
 }
@@ -116,8 +118,8 @@ static shb_status check_disc(const case_file *file, const char *path, int modes,
 shb_status case_model_read(const case_file *file, const char *path, int modes, bool residuals,
                            case_model *m) {
   *m = (case_model){.settings = file->mhb};
-  SHB_TRY(read_disc(path, m));
-  if (m->disc) return check_disc(file, path, modes, m);
+  SHB_TRY(read_disc(path, modes, residuals, m));
+  if (m->disc) return check_disc(file, path, m);
   if (file->run_up) return read_speeds(path, modes, residuals, m);
   SHB_TRY(modal_model_read(path, &m->model));
   SHB_TRY(check_use(path, &m->model));

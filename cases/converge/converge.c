@@ -7,6 +7,7 @@
 #include <string.h>
 #include <unistd.h>
 
+#include "cases/commands/load_model.h"
 #include "cases/commands/up_to_date.h"
 #include "cases/converge/ladders.h"
 #include "cases/schema/case_paths.h"
@@ -78,6 +79,21 @@ static shb_status choose_points(convergence_study *s, const case_file *own) {
   return SHB_OK;
 }
 
+/* A disc needs the nodal diameters of every number of harmonics. Errors: those of case_model_read,
+ * mhb_receptance_check. */
+static shb_status check_disc(convergence_study *s) {
+  modal_nodal_diameters d;
+  case_model            m;
+  SHB_TRY(modal_nodal_diameters_read(s->variant[0].modal, &d));
+  s->disc = d.n > 0;
+  modal_nodal_diameters_free(&d);
+  if (!s->disc) return SHB_OK;
+  shb_status status = case_model_read(s->file, s->variant[0].modal, 0, true, &m);
+  if (status == SHB_OK) status = mhb_receptance_check(&m.settings, m.disc->blades);
+  case_model_free(&m);
+  return status;
+}
+
 static shb_status prepare(convergence_study *s) {
   case_file   copy = *s->file;
   post_output output;
@@ -95,6 +111,7 @@ static shb_status prepare(convergence_study *s) {
   for (int i = 0; s->options->force && i < s->n_variants; i++)
     forget(s->variant[i].folder ? s->variant[i].folder : s->folder);
   SHB_TRY(modal_model_read(s->variant[0].modal, &s->model));
+  SHB_TRY(check_disc(s));
   SHB_TRY(choose_points(s, &copy));
   s->base.modes = s->model.n_modes;
   SHB_TRY(rung_output(s->file, s->model.n_probes, s->model.probe_name, &output));

@@ -31,6 +31,7 @@ typedef struct {
   modal_model            model;   /* of the first mesh, joined as base says */
   int                    n_pairs; /* of its modal file */
   contact_points        *joined;  /* contact.points: auto; else NULL */
+  bool                   disc;    /* the modal file holds nodal diameters; model is that of 0 */
   /* NAME.integration.h5 if it belongs to the present case, else NULL */
   char            *points;
   rung_setting     base; /* base setting of the ladders: everything at its finest */

@@ -4,7 +4,7 @@
 
 #include <stdbool.h>
 
-#include "modal/model/model.h"
+#include "modal/model/nodal_diameters.h"
 
 /* Keep the lowest modes, in place.
  *
@@ -17,6 +17,10 @@
  * With all modes and residuals the model is unchanged. Errors: SHB_ERR_INPUT modes out of range;
  * SHB_ERR_IO no memory (the model can then only be freed). */
 shb_status modal_model_reduce(modal_model *model, int modes, bool residuals);
+
+/* The same at every nodal diameter of a disc, with phi phi^H for phi phi^T. */
+shb_status modal_nodal_diameters_reduce(modal_nodal_diameters *diameters, int modes,
+                                        bool residuals);
 
 /* Drop the residual modes. Their contribution moves into the tail, which is then of third order. */
 void modal_model_drop_residual_modes(modal_model *model);

@@ -16,6 +16,7 @@
 #include "postproc/analysis/curve_distance.h"
 #include "postproc/analysis/curves.h"
 #include "postproc/analysis/outputs.h"
+#include "tests/support/lumped_disc.h"
 #include "tests/support/scratch.h"
 #include "tests/support/three_degree.h"
 
@@ -395,6 +396,64 @@ static void broken_input(void **state) {
   assert_int_equal(count(said, "\n"), 1);
 }
 
+/* ------------------------------------------------------------------ a disc */
+
+/* A case of the lumped disc with a file of its nodal diameters up to last. */
+static void write_disc(const lumped_disc *d, int last, double range[2]) {
+  static const shb_provenance provenance = {"", "", "", ""};
+  modal_nodal_diameters       waves;
+  char                        path[2 * SCRATCH_PATH], text[512];
+  hid_t                       file;
+  lumped_disc_waves(d, DISC_DOFS, &waves);
+  range[0]      = .85 * waves.model[3].frequency[0];
+  range[1]      = 1.3 * waves.model[3].frequency[0];
+  const int all = waves.n;
+  waves.n       = last + 1;
+  snprintf(path, sizeof path, "%s/disc.h5", folder);
+  assert_int_equal(h5_create(path, &file), SHB_OK);
+  assert_int_equal(h5_write_provenance(file, "shroudhb modal model", 3, &provenance), SHB_OK);
+  assert_int_equal(modal_nodal_diameters_write(file, &waves), SHB_OK);
+  assert_int_equal(h5_close(file), SHB_OK);
+  waves.n = all;
+  modal_nodal_diameters_free(&waves);
+  snprintf(text, sizeof text,
+           "name: disc\n"
+           "modal: {file: disc.h5}\n"
+           "rotor: {blades: %d}\n"
+           "excitation: {engine_order: 3}\n"
+           "contact: {to: neighbour, mu: 0.4, ku: 0.5, kv: 0.8, n0: 0.3}\n"
+           "mhb: {frequency: [%.15g, %.15g], harmonics: 3, max_points: 5000}\n",
+           DISC_SECTORS, range[0], range[1]);
+  scratch_write(folder, "disc.yaml", text, strlen(text));
+}
+
+/* The ladder of modes keeps as many at each nodal diameter, and its errors fall. A file that lacks
+ * a nodal diameter is told before any rung. */
+static void a_disc(void **state) {
+  (void)state;
+  const lumped_disc d = lumped_disc_of(0.8, 1.7);
+  double            range[2];
+  char              path[2 * SCRATCH_PATH];
+  write_disc(&d, 2, range);
+  assert_int_equal(converge("disc.yaml"), 2);
+  assert_non_null(strstr(said, "meets the disc at nodal diameter"));
+  assert_non_null(strstr(said, "modal.nodal_diameters=all"));
+  write_disc(&d, DISC_SECTORS / 2, range);
+  const int code = converge("disc.yaml");
+  if (code != 0 && code != 3) fail_msg("exit code %d: %s", code, said);
+  snprintf(path, sizeof path, "%s/disc.converge.h5", folder);
+  post_convergence_free(&result);
+  assert_int_equal(post_convergence_read(path, &result), SHB_OK);
+  for (int i = 0; i < result.n; i++) assert_int_equal(result.rung[i].state, POST_RUNG_DONE);
+  assert_true(rung_of(POST_LADDER_MODES, "12")->reference);
+  const double few  = rung_of(POST_LADDER_MODES, "2")->peak;
+  const double more = rung_of(POST_LADDER_MODES, "8")->peak;
+  print_message("peak with 2 and 8 of 12 modes: off by %.1e and %.1e\n", few, more);
+  assert_true(few > 1e-3 && more < .1 * few);
+  assert_true(rung_of(POST_LADDER_BARE, "8")->peak > more); /* the residual terms count */
+  read_result();
+}
+
 int main(void) {
   const struct CMUnitTest tests[] = {cmocka_unit_test(errors_fall),
                                      cmocka_unit_test(time_integration_agrees),
@@ -404,6 +463,7 @@ int main(void) {
                                      cmocka_unit_test(the_report_shows_it),
                                      cmocka_unit_test(keys_are_heeded),
                                      cmocka_unit_test(interrupted),
+                                     cmocka_unit_test(a_disc),
                                      cmocka_unit_test(broken_input)};
   return cmocka_run_group_tests(tests, start, clean);
 }

@@ -2,6 +2,7 @@
 #include "mesh/base/constants.h"
 #include "mhb/numerics/lu.h"
 #include "mhb/structure/receptance.h"
+#include "modal/model/reduce.h"
 #include "tests/support/check.h"
 #include "tests/support/lumped_disc.h"
 
@@ -143,6 +144,30 @@ static void residual_terms_have_sixth_order(void **state) {
   modal_nodal_diameters_free(&waves);
 }
 
+/* Modes that are left out afterwards move to the residual terms and residual modes, exactly but for
+ * their damping. Without them their part is missing. */
+static void fewer_modes_are_the_ring(void **state) {
+  (void)state;
+  lumped_disc           d = lumped_disc_of(0.8, 1.7);
+  modal_nodal_diameters waves;
+  d.damping = 0;
+  for (int residuals = 0; residuals < 2; residuals++) {
+    lumped_disc_waves(&d, D, &waves);
+    assert_ok(modal_nodal_diameters_reduce(&waves, 4, residuals));
+    double worst = 0;
+    for (int E = 3; E <= 5; E += 2)
+      worst = fmax(worst, largest(&d, &waves, lumped_disc_settings(E, TOP), 7, 0.06));
+    print_message("4 of %d modes, residual terms %d: %.1e\n", D, residuals, worst);
+    if (residuals) assert_below(worst, 1e-10);
+    if (!residuals) assert_true(worst > 1e-2);
+    modal_nodal_diameters_free(&waves);
+  }
+  lumped_disc_waves(&d, D, &waves);
+  assert_refused(modal_nodal_diameters_reduce(&waves, D + 1, true), SHB_ERR_INPUT,
+                 "13 modes are to be kept; there are 1 to 12");
+  modal_nodal_diameters_free(&waves);
+}
+
 /* The other sign of the phase, the conjugate receptance, a load taken for a real one: errors. */
 static void wrong_signs_are_seen(void **state) {
   (void)state;
@@ -251,6 +276,7 @@ int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(the_sum_of_modes_is_the_ring),
       cmocka_unit_test(residual_terms_have_sixth_order),
+      cmocka_unit_test(fewer_modes_are_the_ring),
       cmocka_unit_test(wrong_signs_are_seen),
       cmocka_unit_test(slopes_are_those_of_differences),
       cmocka_unit_test(without_coupling_it_is_the_blade),
