@@ -340,6 +340,31 @@ static void check_mistuning(case_reader *r, int stages) {
                       "(rotor.mistuning); leave it out and use shroudhb integrate");
 }
 
+/* What a disc in the mesh does not go with, as far as the case file shows that there is one. Groups
+ * that come by their names from a mesh file are seen by the modal stage. */
+static void check_disc(case_reader *r, int stages) {
+  const case_file *file = r->file;
+  const bool       disc =
+      file->has_disc || file->source.rules.usual[MESH_CYCLIC_RIGHT].kind != MESH_RULE_NONE;
+  if (!disc || file->modal_file) return;
+  if (file->n_speeds > 1 && case_reader_good(r, "rotor.speed"))
+    case_reader_issue(r, "rotor.speed",
+                      "has %d speeds; a sector with a disc takes one, so give a case for each",
+                      file->n_speeds);
+  if (file->modes == 0 && case_reader_good(r, "modal.modes"))
+    case_reader_issue(r, "modal.modes",
+                      "is auto, which a disc does not know; give the number of modes at each nodal "
+                      "diameter");
+  if (file->points < 0 && case_reader_good(r, "contact.points"))
+    case_reader_issue(r, "contact.points",
+                      "is auto, which a disc does not know; give the number of points, or all");
+  if (stages & CASE_MHB && file->mistuning.kind != CASE_TUNED)
+    case_reader_issue(
+        r, "rotor.mistuning",
+        "does not go with a disc, whose sectors are alike; leave it out, or clamp the "
+        "blade at its root");
+}
+
 bool case_check_values(case_reader *r, int stages) {
   case_file *file = r->file;
   bool       own = !file->modal_file, lost = false;
@@ -358,6 +383,7 @@ bool case_check_values(case_reader *r, int stages) {
   if (stages & CASE_MHB) check_output_harmonic(r);
   if (stages & CASE_MHB) check_run_up(r);
   if (stages & CASE_MHB) check_mistuning(r, stages);
+  check_disc(r, stages);
   case_check_interfaces(r, stages);
   check_places(r, "mhb.search.at", file->mhb.search.n_at, file->mhb.search.at,
                "without it places are chosen");

@@ -36,7 +36,8 @@ shb_status modal_sector_check(MPI_Comm comm, const modal_settings *settings) {
             "threads (OMP_NUM_THREADS)",
             ranks);
   SHB_CHECK(settings->n_speeds <= 1, SHB_ERR_INPUT,
-            "rotor.speed: a sector with cyclic sides takes one speed, not %d", settings->n_speeds);
+            "rotor.speed: a sector with cyclic sides takes one speed, not %d; give a case for each",
+            settings->n_speeds);
   SHB_CHECK(settings->modes > 0, SHB_ERR_INPUT,
             "modal.modes: auto is for a clamped blade; give the number of modes at each nodal "
             "diameter");

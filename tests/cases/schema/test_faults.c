@@ -531,6 +531,41 @@ static void nothing_is_ignored(void **state) {
   free(said);
 }
 
+/* What a sector with a disc does not go with, by its groups or as a parametric blade. */
+static void a_disc_and_other_keys(void **state) {
+  (void)state;
+  static const char head[] =
+      "mesh: {file: c.yaml.msh, groups: {cyclic_right: {radius: 1}}}\n"
+      "material: {E: 1, nu: 0.3, rho: 1}\n"
+      "excitation: {engine_order: 1, pressure: 1}\n";
+  static const struct {
+    const char *rest, *says;
+  } rows[] = {
+      {"modal: {modes: 3}\nrotor: {blades: 4, speed: [0, 3]}\ncontact: {points: 1, mu: 1, ku: 1, "
+       "kv: "
+       "1, n0: 1}\n",
+       "error: rotor.speed: has 2 speeds; a sector with a disc takes one, so give a case for each"},
+      {"modal: {modes: auto}\nrotor: {blades: 4}\ncontact: {points: 1, mu: 1, ku: 1, kv: 1, n0: "
+       "1}\n",
+       "error: modal.modes: is auto, which a disc does not know; give the number of modes at each "
+       "nodal diameter"},
+      {"modal: {modes: 3}\nrotor: {blades: 4}\ncontact: {points: auto, mu: 1, ku: 1, kv: 1, n0: "
+       "1}\n",
+       "error: contact.points: is auto, which a disc does not know; give the number of points, or "
+       "all"},
+      {"modal: {modes: 3}\nrotor: {blades: 4, mistuning: {deviation: 1 %, seed: 7}}\ncontact: "
+       "{points: 1, mu: 1, ku: 1, kv: 1, n0: 1}\n",
+       "error: rotor.mistuning: does not go with a disc, whose sectors are alike; leave it out, or "
+       "clamp the blade at its root"}};
+  for (size_t i = 0; i < COUNT(rows); i++) {
+    char text[1024], *said;
+    snprintf(text, sizeof text, "%s%smhb: {frequency: [1, 2]}\n", head, rows[i].rest);
+    assert_int_equal(judge(text, strlen(text), &said), SHB_ERR_INPUT);
+    if (!strstr(said, rows[i].says)) fail_msg("expected %s\nfound %s", rows[i].says, said);
+    free(said);
+  }
+}
+
 static void a_force_needs_a_place(void **state) {
   (void)state;
   char *said, *text = scratch_case("pressure: 210 Pa", "force: {vector: [1 N, 0, 0]}");
@@ -744,6 +779,7 @@ int main(void) {
                                      cmocka_unit_test(run_ups),
                                      cmocka_unit_test(nothing_is_ignored),
                                      cmocka_unit_test(a_force_needs_a_place),
+                                     cmocka_unit_test(a_disc_and_other_keys),
                                      cmocka_unit_test(not_yaml),
                                      cmocka_unit_test(strange_files),
                                      cmocka_unit_test(a_missing_file_is_told),
