@@ -70,6 +70,36 @@ mesh_fe make_bladed_sector(int blades, int fine) {
   return mesh;
 }
 
+static bool in_disc(const mesh_fe *mesh, int node) {
+  const double *x = mesh->coordinates + 3 * node;
+  return hypot(x[1], x[2]) < bore + rim + 1e-9;
+}
+
+void sector_mark_disc(mesh_fe *mesh) {
+  const int each  = mesh_topology_of(mesh->kind)->nodes;
+  mesh->n_regions = 2;
+  mesh->region    = calloc((size_t)mesh->n_elements, sizeof *mesh->region);
+  assert_non_null(mesh->region);
+  for (int e = 0; e < mesh->n_elements; e++) {
+    mesh->region[e] = 1;
+    for (int i = 0; i < each; i++)
+      if (!in_disc(mesh, mesh->connectivity[each * e + i])) mesh->region[e] = 0;
+  }
+}
+
+mesh_fe sector_clamp_disc(const mesh_fe *sector) {
+  const int width = mesh_topology_of(sector->kind)->face_nodes;
+  mesh_fe   mesh  = *sector;
+  int      *node = malloc((size_t)(mesh.n_nodes + width) * sizeof *node), count = 0;
+  assert_non_null(node);
+  for (int i = 0; i < mesh.n_nodes; i++)
+    if (in_disc(&mesh, i)) node[count++] = i;
+  while (count % width) node[count++] = node[0];
+  mesh.image          = NULL;
+  mesh.set[MESH_ROOT] = (mesh_face_set){count / width, node};
+  return mesh;
+}
+
 static void copy_sets(const mesh_fe *sector, const int *node, mesh_fe *ring) {
   const int width = mesh_topology_of(sector->kind)->face_nodes;
   for (int s = 0; s <= MESH_LOAD; s++) {

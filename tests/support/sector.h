@@ -11,6 +11,12 @@
  *   fine  in  1 or more: cells grow by this factor in every direction */
 mesh_fe make_bladed_sector(int blades, int fine);
 
+/* Elements of the disc are region 1, the others region 0: mesh->region is to be freed. */
+void sector_mark_disc(mesh_fe *sector);
+/* The sector with all nodes of its disc in group root, and no cyclic sides. It shares all else; its
+ * set MESH_ROOT is to be freed. */
+mesh_fe sector_clamp_disc(const mesh_fe *sector);
+
 /* Nodes of sector b in the ring: ring node of node i is node[b n_nodes + i]. */
 typedef struct {
   mesh_fe mesh;

@@ -276,32 +276,18 @@ static void too_many_modes(void **state) {
   wave_operator_free(&op);
 }
 
-/* Is the node in the disc of make_bladed_sector? */
-static bool in_disc(const mesh_fe *mesh, int node) {
-  const double *x = mesh->coordinates + 3 * node;
-  return hypot(x[1], x[2]) < 0.11 + 1e-9;
-}
-
 /* Lowest frequencies of the blade whose disc is clamped as a whole, rad/s. */
 static void clamped_blade(const mesh_fe *sector, int n, double *omega) {
   modal_eigen_settings wanted = {.modes = n};
-  const int            width  = mesh_topology_of(sector->kind)->face_nodes;
-  mesh_fe              mesh   = *sector;
+  const mesh_fe        mesh   = sector_clamp_disc(sector);
   fem_system           system;
   modal_eigen          eigen;
-  int                 *node = malloc((size_t)(mesh.n_nodes + width) * sizeof *node), count = 0;
-  assert_non_null(node);
-  for (int i = 0; i < mesh.n_nodes; i++)
-    if (in_disc(&mesh, i)) node[count++] = i;
-  while (count % width) node[count++] = node[0];
-  mesh.image          = NULL;
-  mesh.set[MESH_ROOT] = (mesh_face_set){count / width, node};
   assert_int_equal(fem_system_create(PETSC_COMM_SELF, &mesh, &steel, FEM_STANDARD, &system), 0);
   assert_int_equal(modal_eigen_solve(&system, &wanted, &eigen), 0);
   for (int i = 0; i < n; i++) omega[i] = sqrt(eigen.lambda[i]);
   modal_eigen_destroy(&eigen);
   fem_system_destroy(&system);
-  free(node);
+  free(mesh.set[MESH_ROOT].nodes);
 }
 
 /* The same at nodal diameter 2 with a disc that many times stiffer than steel. */
@@ -310,21 +296,13 @@ static void stiff_disc(scene *s, double stiffer, int n, double *omega) {
   mesh_fe              mesh        = s->mesh;
   const fem_body       body        = {&mesh, material, s->element, {axis, 0}, 0};
   const wave_settings  wanted      = {.modes = n};
-  const int            each        = mesh_topology_of(mesh.kind)->nodes;
   fem_system           system;
   fem_sector           sector;
   fem_hermitian_order *order;
   wave_operator        op;
   wave_modes           modes;
   material[1].E *= stiffer;
-  mesh.n_regions = 2;
-  mesh.region    = calloc((size_t)mesh.n_elements, sizeof *mesh.region);
-  assert_non_null(mesh.region);
-  for (int e = 0; e < mesh.n_elements; e++) {
-    mesh.region[e] = 1;
-    for (int i = 0; i < each; i++)
-      if (!in_disc(&mesh, mesh.connectivity[each * e + i])) mesh.region[e] = 0;
-  }
+  sector_mark_disc(&mesh);
   assert_int_equal(fem_system_create(PETSC_COMM_SELF, &mesh, material, FEM_STANDARD, &system), 0);
   assert_int_equal(fem_sector_create(&body, NULL, &system, &sector), 0);
   assert_ok(fem_hermitian_analyse(&sector.blocks, &order));
