@@ -36,6 +36,7 @@ set(INTEGRATION_TESTS cases.study.study cases.study.samples cases.study.eval
   mhb.ring.ring_step mhb.ring.neimark_sacker cases.install.install
   mhb.tracking.corner mhb.tracking.tracked_curve bench.tracking
   robust.same_bits robust.fail_nth_mesh mesh.blade.shroud_angle cases.converge.points_ladder
+  robust.memory
   cases.commands.contact_points)
 if(SHROUDHB_CHROMIUM AND SHROUDHB_PYTHON)
   list(APPEND INTEGRATION_TESTS postproc.study.page_script postproc.report.page_script)

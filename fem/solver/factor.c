@@ -4,7 +4,7 @@
 #include <stdlib.h>
 
 #include "fem/solver/cholesky.h"
-#include "fem/solver/memory.h"
+#include "mesh/base/memory.h"
 
 struct fem_factor {
   MPI_Comm      comm;
@@ -43,7 +43,7 @@ static PetscErrorCode compare(MPI_Comm comm, double mine, double *needed, double
   PetscFunctionBeginUser;
   PetscCallMPI(MPI_Comm_split_type(comm, MPI_COMM_TYPE_SHARED, 0, MPI_INFO_NULL, &machine));
   PetscCallMPI(MPI_Allreduce(&mine, needed, 1, MPI_DOUBLE, MPI_SUM, machine));
-  *available = fem_memory_available();
+  *available = shb_memory_available();
   PetscCallMPI(MPI_Comm_free(&machine));
   own.margin = *available - *needed;
   PetscCallMPI(MPI_Comm_rank(comm, &own.rank));

@@ -14,8 +14,8 @@
 enum { WORTH_THREADS = 72 };
 
 /* With many pairs, more moving unknowns or stuck axes than this are left to GMRES, measured on 8 to
- * 22 pairs of cases/z_notch_blade. More moving unknowns than the last are never condensed. */
-enum { MOST_MOVING = 200, MOST_STUCK = 60, MOST_DENSE = 4000 };
+ * 22 pairs of cases/z_notch_blade. */
+enum { MOST_MOVING = 200, MOST_STUCK = 60 };
 
 /* Accuracy of a Newton step by GMRES. */
 static const double STEP_ACCURACY = 1e-4;
@@ -74,7 +74,7 @@ shb_status mhb_condensation_create_within(const mhb_balance *balance, int capaci
   s->capacity = capacity < balance->n ? capacity : balance->n;
   s->omega    = NAN;
   s->accuracy = STEP_ACCURACY;
-  if (balance->product && s->capacity > MOST_DENSE) s->capacity = MOST_DENSE;
+  if (balance->product && s->capacity > MHB_MOST_DENSE) s->capacity = MHB_MOST_DENSE;
   shb_status status = SHB_OK;
   if (balance->receptance->ring)
     status = mhb_ring_system_create(balance, &s->ring);

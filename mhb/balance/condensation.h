@@ -33,6 +33,9 @@
 /* Pairs at the friction limit that become borders; further ones are treated as nonlinear. */
 enum { MHB_MOST_AT_LIMIT = 8, MHB_MOST_BORDERS = 1 + 2 * MHB_MOST_AT_LIMIT };
 
+/* More moving unknowns than this of many pairs are never condensed. */
+enum { MHB_MOST_DENSE = 4000 };
+
 typedef struct {
   const mhb_balance *balance;
   int                m, n_pairs; /* of the balance, when this was created */

@@ -4,6 +4,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "mhb/numerics/fourier.h"
+
 /* Parts of the tolerance: an estimate that is accepted, and one that a lower level must keep. */
 static const double SAFETY = 0.7, DOWNWARD_MARGIN = 0.35;
 
@@ -55,6 +57,35 @@ static void level_destroy(mhb_harmonic_level *level) {
   mhb_arclength_destroy(level->curve);
   if (level->owns_balance) mhb_balance_destroy(level->balance);
   free(level);
+}
+
+static double square(double x) {
+  return x * x;
+}
+
+/* The condensed matrix of all moving pairs. many: GMRES solves where it would be larger. */
+static double dense_bytes(double unknowns, bool many) {
+  return sizeof(double) * square(many ? fmin(unknowns, MHB_MOST_DENSE) : unknowns);
+}
+
+/* Products of bases and derivatives of one contact by its motion, by far the largest arrays. */
+static double evaluator_bytes(int m) {
+  return 7 * sizeof(double) * square(mhb_real_size(m));
+}
+
+double mhb_harmonic_level_bytes(const mhb_settings *settings, int n_pairs, int m) {
+  enum { EVALUATIONS = 8, POINTS = 1000, NUMBERS = 6 }; /* a point: motion and force, three axes */
+  const int    top  = mhb_truncation_highest(m);
+  const bool   many = n_pairs >= MHB_MANY_PAIRS && !settings->nodal_diameters;
+  const double axes = 3. * n_pairs, n = axes * mhb_real_size(m),
+               twice = axes * mhb_real_size(2 * m);
+  const double step =
+      3 * sizeof(double) * (EVALUATIONS * n * mhb_real_size(m) + twice * mhb_real_size(2 * m));
+  const double dense    = dense_bytes(n, many) + dense_bytes(fmin(twice, MHB_MOST_DOUBLED), many);
+  const double contacts = evaluator_bytes(m) + 2 * evaluator_bytes(2 * m);
+  const double receptances = sizeof(double complex) * square(axes) * (m + 1 + top + 1);
+  const double points      = sizeof(double complex) * NUMBERS * POINTS * n_pairs * (m + 1.);
+  return step + dense + contacts + receptances + points;
 }
 
 /* balance: NULL, or the one to use. */

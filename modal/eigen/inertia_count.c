@@ -1,6 +1,6 @@
 #include "modal/eigen/inertia_count.h"
 
-#include "fem/solver/memory.h"
+#include "mesh/base/memory.h"
 
 /* MUMPS must not hand the root to ScaLAPACK, which does not report the signs of pivots. */
 static PetscErrorCode analyse(Mat A, Mat *factor) {
@@ -14,11 +14,11 @@ static PetscErrorCode analyse(Mat A, Mat *factor) {
   PetscCall(MatFactorInfoInitialize(&info));
   PetscCall(MatCholeskyFactorSymbolic(*factor, A, NULL, &info));
   PetscCall(MatMumpsGetInfo(*factor, 15, &megabytes));
-  PetscCheck(1e6 * (double)megabytes < fem_memory_available(), PETSC_COMM_SELF,
+  PetscCheck(1e6 * (double)megabytes < shb_memory_available(), PETSC_COMM_SELF,
              PETSC_ERR_USER_INPUT,
              "modal.check: counting by inertia needs %.3g GB more memory, and %.3g GB are left; "
              "leave it at auto, or give never",
-             1e-3 * (double)megabytes, 1e-9 * fem_memory_available());
+             1e-3 * (double)megabytes, 1e-9 * shb_memory_available());
   PetscFunctionReturn(0);
 }
 

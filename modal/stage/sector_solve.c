@@ -7,8 +7,8 @@
 
 #include "fem/body/sector.h"
 #include "fem/solver/hermitian.h"
-#include "fem/solver/memory.h"
 #include "fem/solver/petsc_error.h"
+#include "mesh/base/memory.h"
 #include "modal/common/phases.h"
 #include "modal/cyclic/wave_condense.h"
 #include "modal/cyclic/wave_modes.h"
@@ -117,7 +117,7 @@ static double bytes_kept(const work *w) {
 
 /* Threads that the memory allows; SHB_ERR_INPUT: not even one. */
 static shb_status count_threads(const work *w, int *threads) {
-  const double each = bytes_each(w), left = fem_memory_available() - bytes_kept(w);
+  const double each = bytes_each(w), left = shb_memory_available() - bytes_kept(w);
   *threads = omp_get_max_threads();
   SHB_CHECK(each <= left, SHB_ERR_INPUT,
             "a nodal diameter of this mesh (%d free nodes) needs %.3g GB more memory, and %.3g GB "

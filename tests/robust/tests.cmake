@@ -24,6 +24,7 @@ if(SHROUDHB_PYTHON)
   endif()
   # sanitizers replace the same functions
   if(NOT SHROUDHB_SANITIZE AND NOT SHROUDHB_FUZZ AND NOT SHROUDHB_TSAN)
+    shb_robust_test(memory memory ${SCENE})
     add_library(fail_nth MODULE robust/fail_nth.c)
     target_link_libraries(fail_nth PRIVATE PkgConfig::HDF5 ${CMAKE_DL_LIBS})
     target_compile_definitions(fail_nth PRIVATE _GNU_SOURCE)

@@ -11,8 +11,8 @@
 
 #include "fem/body/assemble.h"
 #include "fem/solver/factor.h"
-#include "fem/solver/memory.h"
 #include "fem/solver/petsc_error.h"
+#include "mesh/base/memory.h"
 #include "mesh/base/phases.h"
 #include "tests/support/fem.h"
 
@@ -188,7 +188,7 @@ static void too_little_memory_is_one_line(void **state) {
   const body   *b = *state;
   struct rlimit was, now;
   fem_factor   *factor = NULL;
-  const double  most   = fem_memory_available();
+  const double  most   = shb_memory_available();
   assert_true(most > 1e8 && most < 1e16);
   getrlimit(RLIMIT_AS, &was);
   PetscPushErrorHandler(fem_petsc_error_handler, NULL);
@@ -202,7 +202,7 @@ static void too_little_memory_is_one_line(void **state) {
   now          = was;
   now.rlim_cur = (rlim_t)64 << 30;
   assert_int_equal(setrlimit(RLIMIT_AS, &now), 0);
-  assert_true(fem_memory_available() <= 64. * (1 << 30));
+  assert_true(shb_memory_available() <= 64. * (1 << 30));
   setrlimit(RLIMIT_AS, &was);
 }
 

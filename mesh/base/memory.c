@@ -1,4 +1,4 @@
-#include "fem/solver/memory.h"
+#include "mesh/base/memory.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -88,7 +88,7 @@ static double left_to_address(void) {
   return fmax((double)limit.rlim_cur - used, 0);
 }
 
-double fem_memory_available(void) {
+double shb_memory_available(void) {
   return fmin(fmin(kilobytes_of("/proc/meminfo", "MemAvailable:"), left_in_groups()),
               left_to_address());
 }

@@ -1,0 +1,75 @@
+"""robust.memory: a balance larger than the memory is refused at once, with what would fit.
+
+Usage: test_memory.py FOLDER_OF_PROGRAMS CASE_FOLDER. Exit code 77: no h5py.
+"""
+import os
+import re
+import resource
+import signal
+import subprocess
+import sys
+import time
+
+try:
+    import h5py  # of write_modal.py
+except ImportError:
+    sys.exit(77)
+
+sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), '../support'))
+from programs import ENVIRONMENT, bring_your_own, run, write
+
+BIN, SCENE = (os.path.abspath(word) for word in sys.argv[1:3])
+MHB = os.path.join(BIN, 'shroudhb-mhb')
+LIMIT = 310 << 20 # bytes of address space; below 300 MB no library starts
+ENVIRONMENT.update(OPENBLAS_NUM_THREADS='1', OMP_NUM_THREADS='1')
+
+
+def case_of(harmonics):
+    """A short piece of the sweep at one preload."""
+    text = re.sub(r'n0: .*', 'n0: [0.3 N]', open('case.yaml').read())
+    text = re.sub(r'frequency: .*', 'frequency: [0.2 Hz, 0.2001 Hz]', text)
+    return write('one.yaml', re.sub(r'harmonics: .*', f'harmonics: {harmonics}', text))
+
+
+def start(harmonics, limit=None):
+    before = (lambda: resource.setrlimit(resource.RLIMIT_AS, (limit, limit))) if limit else None
+    return subprocess.Popen([MHB, '--quiet', '--force', case_of(harmonics)], env=ENVIRONMENT,
+                            stderr=subprocess.PIPE, text=True, preexec_fn=before)
+
+
+def peak(harmonics):
+    """Most memory of a run, GB."""
+    process = start(harmonics)
+    _, status, used = os.wait4(process.pid, 0)
+    assert status == 0, (harmonics, process.stderr.read())
+    return 1024e-9 * used.ru_maxrss
+
+
+def refused(harmonics):
+    """The numbers of the refusal: GB needed, GB left, harmonics that fit."""
+    process = start(harmonics, LIMIT)
+    said = process.communicate(timeout=60)[1]
+    assert process.returncode == 2 and len(said.splitlines()) == 1, (process.returncode, said)
+    found = re.search(r'1 contact point and (\d+) harmonics needs about ([\d.]+) GB more memory, '
+                      r'and ([\d.]+) GB are left; mhb.harmonics: (\d+) fits$', said.strip())
+    assert found and int(found[1]) == harmonics, said
+    return float(found[2]), float(found[3]), int(found[4])
+
+
+def is_begun(harmonics):
+    process = start(harmonics, LIMIT)
+    time.sleep(2)
+    process.send_signal(signal.SIGINT)
+    said = process.communicate(timeout=60)[1]
+    return 'GB are left' not in said
+
+
+with bring_your_own(SCENE):
+    run(sys.executable, 'write_modal.py')
+    needed, left, fits = refused(200)
+    assert needed > left and 100 < fits < 200, (needed, left, fits)
+    assert is_begun(fits)
+    refused(fits + 3) # what is left varies by some pages
+    grown = peak(200) - peak(1)
+    print(f'200 harmonics: told {needed} GB, measured {grown:.3f} GB')
+    assert 0.8 < needed / grown < 1.8
