@@ -262,12 +262,16 @@ static void drop_friction(mhb_contact_evaluator *c) {
   c->info->lost                                          = 1;
 }
 
+/* With a larger tolerance the slider of a motion nearby is as good as it is asked to be. From afar
+ * it is better, because Newton's last step is: curves are smoother. */
+static const double SHARP = 1e-5;
+
 /* The periodic slider of a contact that stays closed and slips. slider: of a motion nearby, N; not
  * a number: none. */
 static int periodic_slider(mhb_contact_evaluator *c, const double *slider) {
   const mhb_static_friction *stuck = &c->static_friction;
   double                     z[2];
-  int                        near = isfinite(slider[0] + slider[1]);
+  int                        near = c->tolerance <= SHARP && isfinite(slider[0] + slider[1]);
   for (int k = 0; k < 2; k++)
     z[k] = near ? slider[k] / c->scale : c->coefficients[(1 + k) * c->nb] - stuck->c[k];
   int ok = mhb_slider_periodic(c, near, z);

@@ -332,7 +332,7 @@ int mhb_slider_periodic(mhb_contact_evaluator *c, int near, double z[2]) {
   if (near && wanted == MHB_SLIDER_COLUMN) { /* the lap that it may end with */
     left    = record_lap(c, wanted, z, &gap, &step);
     a.left  = fmin(step * step, FAR);
-    reached = close = left >= 0 && left < accept && step * step < c->tolerance;
+    reached = close = left >= 0 && left < accept && step * step < .01 * c->tolerance;
   }
   for (int tries = 0; tries < MAX_RECORDS && !close && left >= 0; tries++) {
     reached     = iterate_slider(c, &a, z);
