@@ -366,8 +366,8 @@ static void force_of_pair(mhb_balance *b, mhb_contact_evaluator *contact, const 
   memcpy(own, x + (size_t)a * block, sizeof own);
   if (lag) turn(b, lag, -1, 3, 1, nb, own);
   mhb_contact_info *info = &b->eval->info[a];
-  mhb_contact_force_near(contact, &b->law[a], b->eval->near ? info->slider : NULL, own, p, dp,
-                         info);
+  mhb_contact_force_near(contact, &b->law[a], b->eval->near && b->product ? info->slider : NULL,
+                         own, p, dp, info);
   if (!lag) return;
   turn(b, lag, 1, 3, 1, nb, p);
   if (!dp) return;

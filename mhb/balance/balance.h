@@ -37,8 +37,9 @@ typedef struct {
   mhb_pair_kind      *kind;      /* [pair] of the last linearisation */
   mhb_contact_info   *info;      /* [pair] */
   double             *by_parameter; /* [n] dp/dparameter, of the last evaluation with slope */
-  bool                near; /* in: x is near that of the last evaluation, so sliders start from
-                             * theirs; false: nothing from before enters */
+  bool                near; /* in: x is near that of the last evaluation. Many pairs start their
+                             * sliders from there, which moves forces within the law's tolerance;
+                             * false: nothing from before enters */
   shb_arena           arena;
 } mhb_evaluation;
 
