@@ -53,10 +53,11 @@ static shb_status write_raw(const char *raw, const char *path) {
 
 static shb_status write_all(const char *raw, const char *temporary, const char *path,
                             const shb_provenance *provenance) {
-  SHB_TRY(write_raw(raw, path));
-  SHB_TRY(copy_file(raw, temporary, path));
-  SHB_TRY(mesh_provenance_append(temporary, provenance));
+  shb_status status = write_raw(raw, path);
+  if (status == SHB_OK) status = copy_file(raw, temporary, path);
   unlink(raw); /* before the result is there: no later run would look for it */
+  SHB_TRY(status);
+  SHB_TRY(mesh_provenance_append(temporary, provenance));
   return shb_publish(temporary, path);
 }
 
@@ -68,7 +69,6 @@ shb_status mesh_export(const char *path, const shb_provenance *provenance) {
     SHB_FAIL(SHB_ERR_IO, "%s: no memory to write it", path);
   }
   shb_status status = write_all(raw, temporary, path, provenance);
-  unlink(raw);
   if (status != SHB_OK) unlink(temporary);
   free(raw);
   free(temporary);

@@ -365,9 +365,8 @@ static void force_of_pair(mhb_balance *b, mhb_contact_evaluator *contact, const 
   double               *p   = b->eval->p + (size_t)a * block, own[block];
   memcpy(own, x + (size_t)a * block, sizeof own);
   if (lag) turn(b, lag, -1, 3, 1, nb, own);
-  mhb_contact_info *info = &b->eval->info[a];
-  mhb_contact_force_near(contact, &b->law[a], b->eval->near && b->product ? info->slider : NULL,
-                         own, p, dp, info);
+  mhb_contact_force_near(contact, &b->law[a], b->eval->near ? mhb_balance_slider(b, a) : NULL, own,
+                         p, dp, &b->eval->info[a]);
   if (!lag) return;
   turn(b, lag, 1, 3, 1, nb, p);
   if (!dp) return;

@@ -136,6 +136,12 @@ void mhb_balance_slope(mhb_balance *balance, const double *x, mhb_parameter para
 bool mhb_balance_solve_many_stuck(mhb_balance *balance, int k, const mhb_pair_kind *kind,
                                   double complex *u);
 
+/* Slider that the law of a pair may start from: that of the last evaluation with many pairs, else
+ * NULL. */
+static inline const double *mhb_balance_slider(const mhb_balance *balance, int pair) {
+  return balance->product ? balance->eval->info[pair].slider : NULL;
+}
+
 /* Rows of dp that are the mean friction of a pair, [3 nb]; axis 1 u, 2 w. */
 static inline double *mhb_balance_mean_friction_row(const mhb_balance *balance, int pair,
                                                     int axis) {

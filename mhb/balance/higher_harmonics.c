@@ -97,8 +97,8 @@ static void pair_force(mhb_higher_harmonics *h, const mhb_balance *balance, cons
       to[2 * k]     = cimag(harmonic_of(h, h->u, k)[3 * pair + c]);
     }
   }
-  const double *slider = balance->product ? balance->eval->info[pair].slider : NULL;
-  mhb_contact_force_near(h->contact, &balance->law[pair], slider, h->x, h->p, NULL, &info);
+  mhb_contact_force_near(h->contact, &balance->law[pair], mhb_balance_slider(balance, pair), h->x,
+                         h->p, NULL, &info);
 }
 
 /* D of all pairs, and p_k of the nonlinear ones. */

@@ -47,19 +47,21 @@ static int line_search(mhb_newton *w, mhb_balance *b, double value, double *x, d
   double before = *size, fraction = 1;
   for (int i = 0; i < MAX_HALVINGS; i++, fraction *= 0.5) {
     for (int j = 0; j < n; j++) x[j] = w->trial[j] - fraction * w->step[j];
+    b->eval->near = true;
     mhb_balance_linearise(b, x, value, w->r, NULL);
-    *size = mhb_norm(w->r, n);
+    b->eval->near = false;
+    *size         = mhb_norm(w->r, n);
     if (*size < (1 - 0.1 * fraction) * before) return 1;
   }
   return 0;
 }
 
-static mhb_reason solve(mhb_newton *w, mhb_balance *b, double value, double tolerance, double *x,
-                        int *iterations) {
+mhb_reason mhb_newton_solve(mhb_newton *w, mhb_balance *b, double value, double tolerance,
+                            double *x, int *iterations) {
   int n = w->n;
+  if (mhb_newton_bind(w, b) != SHB_OK) return MHB_SINGULAR;
   mhb_balance_linearise(b, x, value, w->r, NULL);
-  b->eval->near = true;
-  double size   = mhb_norm(w->r, n);
+  double size = mhb_norm(w->r, n);
   for (*iterations = 0; *iterations < MAX_ITERATIONS; ++*iterations) {
     if (size <= tolerance * fmax(mhb_norm(x, n), DBL_MIN)) return MHB_CONVERGED;
     memcpy(w->step, w->r, sizeof(double) * (size_t)n);
@@ -71,12 +73,4 @@ static mhb_reason solve(mhb_newton *w, mhb_balance *b, double value, double tole
                                                       : MHB_NO_DESCENT;
   }
   return MHB_MAX_ITERATIONS;
-}
-
-mhb_reason mhb_newton_solve(mhb_newton *w, mhb_balance *b, double value, double tolerance,
-                            double *x, int *iterations) {
-  if (mhb_newton_bind(w, b) != SHB_OK) return MHB_SINGULAR;
-  mhb_reason reason = solve(w, b, value, tolerance, x, iterations);
-  b->eval->near     = false;
-  return reason;
 }

@@ -45,7 +45,7 @@ shb_status mhb_contact_evaluator_create(int m, int H, double tolerance,
   c->nb            = mhb_real_size(m);
   c->nf            = mhb_real_size(H);
   c->slider_column = 3 * c->nb;
-  c->stride        = (c->slider_column + MHB_LANES) / MHB_LANES * MHB_LANES;
+  c->stride        = mhb_whole_lanes(c->slider_column + 1);
   c->tolerance     = tolerance;
   mhb_collocation_create(&c->rule);
   take_arrays(c);

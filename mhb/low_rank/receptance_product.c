@@ -315,15 +315,19 @@ void mhb_receptance_product_update(mhb_receptance_product *p) {
   }
 }
 
-/* The same by numbers of single precision. */
+/* Weight of column j of a force. */
+static double column_weight(const mhb_receptance_product *p, const double *weight, int j) {
+  return weight[p->first ? p->first + j / 2 : (j + 1) / 2];
+}
+
+/* out += own (weight p) in single precision. */
 static void add_own_single(mhb_receptance_product *p, int t, const double *weight,
                            const double *force, double *out) {
   const int n = p->n, nb = p->nb;
   float    *from = p->coarse_force, *to = p->coarse_motion;
   for (int i = 0; i < n; i++)
     for (int j = 0; j < nb; j++)
-      from[i * nb + j] =
-          (float)(weight[p->first ? p->first + j / 2 : (j + 1) / 2] * force[i * nb + j]);
+      from[i * nb + j] = (float)(column_weight(p, weight, j) * force[i * nb + j]);
   cblas_sgemm(CblasRowMajor, CblasNoTrans, CblasNoTrans, n, nb, n, 1, p->coarse[t], n, from, nb, 0,
               to, nb);
   for (int i = 0; i < n * nb; i++) out[i] += to[i];
@@ -346,8 +350,7 @@ static void add_own(mhb_receptance_product *p, int t, mhb_product_kind kind, dou
   }
   for (int i = 0; i < n && !plain; i++)
     for (int j = 0; j < nb; j++)
-      p->weighted[i * nb + j] =
-          weight[p->first ? p->first + j / 2 : (j + 1) / 2] * force[i * nb + j];
+      p->weighted[i * nb + j] = column_weight(p, weight, j) * force[i * nb + j];
   if (!plain) from = p->weighted;
   cblas_dgemm(CblasRowMajor, CblasNoTrans, CblasNoTrans, n, nb, n, 1, p->own[t], n, from, nb, 1,
               out, nb);

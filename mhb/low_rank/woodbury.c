@@ -89,7 +89,7 @@ shb_status mhb_woodbury_create(mhb_receptance_product *product, const mhb_law *l
   w->force     = shb_arena_take(&w->arena, (size_t)w->n, sizeof(double));
   w->part      = shb_arena_take(&w->arena, 2 * (size_t)w->n3, sizeof(double));
   w->solution  = shb_arena_take(&w->arena, (size_t)w->n + 1, sizeof(double));
-  size_t block = 3 * (size_t)w->nb, ld = (block + MHB_LANES - 1) / MHB_LANES * MHB_LANES;
+  size_t block = 3 * (size_t)w->nb, ld = (size_t)mhb_whole_lanes(3 * w->nb);
   w->turned    = shb_arena_take(&w->arena, block * ld, sizeof(double));
   w->image     = shb_arena_take(&w->arena, ld, sizeof(double));
   w->border[0] = shb_arena_take(&w->arena, (size_t)w->n + 1, sizeof(double));
@@ -209,8 +209,8 @@ MHB_HOT static void times_column(int rows, const double *PT, int nb, int k, cons
 /* Columns of P X of pair number j of a group of `count`, into w->rows: [k][size][pair axis part].
  */
 static void add_image(mhb_woodbury *w, int pair, int j, int count) {
-  const mhb_contact_basis *b = w->basis;
-  const int block = 3 * w->nb, size = b->size, ld = (block + MHB_LANES - 1) / MHB_LANES * MHB_LANES;
+  const mhb_contact_basis *b     = w->basis;
+  const int                block = 3 * w->nb, size = b->size, ld = mhb_whole_lanes(block);
   transpose(block, w->full + (size_t)pair * (size_t)block * (size_t)block, ld, w->turned);
   for (int k = 0; k <= b->m; k++) {
     const int     parts = mhb_basis_parts(k), wide = parts * b->rank[k];

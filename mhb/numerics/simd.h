@@ -23,6 +23,11 @@ typedef long long mhb_lanes_bits __attribute__((vector_size(64)));
 #define MHB_HOT
 #endif
 
+/* n rounded up to whole vectors. */
+static inline int mhb_whole_lanes(int n) {
+  return (n + MHB_LANES - 1) / MHB_LANES * MHB_LANES;
+}
+
 MHB_INLINE mhb_lanes lanes_all(double x) {
   return (mhb_lanes){x, x, x, x, x, x, x, x};
 }

@@ -83,7 +83,8 @@ bool mhb_response_is_linear(const mhb_response *r, const mhb_branch *b, int poin
 }
 
 int mhb_response_harmonic(const mhb_response *r, const mhb_branch *b) {
-  return (b->order > 1 ? b->order : 1) * (r->output_harmonic > 1 ? r->output_harmonic : 1);
+  const int k = (b->order > 1 ? b->order : 1) * (r->output_harmonic > 1 ? r->output_harmonic : 1);
+  return k <= b->n_harmonics ? k : b->n_harmonics;
 }
 
 double mhb_response_amplitude(const mhb_response *r, const mhb_branch *b, int point, int place) {
@@ -92,8 +93,7 @@ double mhb_response_amplitude(const mhb_response *r, const mhb_branch *b, int po
   const size_t          rows  = (size_t)(probe ? r->n_probes : r->n_pairs);
   const size_t          row = (size_t)point * rows + (size_t)(probe ? place : place - r->n_probes);
   const double complex *x   = (probe ? b->probe : b->motion) + row * 3 * K;
-  const size_t          wanted = (size_t)mhb_response_harmonic(r, b);
-  const size_t          driven = wanted < K ? wanted : K - 1;
+  const size_t          driven = (size_t)mhb_response_harmonic(r, b);
   double                square = 0;
   for (size_t axis = 0; axis < 3; axis++) square += pow(cabs(x[axis * K + driven]), 2);
   return sqrt(square);

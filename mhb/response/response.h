@@ -22,7 +22,8 @@ const char *mhb_special_name(int special);
 
 /* Whether all contacts stick or are open throughout, at a point. */
 bool mhb_response_is_linear(const mhb_response *response, const mhb_branch *branch, int point);
-/* The harmonic of a branch whose amplitude outputs have. */
+/* The harmonic of a branch whose amplitude outputs have, its last one at most: the excitation's
+ * first but with mhb.output_harmonic. */
 int mhb_response_harmonic(const mhb_response *response, const mhb_branch *branch);
 /* Amplitude of that harmonic, m; its square is the sum over the three components.
  *   place  in  a probe, or the number of probes plus a pair, whose motion it is */

@@ -259,7 +259,7 @@ static shb_status make(mhb_ring_model *m, const modal_model *modal, double n0, d
   int nu = m->settings.subharmonics, top = modal->n_load > 0 ? modal->n_load : 1;
   SHB_TRY(mhb_receptance_create(modal, &m->settings, nu * top, &m->receptance));
   m->blades = m->settings.to_ground ? 1 : m->settings.blades;
-  m->lanes  = (m->blades + MHB_LANES - 1) / MHB_LANES * MHB_LANES;
+  m->lanes  = mhb_whole_lanes(m->blades);
   m->pairs  = modal->n_pairs;
   m->order  = nu;
   m->probe  = modal->n_probes > 0 ? 0 : -1;

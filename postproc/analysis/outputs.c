@@ -135,11 +135,6 @@ int post_first_harmonic(const mhb_branch *branch) {
   return first <= branch->n_harmonics ? first : branch->n_harmonics;
 }
 
-int post_output_harmonic(const mhb_response *response, const mhb_branch *branch) {
-  const int k = mhb_response_harmonic(response, branch);
-  return k <= branch->n_harmonics ? k : branch->n_harmonics;
-}
-
 void post_harmonic_name(const mhb_response *response, char out[32]) {
   snprintf(out, 32, "first harmonic");
   if (response->output_harmonic > 1) snprintf(out, 32, "harmonic %d", response->output_harmonic);
@@ -214,7 +209,7 @@ double post_amplitude(const mhb_response *response, const mhb_branch *branch, in
 
 shb_status post_series(const mhb_response *response, const mhb_branch *branch, post_output output,
                        post_quantity quantity, double **values) {
-  int     points = branch->n_points, first = post_output_harmonic(response, branch);
+  int     points = branch->n_points, first = mhb_response_harmonic(response, branch);
   double *out = malloc((size_t)(points > 0 ? points : 1) * sizeof *out);
   SHB_CHECK(out, SHB_ERR_IO, "not enough memory for a curve of %d points", points);
   for (int p = 0; p < points; p++) out[p] = value_of(response, branch, p, output, quantity, first);

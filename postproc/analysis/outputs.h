@@ -39,9 +39,7 @@ double post_peak_to_peak(int n, int m, const double complex *a);
 post_output post_output_primary(const mhb_response *response);
 /* Harmonic index of the excitation's first harmonic: the order of the branch. */
 int post_first_harmonic(const mhb_branch *branch);
-/* Harmonic index of the amplitude that outputs have: the first but with mhb.output_harmonic. */
-int post_output_harmonic(const mhb_response *response, const mhb_branch *branch);
-/* Its name: "first harmonic", "harmonic 3". */
+/* Name of mhb_response_harmonic, counted in the excitation: "first harmonic", "harmonic 3". */
 void post_harmonic_name(const mhb_response *response, char out[32]);
 
 /* Amplitude of harmonic k of an output at a point of a branch, m; 0 above its harmonics. */

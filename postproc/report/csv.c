@@ -67,7 +67,7 @@ static void put_header(const mhb_response *response, post_buffer *out) {
 /* The columns of one place from its harmonics, [3][m + 1]. */
 static void put_place(const mhb_response *response, const mhb_branch *branch,
                       const double complex *a, post_buffer *out) {
-  int m = branch->n_harmonics, first = post_output_harmonic(response, branch);
+  int m = branch->n_harmonics, first = mhb_response_harmonic(response, branch);
   for (int i = 0; i < 3; i++) {
     const double complex *axis = a + i * (m + 1);
     put_number(out, cabs(axis[first]));

@@ -22,23 +22,25 @@ from programs import write
 BIN = os.path.abspath(sys.argv[1])
 BLADES, ORDER = 7, 2
 
+SHAPE = """    root: {length: 50 mm, width: 26 mm, height: 14 mm}
+    sections:
+      - {radius: 300 mm, chord: 42 mm, thickness: 6.5 mm, camber: 7 mm, twist: -12 deg}
+      - {radius: 460 mm, chord: 35 mm, thickness: 3.2 mm, camber: 3 mm, twist: -38 deg}
+    shroud: {length: 36 mm, thickness: 6 mm, contact: 18 mm}
+"""
+TOUCHED = """probe: {tip: [0 mm, 0 mm, 466 mm]}
+contact: {to: neighbour, psi: 30 deg, mu: 0.3, ku: 1 MN/m, kv: 1.5 MN/m, n0: 60 N}
+gauge: {g1: {at: [-18 mm, 3 mm, 380 mm], direction: [0.2, 0, 1]}}
+"""
 CASE = f"""name: blade
 mesh:
   blade:
-    root: {{length: 50 mm, width: 26 mm, height: 14 mm}}
-    sections:
-      - {{radius: 300 mm, chord: 42 mm, thickness: 6.5 mm, camber: 7 mm, twist: -12 deg}}
-      - {{radius: 460 mm, chord: 35 mm, thickness: 3.2 mm, camber: 3 mm, twist: -38 deg}}
-    shroud: {{length: 36 mm, thickness: 6 mm, contact: 18 mm}}
-    size: 14 mm
+{SHAPE}    size: 14 mm
 rotor: {{blades: 60, axis: x, speed: 1500 rpm}}
 material: {{E: 205 GPa, nu: 0.3, rho: 7850}}
 modal: {{modes: 6, damping: 0.003}}
 excitation: {{engine_order: 56, pressure: 2 kPa}}
-probe: {{tip: [0 mm, 0 mm, 466 mm]}}
-contact: {{to: neighbour, psi: 30 deg, mu: 0.3, ku: 1 MN/m, kv: 1.5 MN/m, n0: 60 N}}
-gauge: {{g1: {{at: [-18 mm, 3 mm, 380 mm], direction: [0.2, 0, 1]}}}}
-mhb: {{frequency: [230 Hz, 330 Hz], harmonics: 3}}
+{TOUCHED}mhb: {{frequency: [230 Hz, 330 Hz], harmonics: 3}}
 """
 OWN = f"""name: own
 modal: {{file: own.modal.h5}}
@@ -55,20 +57,12 @@ mesh:
   blade:
     disc: {{bore: 150 mm, web: 15 mm, rim: 25 mm}}
     elements: tet10
-    root: {{length: 50 mm, width: 26 mm, height: 14 mm}}
-    sections:
-      - {{radius: 300 mm, chord: 42 mm, thickness: 6.5 mm, camber: 7 mm, twist: -12 deg}}
-      - {{radius: 460 mm, chord: 35 mm, thickness: 3.2 mm, camber: 3 mm, twist: -38 deg}}
-    shroud: {{length: 36 mm, thickness: 6 mm, contact: 18 mm}}
-    size: 20 mm
+{SHAPE}    size: 20 mm
 rotor: {{blades: 60, axis: x, speed: 1500 rpm}}
 material: {{E: 205 GPa, nu: 0.3, rho: 7850, fatigue: {{endurance: 300 MPa, ultimate: 900 MPa}}}}
 modal: {{modes: 8, damping: 0.003}}
 excitation: {{engine_order: 56, pressure: 2 kPa, harmonics: {{1: [1, 0 deg], 2: [0.5, 40 deg]}}}}
-probe: {{tip: [0 mm, 0 mm, 466 mm]}}
-contact: {{to: neighbour, psi: 30 deg, mu: 0.3, ku: 1 MN/m, kv: 1.5 MN/m, n0: 60 N}}
-gauge: {{g1: {{at: [-18 mm, 3 mm, 380 mm], direction: [0.2, 0, 1]}}}}
-mhb: {{frequency: [150 Hz, 330 Hz], harmonics: 3}}
+{TOUCHED}mhb: {{frequency: [150 Hz, 330 Hz], harmonics: 3}}
 """
 
 

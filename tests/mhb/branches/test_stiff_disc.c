@@ -12,24 +12,9 @@
 #include "tests/support/check.h"
 #include "tests/support/fem.h"
 #include "tests/support/sector.h"
+#include "tests/support/sector_case.h"
 
 enum { BLADES = 6, MODES = 12, ORDER = 2 };
-
-static const modal_probe probe[1] = {{"tip", {0.02, -0.03, 0.17}}};
-
-static modal_settings modal_case(void) {
-  return (modal_settings){
-      .material = steel,
-      .axis     = MESH_AXIS_X,
-      .blades   = BLADES,
-      .modes    = MODES,
-      .damping  = {.ratio = 0.002},
-      .load     = {.kind = FEM_LOAD_PRESSURE, .pressure = 2385, .n_harmonics = 1, .factor = {0, 1}},
-      .n_probes = 1,
-      .probe    = probe,
-      .points   = 1,
-      .n_diameters = -1};
-}
 
 static mhb_settings balance_case(double first) {
   return (mhb_settings){.engine_order = ORDER,
@@ -77,7 +62,7 @@ static void sweep(const modal_model *model, const mhb_settings *s, peaks *out) {
 }
 
 static void clamped_blade(const mesh_fe *sector, double *first, peaks *out) {
-  modal_settings settings = modal_case();
+  modal_settings settings = sector_case(BLADES, MODES);
   mesh_fe        mesh     = sector_clamp_disc(sector);
   modal_result   result;
   assert_ok(modal_solve(PETSC_COMM_SELF, &mesh, &settings, NULL, &result));
@@ -89,7 +74,7 @@ static void clamped_blade(const mesh_fe *sector, double *first, peaks *out) {
 }
 
 static void on_disc(const mesh_fe *sector, double stiffer, double first, peaks *out) {
-  modal_settings     settings  = modal_case();
+  modal_settings     settings  = sector_case(BLADES, MODES);
   mesh_fe            mesh      = *sector;
   const modal_region region[2] = {
       {"blade", steel}, {"disc", {.E = stiffer * steel.E, .nu = steel.nu, .rho = steel.rho}}};

@@ -17,27 +17,16 @@
 #include "tests/support/fem.h"
 #include "tests/support/files.h"
 #include "tests/support/sector.h"
+#include "tests/support/sector_case.h"
 
 enum { BLADES = 6, MODES = 20 };
 
-static const modal_probe probe[1] = {{"tip", {0.02, -0.03, 0.17}}};
-
 static modal_settings default_settings(void) {
-  return (modal_settings){
-      .material    = steel,
-      .axis        = MESH_AXIS_X,
-      .blades      = BLADES,
-      .modes       = MODES,
-      .damping     = {.ratio = 0.002},
-      .load        = {.kind        = FEM_LOAD_PRESSURE,
-                      .pressure    = 2385,
-                      .n_harmonics = 2,
-                      .factor      = {0.3, 1, -0.2 + 0.5 * I}},
-      .n_probes    = 1,
-      .probe       = probe,
-      .points      = 1,
-      .n_diameters = -1,
-  };
+  modal_settings settings   = sector_case(BLADES, MODES);
+  settings.load.n_harmonics = 2;
+  settings.load.factor[0]   = 0.3;
+  settings.load.factor[2]   = -0.2 + 0.5 * I;
+  return settings;
 }
 
 static const shb_provenance provenance = {"case.yaml", "name: case\n", "modal.modes = 20\n",
