@@ -108,8 +108,7 @@ shb_status mhb_balance_create_on(mhb_receptance *receptance, const mhb_settings 
   b->force_k      = shb_arena_take(&b->arena, 3 * pairs, sizeof(double complex));
   b->motion_k     = shb_arena_take(&b->arena, 3 * pairs, sizeof(double complex));
   if (receptance->ring) {
-    b->response_k = shb_arena_take(&b->arena, 3 * pairs, sizeof(double complex));
-    b->lag        = shb_arena_take(&b->arena, pairs * ((size_t)m + 1), sizeof(double complex));
+    b->lag = shb_arena_take(&b->arena, pairs * ((size_t)m + 1), sizeof(double complex));
     if (b->lag) set_lags(b);
   }
   shb_status status = SHB_OK;
@@ -460,17 +459,12 @@ static void subtract_response(const mhb_balance *b, int k) {
   }
 }
 
-/* The same of a ring. Its blocks are made where the Jacobian needs them. */
-static void subtract_ring_response(const mhb_balance *b, int k, int derivative) {
-  const int n = 3 * b->n_pairs;
-  if (derivative) {
-    mhb_receptance_update(b->receptance, k);
-    for (int i = 0; i < n; i++) b->motion_k[i] -= b->receptance->free[k * n + i];
-    mhb_receptance_product_of(b->receptance, k, b->force_k, b->motion_k);
-    return;
-  }
-  mhb_receptance_motion(b->receptance, k, b->force_k, b->response_k);
-  for (int i = 0; i < n; i++) b->motion_k[i] -= b->response_k[i];
+/* The same of a ring. */
+static void subtract_ring_response(const mhb_balance *b, int k) {
+  const int             n    = 3 * b->n_pairs;
+  const double complex *free = b->receptance->free + k * n;
+  for (int i = 0; i < n; i++) b->motion_k[i] -= free[i];
+  mhb_receptance_product_of(b->receptance, k, b->force_k, b->motion_k);
 }
 
 /* Harmonic k of r does not depend on the parameter. force_k: its change by the parameter. */
@@ -560,10 +554,9 @@ static void evaluate(mhb_balance *b, const double *x, double value, int derivati
     get_harmonic(b, b->eval->p, k, b->force_k);
     get_harmonic(b, x, k, b->motion_k);
     int unloaded = is_unloaded(b, k);
-    if (!unloaded && b->receptance->ring) subtract_ring_response(b, k, derivative);
-    if (!unloaded && !b->receptance->ring) {
+    if (!unloaded) {
       mhb_receptance_update(b->receptance, k);
-      subtract_response(b, k);
+      (b->receptance->ring ? subtract_ring_response : subtract_response)(b, k);
     }
     put_harmonic(b, r, k, b->motion_k);
     if (!slope) continue;

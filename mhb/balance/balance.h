@@ -59,7 +59,6 @@ typedef struct {
   int                      n_interfaces;
   int                      n_laws;             /* counts changes of law */
   double complex          *force_k, *motion_k; /* [3 pairs] one harmonic */
-  double complex          *response_k;         /* [3 pairs] of a ring; else NULL */
   double complex      *lag; /* [blades][m + 1] of a ring; else NULL: exp(-j k b phi/nu), by which
                                 * the tuned wave lags at blade b */
   const mhb_pair_kind *assumed; /* [pair] kinds that stuck and open pairs are taken to have by

@@ -20,7 +20,7 @@ static shb_status fill(mhb_ring_receptance *g, const mhb_settings *settings, int
             g->blades);
   for (int b = 0; b < g->blades; b++)
     SHB_TRY(mhb_receptance_create(&g->ring->blade[b], &own, n_harmonics, &g->blade[b]));
-  return SHB_OK;
+  return mhb_equal_shapes_create(g->blade[0], &g->shapes);
 }
 
 shb_status mhb_ring_receptance_create(const mhb_settings *settings, int n_harmonics,
@@ -42,6 +42,7 @@ shb_status mhb_ring_receptance_create(const mhb_settings *settings, int n_harmon
 
 void mhb_ring_receptance_destroy(mhb_ring_receptance *g) {
   if (!g) return;
+  mhb_equal_shapes_destroy(g->shapes);
   for (int b = 0; g->blade && b < g->blades; b++) mhb_receptance_destroy(g->blade[b]);
   shb_arena_free(&g->arena);
   free(g);
@@ -90,9 +91,11 @@ static double complex *block(const mhb_ring_receptance *g, int k, int b, mhb_rin
 }
 
 /* to[n][n] += the part of H[2n][2n] from (row, column). */
-static void add_part(int n, const double complex *H, int row, int column, double complex *to) {
-  for (int i = 0; i < n; i++)
-    for (int j = 0; j < n; j++) to[i * n + j] += H[(row + i) * 2 * n + column + j];
+static void add_part(const mhb_equal_shapes *H, int n, int row, int column, double complex *to) {
+  const double *re = H->matrix[0] + row * 2 * n + column, *im = H->matrix[1] + row * 2 * n + column;
+  for (int i = 0; i < n; i++, re += 2 * n, im += 2 * n)
+    for (int j = 0; j < n; j++)
+      to[i * n + j] = CMPLX(creal(to[i * n + j]) + re[j], cimag(to[i * n + j]) + im[j]);
 }
 
 static void set_blocks(mhb_ring_receptance *g, int k) {
@@ -100,12 +103,12 @@ static void set_blocks(mhb_ring_receptance *g, int k) {
   memset(block(g, k, 0, MHB_RING_BEFORE), 0,
          (size_t)g->blades * MHB_RING_BLOCKS * (size_t)n * size_of(g));
   for (int b = 0; b < g->blades; b++) {
-    const int             l = before(g, b);
-    const double complex *H = g->blade[b]->R + (size_t)k * 4 * (size_t)n * (size_t)n;
-    add_part(n, H, 0, 0, block(g, k, b, MHB_RING_OWN));
-    add_part(n, H, 0, n, block(g, k, b, MHB_RING_BEFORE));
-    add_part(n, H, n, 0, block(g, k, l, MHB_RING_AFTER));
-    add_part(n, H, n, n, block(g, k, l, MHB_RING_OWN));
+    const int l = before(g, b);
+    mhb_equal_shapes_receptance(g->shapes, g->blade[b], k);
+    add_part(g->shapes, n, 0, 0, block(g, k, b, MHB_RING_OWN));
+    add_part(g->shapes, n, 0, n, block(g, k, b, MHB_RING_BEFORE));
+    add_part(g->shapes, n, n, 0, block(g, k, l, MHB_RING_AFTER));
+    add_part(g->shapes, n, n, n, block(g, k, l, MHB_RING_OWN));
   }
 }
 
@@ -121,9 +124,8 @@ static void set_load(const mhb_ring_receptance *g, int k, double complex *free,
 
 void mhb_ring_receptance_update(mhb_ring_receptance *g, int k, double complex *free,
                                 double complex *unit) {
-  for (int b = 0; b < g->blades; b++) mhb_receptance_update(g->blade[b], k);
+  mhb_ring_receptance_update_load(g, k, free, unit);
   set_blocks(g, k);
-  set_load(g, k, free, unit);
 }
 
 void mhb_ring_receptance_update_load(mhb_ring_receptance *g, int k, double complex *free,
@@ -182,7 +184,7 @@ void mhb_ring_receptance_slope(const mhb_ring_receptance *g, int k, const double
                                double complex *slope) {
   memset(slope, 0, (size_t)g->blades * size_of(g));
   for (int b = 0; b < g->blades; b++) {
-    mhb_receptance_slope(g->blade[b], k, gather(g, b, p, g->p), g->part);
+    mhb_equal_shapes_slope(g->shapes, g->blade[b], k, gather(g, b, p, g->p), g->part);
     scatter(g, b, g->part, slope);
   }
 }

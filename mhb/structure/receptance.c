@@ -327,12 +327,16 @@ static void load_at(mhb_receptance *r, int k) {
   const double *re = mhb_modal_part_split(r->part, k, 0), *im = mhb_modal_part_split(r->part, k, 1);
   const double *load_re = re + n * m, *load_im = im + n * m;
   set_lambda(r, k, w, L, L + m);
-  for (int i = 0; i < m; i++) {
-    r->lambda[k * m + i] = CMPLX(L[i], L[m + i]);
-    y[i]                 = L[i] * load_re[i] - L[m + i] * load_im[i];
-    y[m + i]             = L[i] * load_im[i] + L[m + i] * load_re[i];
-  }
+  for (int i = 0; i < m; i++) r->lambda[k * m + i] = CMPLX(L[i], L[m + i]);
   memset(u, 0, sizeof *u * (size_t)n);
+  if (!r->driven[k]) { /* nor is the free response, which stays 0 */
+    memset(r->free + k * n, 0, sizeof *u * (size_t)n);
+    return;
+  }
+  for (int i = 0; i < m; i++) {
+    y[i]     = L[i] * load_re[i] - L[m + i] * load_im[i];
+    y[m + i] = L[i] * load_im[i] + L[m + i] * load_re[i];
+  }
   mhb_residual_terms_load(r->residual_terms, k, w, 1, u);
   for (int a = 0; a < n; a++, re += m, im += m) {
     u[a] += product(m, y, y + m, re, im, 1);

@@ -21,8 +21,12 @@ bool modal_series_has_fourth(const modal_model *model) {
   return model->residual_flexibility && model->residual_inertia && model->residual_fourth;
 }
 
-/* x = s/(1 + (s/c)^n)^(1/n), dx/ds = (1 + (s/c)^n)^(-1/n - 1), n = POWER. */
+/* Below this share of c the n-th power is lost in rounding: x = s. */
+static const double FAR_BELOW = 0.3;
+
+/* x = s/(1 + (s/c)^n)^(1/n), dx/ds = (1 + (s/c)^n)^(-1/n - 1), n = POWER; at first x = s. */
 static void limit(double s, double c, modal_series *series) {
+  if (s < FAR_BELOW * c) return;
   const double r = s / c, least = fmin(r, 1 / r), q = log1p(pow(least, POWER));
   const double all = r > 1 ? POWER * log(r) + q : q; /* ln(1 + r^n) */
   series->x        = s * exp(-all / POWER);
@@ -70,6 +74,16 @@ double modal_series_mode(const modal_model *model, int i, const modal_series *se
   const double cube = x / theta * (x / theta) * (x / theta) / gap;
   *slope            = series->dx * (x > 0 ? cube * (3 / x + 1 / gap) : 0);
   return cube;
+}
+
+void modal_series_modes(const modal_model *model, const modal_series *series, double *weight,
+                        double *slope) {
+  const double x = series->x, dx = series->dx, rate = x > 0 ? 3 / x : 0;
+  for (int i = 0; i < model->n_residual; i++) {
+    const double theta = eigenvalue(model, i), q = x / theta, inverse = 1 / (theta - x);
+    weight[i] = q * q * q * inverse;
+    slope[i]  = dx * weight[i] * (rate + inverse);
+  }
 }
 
 /* Moments of one dof that its error estimate needs. */

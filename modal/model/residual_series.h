@@ -43,6 +43,10 @@ modal_series modal_series_at(const modal_model *model, double omega);
 double modal_series_mode(const modal_model *model, int i, const modal_series *series,
                          double *slope);
 
+/* The same of all residual modes, into weight and slope [n_residual]. */
+void modal_series_modes(const modal_model *model, const modal_series *series, double *weight,
+                        double *slope);
+
 /* True if the model holds R, R2 and R3: R3 is used together with R and R2 only. */
 bool modal_series_has_fourth(const modal_model *model);
 

@@ -181,9 +181,53 @@ static void scales_as_a_stiffer_blade(void **state) {
   of_stiffer_blades(WITH_RESIDUAL | WITH_RESIDUAL_MODES, -0.07);
 }
 
+/* all[ROWS] += motions own[2n] of blade b, n of a contact. */
+static void add_blade(int b, const double complex *own, double complex *all) {
+  const int n = 3 * P, before = (b + N - 1) % N;
+  for (int i = 0; i < n; i++) {
+    all[b * n + i] += own[i];
+    all[before * n + i] += own[n + i];
+  }
+}
+
+/* free - R p by the blocks is that of the blades one by one, which sum over modes and terms. So is
+ * the slope. */
+static void is_that_of_its_blades(int parts, double omega) {
+  rings              g    = {0};
+  unsigned long long seed = 6;
+  double complex     p[ROWS], own[6 * P], part[6 * P];
+  make(&g, parts, 0);
+  for (int i = 0; i < ROWS; i++) p[i] = CMPLX(random_unit(&seed), random_unit(&seed));
+  mhb_receptance_at(g.blocks, omega, M);
+  for (int k = 0; k <= M; k++) {
+    double complex by_blocks[ROWS] = {0}, by_blades[ROWS], slope[ROWS], slopes[ROWS] = {0};
+    mhb_receptance_product_of(g.blocks, k, p, by_blocks);
+    for (int i = 0; i < ROWS; i++) by_blocks[i] = g.blocks->free[k * ROWS + i] - by_blocks[i];
+    mhb_receptance_motion(g.blocks, k, p, by_blades);
+    assert_below(distance(ROWS, by_blocks, by_blades), 1e-13);
+    mhb_receptance_slope(g.blocks, k, p, slope);
+    for (int b = 0; b < N; b++) {
+      memcpy(own, p + 3 * P * b, sizeof(double complex) * 3 * P);
+      memcpy(own + 3 * P, p + 3 * P * ((b + N - 1) % N), sizeof(double complex) * 3 * P);
+      mhb_receptance_slope(g.blocks->ring->blade[b], k, own, part);
+      add_blade(b, part, slopes);
+    }
+    if (k > 0) assert_below(distance(ROWS, slope, slopes), 1e-13);
+  }
+  drop(&g);
+}
+
+/* Harmonics below and above the first mode left out, where its series is bounded. */
+static void has_the_residual_modes(void **state) {
+  (void)state;
+  is_that_of_its_blades(WITH_RESIDUAL, 1.3);
+  is_that_of_its_blades(WITH_RESIDUAL | WITH_RESIDUAL_MODES, 1.3);
+  is_that_of_its_blades(WITH_RESIDUAL | WITH_RESIDUAL_MODES, 0.5);
+}
+
 int main(void) {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(is_that_of_the_dense_ring),
-                                     cmocka_unit_test(has_the_residual_terms),
-                                     cmocka_unit_test(scales_as_a_stiffer_blade)};
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(is_that_of_the_dense_ring), cmocka_unit_test(has_the_residual_terms),
+      cmocka_unit_test(scales_as_a_stiffer_blade), cmocka_unit_test(has_the_residual_modes)};
   return cmocka_run_group_tests(tests, NULL, NULL);
 }
