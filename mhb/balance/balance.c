@@ -7,7 +7,7 @@
 #include <string.h>
 
 #include "mesh/base/constants.h"
-#include "mhb/balance/ring_limit.h"
+#include "mhb/balance/ring_condensation.h"
 #include "mhb/balance/stuck_solver.h"
 #include "mhb/numerics/fourier.h"
 #include "mhb/numerics/simd.h"
@@ -618,11 +618,15 @@ bool mhb_balance_solve_many_stuck(mhb_balance *b, int k, const mhb_pair_kind *ki
                                 u);
 }
 
+static void set_kinds(const mhb_balance *b, int stuck, mhb_pair_kind *kind) {
+  for (int a = 0; a < b->n_pairs; a++)
+    kind[a] = is_stuck(b, a, stuck) ? MHB_PAIR_STUCK : MHB_PAIR_OPEN;
+}
+
 /* u <- (I + R_k S)^-1 u */
 static shb_status solve_stuck(mhb_balance *b, int k, int stuck, double complex *u) {
   mhb_pair_kind kind[b->n_pairs];
-  for (int a = 0; a < b->n_pairs; a++)
-    kind[a] = is_stuck(b, a, stuck) ? MHB_PAIR_STUCK : MHB_PAIR_OPEN;
+  set_kinds(b, stuck, kind);
   if (mhb_balance_solve_many_stuck(b, k, kind, u)) return SHB_OK;
   mhb_receptance_update(b->receptance, k);
   enum { FEW = 3 * MHB_MANY_PAIRS };
@@ -641,10 +645,11 @@ static shb_status solve_stuck(mhb_balance *b, int k, int stuck, double complex *
 
 /* The same of a ring. */
 static shb_status solve_stuck_ring(const mhb_balance *b, int k, int stuck, double complex *u) {
-  bool by_pair[b->n_pairs], moves = false;
-  for (int a = 0; a < b->n_pairs; a++) by_pair[a] = is_stuck(b, a, stuck);
+  mhb_pair_kind kind[b->n_pairs];
+  bool          moves = false;
+  set_kinds(b, stuck, kind);
   for (int i = 0; i < 3 * b->n_pairs; i++) moves = moves || creal(u[i]) != 0 || cimag(u[i]) != 0;
-  return moves ? mhb_ring_linear_limit(b->receptance->ring, b->law, k, by_pair, u) : SHB_OK;
+  return moves ? mhb_ring_linear_limit(b->receptance->ring, b->law, k, kind, u) : SHB_OK;
 }
 
 /* Without load a harmonic rests in a linear limit. Its receptance is not needed. */

@@ -103,7 +103,7 @@ static void solve_high(mhb_ring_truncation *t, double *r) {
 /* along <- the solution for the border alone, by which a solution loses its border. 0: singular. */
 static int set_along(mhb_ring_truncation *t, mhb_ring_system *factors) {
   const int n = t->balance->n;
-  if (!factors->blocks->borders) return 1;
+  if (!factors->borders) return 1;
   memset(t->along, 0, sizeof(double) * (size_t)n);
   t->along[n] = 1;
   return mhb_ring_system_solve(factors, t->along) && t->along[n] != 0;
@@ -117,7 +117,7 @@ static int solve_low(mhb_ring_truncation *t, mhb_ring_system *factors, double *r
   for (int i = 0; i < rows; i++) memcpy(t->low + i * nb, r + i * wide, length);
   t->low[b->n] = 0;
   if (!mhb_ring_system_solve(factors, t->low)) return 0;
-  if (factors->blocks->borders) {
+  if (factors->borders) {
     const double part = t->low[b->n] / t->along[b->n];
     for (int i = 0; i < b->n; i++) t->low[i] -= part * t->along[i];
   }

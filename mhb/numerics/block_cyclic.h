@@ -13,7 +13,7 @@
 #include "mesh/base/status.h"
 
 typedef struct {
-  int       blocks, size;         /* N >= 2, s >= 1 */
+  int       blocks, size;         /* N >= 1, s >= 1; N may be lowered before the blocks are set */
   double   *before, *own, *after; /* [N][s][s] column-major; own is destroyed by the factors */
   double   *column, *row;         /* [N][s] */
   double    corner;               /* of the border */

@@ -155,6 +155,64 @@ static void blocks_are_the_jacobian(void **state) {
   free(J);
 }
 
+/* Motion of a contact that slips (0), sticks (1) or is open (2). */
+static void set_state(int contact, int state, unsigned long long *seed, double *x) {
+  double *own = x + contact * OWN;
+  for (int i = 0; i < OWN; i++) own[i] = (state == 0 ? 0.4 : 1e-3) * random_unit(seed);
+  for (int a = 0; a < 3 * P && state == 2; a++) own[a * NB] = a % 3 ? 0 : -9;
+}
+
+/* Largest difference of the system's solution from the dense one, relative. */
+static double away_from_dense(problem *g, const double *x, bool bordered, mhb_condensation *system,
+                              double *J, unsigned long long seed) {
+  const int n = bordered ? ALL + 1 : ALL;
+  double    column[ALL + 1], row[ALL + 1], y[ALL + 1], z[ALL + 1], r[ALL], away = 0, size = 0;
+  for (int i = 0; i <= ALL; i++) {
+    column[i] = random_unit(&seed);
+    row[i]    = random_unit(&seed);
+    y[i] = z[i] = random_unit(&seed);
+  }
+  row[ALL] = column[ALL] = 0.3;
+  mhb_balance_evaluate(g->balance, x, 1.2, r, J, NULL);
+  assert_true(mhb_condensation_factor(system, bordered ? column : NULL, bordered ? row : NULL));
+  assert_true(mhb_condensation_solve(system, y));
+  if (!bordered) { /* the dense system has a border that does nothing */
+    memset(column, 0, sizeof column);
+    memset(row, 0, sizeof row);
+    column[ALL] = row[ALL] = 1;
+  }
+  assert_int_equal(mhb_condensation_sign(system), solve_dense(J, column, row, z));
+  for (int i = 0; i < n; i++) {
+    away = fmax(away, fabs(y[i] - z[i]));
+    size = fmax(size, fabs(z[i]));
+  }
+  return away / size;
+}
+
+/* All 3^5 mixes of contacts that slip, stick and are open: from none that is left to all. */
+static void every_mix_of_states_is_solved(void **state) {
+  const double       delta[N] = {0.05, -0.02, 0, 0.03, -0.06};
+  problem            g        = {0};
+  unsigned long long seed     = 12;
+  double            *J = calloc(ALL * ALL, sizeof *J), x[ALL], worst = 0;
+  int                left[N + 1] = {0};
+  mhb_condensation  *system;
+  (void)state;
+  make(&g, delta);
+  assert_ok(mhb_condensation_create(g.balance, &system));
+  for (int mix = 0; mix < 243; mix++) {
+    for (int b = 0, rest = mix; b < N; b++, rest /= 3) set_state(b, rest % 3, &seed, x);
+    worst = fmax(worst, away_from_dense(&g, x, mix % 2, system, J, seed));
+    left[system->ring->linear->n_left]++;
+  }
+  printf("solutions off by %.1e\n", worst);
+  assert_below(worst, 1e-12);
+  for (int i = 0; i <= N; i++) assert_true(left[i] > 0);
+  mhb_condensation_destroy(system);
+  drop(&g);
+  free(J);
+}
+
 /* The stuck limit solves the balance where the preload holds every contact. */
 static void stuck_limit_solves_it(void **state) {
   const double delta[N] = {0.05, -0.02, 0, 0.03, -0.06};
@@ -171,8 +229,8 @@ static void stuck_limit_solves_it(void **state) {
 }
 
 int main(void) {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(equal_blades_move_as_a_wave),
-                                     cmocka_unit_test(blocks_are_the_jacobian),
-                                     cmocka_unit_test(stuck_limit_solves_it)};
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(equal_blades_move_as_a_wave), cmocka_unit_test(blocks_are_the_jacobian),
+      cmocka_unit_test(every_mix_of_states_is_solved), cmocka_unit_test(stuck_limit_solves_it)};
   return cmocka_run_group_tests(tests, NULL, NULL);
 }
