@@ -3,6 +3,7 @@
 #include <lapacke.h>
 #include <math.h>
 #include <omp.h>
+#include <stddef.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -12,6 +13,9 @@
 #include "mhb/numerics/fourier.h"
 #include "mhb/numerics/simd.h"
 #include "mhb/structure/ring_receptance.h"
+
+/* Margin of a bound that decides the state of a pair. */
+static const double SURE = 1e-9;
 
 /* Fewer pairs than this are not worth a team of threads. */
 enum { WORTH_THREADS = 24 };
@@ -383,21 +387,56 @@ static void set_mean_gradient(mhb_balance *b, mhb_contact_evaluator *contact, in
   for (int i = 0; lag && i < 2; i++) turn(b, lag, 1, 3, 1, (size_t)b->nb, row[i]);
 }
 
-/* Force of a pair that is assumed to stick or to be open; its info stays as it is. */
-static void assumed_force(const mhb_balance *b, const double *x, int a) {
+/* Force of a pair that sticks without mean friction, or is open. */
+static void linear_force(const mhb_balance *b, const double *x, int a, mhb_pair_kind kind) {
   const mhb_law *law = &b->law[a];
   const int      nb  = b->nb;
   const double  *v = x + (size_t)(3 * a) * (size_t)nb, *u = v + nb, *w = u + nb;
   double        *p = b->eval->p + (size_t)(3 * a) * (size_t)nb;
   memset(p, 0, sizeof *p * 3 * (size_t)nb);
   p[0] = -law->mean_offset;
-  if (b->assumed[a] == MHB_PAIR_OPEN) return;
+  if (kind == MHB_PAIR_OPEN) return;
   p[0] += law->n0;
   for (int i = 0; i < nb; i++) p[i] += law->kv * v[i];
   for (int i = 1; i < nb; i++) {
     p[nb + i]     = law->ku[0] * u[i] + law->ku[1] * w[i];
     p[2 * nb + i] = law->ku[1] * u[i] + law->ku[2] * w[i];
   }
+}
+
+/* Sums of the amplitudes of all harmonics bound the normal load and the friction of a pair. Where
+ * they show that it sticks without mean friction, or is open, the law is not asked. Else
+ * nonlinear: not known. */
+static mhb_pair_kind sure_kind(const mhb_balance *b, const double *x, int a) {
+  const mhb_law *law = &b->law[a];
+  const double  *v = x + (size_t)(3 * a) * (size_t)b->nb, *u = v + b->nb, *w = u + b->nb;
+  double         load = 0, friction = 0;
+  for (int i = 1; i < b->nb; i += 2) {
+    double square = 0;
+    for (int j = i; j < i + 2; j++) {
+      const double f = law->ku[0] * u[j] + law->ku[1] * w[j];
+      const double g = law->ku[1] * u[j] + law->ku[2] * w[j];
+      square += f * f + g * g;
+    }
+    friction += sqrt(square);
+    load += law->kv * sqrt(v[i] * v[i] + v[i + 1] * v[i + 1]);
+  }
+  const double mean = law->n0 + law->kv * v[0];
+  if (mean + load < -SURE * load) return MHB_PAIR_OPEN;
+  return friction < law->mu * (mean - load) * (1 - SURE) ? MHB_PAIR_STUCK : MHB_PAIR_NONLINEAR;
+}
+
+static bool is_sure(mhb_balance *b, const double *x, int a, mhb_pair_kind *kind) {
+  mhb_contact_info *info = &b->eval->info[a];
+  *kind                  = sure_kind(b, x, a);
+  if (*kind == MHB_PAIR_NONLINEAR) return false;
+  const bool stuck = *kind == MHB_PAIR_STUCK;
+  linear_force(b, x, a, *kind);
+  memset(info, 0, offsetof(mhb_contact_info, transition));
+  info->share[stuck ? MHB_STICK : MHB_SEPARATE] = 1;
+  info->undetermined                            = stuck;
+  info->slider[0] = info->slider[1] = NAN;
+  return true;
 }
 
 static bool is_assumed(const mhb_balance *b, int a) {
@@ -410,7 +449,14 @@ static void evaluate_pair(mhb_balance *b, mhb_contact_evaluator *contact, const 
   size_t  block = 3 * (size_t)b->nb, at = (size_t)a * block;
   double *dp = b->eval->dp + at * block;
   if (!derivative && is_assumed(b, a)) {
-    assumed_force(b, x, a);
+    linear_force(b, x, a, b->assumed[a]);
+    return;
+  }
+  mhb_pair_kind sure;
+  if (is_sure(b, x, a, &sure)) {
+    if (!derivative) return;
+    b->eval->kind[a] = sure;
+    set_linear_derivative(b, a);
     return;
   }
   if (!derivative || b->eval->kind[a] != MHB_PAIR_NONLINEAR) {
