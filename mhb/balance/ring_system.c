@@ -77,18 +77,10 @@ static void conjugate(int n, double complex *x) {
 
 /* Columns of a pair in a block: rows R[n][n] of harmonic k, from the pair's first, times its dp. */
 static void add_harmonic(mhb_ring_system *s, int pair, int k, const double complex *R, double *to) {
-  const int n = s->linear->n, nb = s->balance->nb, axes = 3 * nb;
-  const int size = s->blocks->size;
-  double   *re = s->line, *im = re + axes;
-  to += k ? 2 * k - 1 : 0;
-  for (int row = 0; row < n; row++, R += n, to += nb) {
-    memset(re, 0, 2 * sizeof *re * (size_t)axes);
-    mhb_balance_row_times_dp(s->balance, R, pair, k, re, im);
-    for (int i = 0; i < axes; i++) {
-      to[(size_t)i * (size_t)size] += re[i];
-      if (k) to[(size_t)i * (size_t)size + 1] += im[i];
-    }
-  }
+  const int n = s->linear->n, nb = s->balance->nb, size = s->blocks->size;
+  to += (k ? 2 * k - 1 : 0) * size;
+  for (int row = 0; row < n; row++, R += n, to += nb * size)
+    mhb_balance_row_times_dp(s->balance, R, pair, k, to, to + size);
 }
 
 /* The block of R D with the row contact b and the column contact c, both left, into
@@ -97,7 +89,7 @@ static void add_block(mhb_ring_system *s, int b, int c, double complex *R, doubl
   const int P = s->linear->n / 3, axes = 3 * s->balance->nb;
   for (int j = 0; j < P; j++) {
     const int pair = c * P + j;
-    double   *to   = block + (size_t)j * (size_t)axes * (size_t)s->blocks->size;
+    double   *to   = block + j * axes;
     if (s->kind[pair] == MHB_PAIR_OPEN) continue;
     for (int k = 0; k <= s->balance->m; k++)
       add_harmonic(s, pair, k, mhb_ring_condensation_at(s->linear, R, k, b) + 3 * (size_t)j, to);

@@ -1,9 +1,17 @@
 #include "mhb/numerics/block_cyclic.h"
 
-#include <cblas.h>
-#include <lapacke.h>
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
+
+#include "mhb/numerics/simd.h"
+
+/* Rows and vectors of a tile of a product that registers hold. */
+enum { TILE_ROWS = 4, TILE_LANES = 2, TILE = TILE_LANES * MHB_LANES };
+
+static int whole_tiles(int n) {
+  return (n + TILE - 1) / TILE * TILE;
+}
 
 shb_status mhb_block_cyclic_create(int blocks, int size, mhb_block_cyclic **out) {
   mhb_block_cyclic *f = calloc(1, sizeof *f);
@@ -11,14 +19,16 @@ shb_status mhb_block_cyclic_create(int blocks, int size, mhb_block_cyclic **out)
   const size_t N = (size_t)blocks, s = (size_t)size;
   f->blocks  = blocks;
   f->size    = size;
+  f->first   = mhb_whole_lanes(size);
+  f->width   = f->first + whole_tiles(2 * size + 1);
   f->before  = shb_arena_take(&f->arena, N * s * s, sizeof(double));
   f->own     = shb_arena_take(&f->arena, N * s * s, sizeof(double));
   f->after   = shb_arena_take(&f->arena, N * s * s, sizeof(double));
   f->column  = shb_arena_take(&f->arena, N * s, sizeof(double));
   f->row     = shb_arena_take(&f->arena, N * s, sizeof(double));
-  f->right   = shb_arena_take(&f->arena, N * s * (2 * s + 1), sizeof(double));
+  f->rows    = shb_arena_take(&f->arena, N * s * (size_t)f->width, sizeof(double));
   f->below   = shb_arena_take(&f->arena, N * s * (2 * s + 1), sizeof(double));
-  f->product = shb_arena_take(&f->arena, (2 * s + 1) * (2 * s + 1), sizeof(double));
+  f->product = shb_arena_take(&f->arena, (2 * s + 1) * (size_t)f->width, sizeof(double));
   f->last    = shb_arena_take(&f->arena, (s + 1) * (s + 1), sizeof(double));
   f->x       = shb_arena_take(&f->arena, s + 1, sizeof(double));
   f->pivot   = shb_arena_take(&f->arena, N * (s + 1), sizeof(int));
@@ -56,8 +66,9 @@ static int n_common(const mhb_block_cyclic *f, int i) {
   return n_next(f, i) + f->size + f->borders;
 }
 
-static double *right_of(const mhb_block_cyclic *f, int i) {
-  return f->right + (size_t)i * (size_t)f->size * (2 * (size_t)f->size + 1);
+/* Rows of block i: own, then from `first` on the common columns. */
+static double *rows_of(const mhb_block_cyclic *f, int i) {
+  return f->rows + (size_t)i * (size_t)f->size * (size_t)f->width;
 }
 
 static double *below_of(const mhb_block_cyclic *f, int i) {
@@ -68,116 +79,205 @@ static int *pivot_of(const mhb_block_cyclic *f, int i) {
   return f->pivot + (size_t)i * ((size_t)f->size + 1);
 }
 
-static void count_signs(mhb_block_cyclic *f, int n, const double *A, const int *pivot) {
-  for (int i = 0; i < n; i++) {
-    if (A[(size_t)i * ((size_t)n + 1)] < 0) f->sign = -f->sign;
-    if (pivot[i] != i + 1) f->sign = -f->sign;
+/* ---- dense kernels, row-major ---- */
+
+/* y[n] -= a x[n] */
+MHB_INLINE void subtract(int n, double a, const double *restrict x, double *restrict y) {
+  for (int j = 0; j < n; j++) y[j] -= a * x[j];
+}
+
+static void swap_rows(int n, double *restrict x, double *restrict y) {
+  for (int j = 0; j < n; j++) {
+    const double old = x[j];
+    x[j]             = y[j];
+    y[j]             = old;
   }
 }
 
-/* A[n][n] <- its factors. 0: singular. */
-static int factor_dense(mhb_block_cyclic *f, int n, double *A, int *pivot) {
-  if (LAPACKE_dgetrf_work(LAPACK_COL_MAJOR, n, n, A, n, pivot) != 0) return 0;
-  count_signs(f, n, A, pivot);
-  return 1;
+/* Gaussian elimination of the first n columns of A[n][width], with row exchanges: the factors, and
+ * the columns behind as the lower factor leaves them. The sign of the determinant; 0: singular. */
+MHB_HOT static int eliminate_rows(int n, int width, double *A, int *pivot) {
+  int sign = 1;
+  for (int p = 0; p < n; p++) {
+    double *row  = A + p * width;
+    int     best = p;
+    for (int i = p + 1; i < n; i++)
+      if (fabs(A[i * width + p]) > fabs(A[best * width + p])) best = i;
+    pivot[p] = best;
+    if (best != p) {
+      swap_rows(width, row, A + best * width);
+      sign = -sign;
+    }
+    if (row[p] < 0) sign = -sign;
+    if (!(fabs(row[p]) > 0) || !isfinite(row[p])) return 0;
+    const double inverse = 1 / row[p];
+    for (int i = p + 1; i < n; i++) {
+      double *to = A + i * width;
+      to[p] *= inverse;
+      subtract(width - p - 1, to[p], row + p + 1, to + p + 1);
+    }
+  }
+  return sign;
 }
 
-/* rows of column-major to += those of from[s][s]; leading dimension of to. */
-static void add_rows(int s, const double *from, int leading, double *to) {
-  for (int j = 0; j < s; j++)
-    for (int i = 0; i < s; i++) to[j * leading + i] += from[j * s + i];
+/* `columns` columns of A[n][width] from `first` on <- upper factor^-1 times them. */
+MHB_HOT static void substitute_rows(int n, int width, int first, int columns, double *A) {
+  for (int p = n - 1; p >= 0; p--) {
+    double      *row     = A + p * width + first;
+    const double inverse = 1 / A[p * width + p];
+    for (int j = 0; j < columns; j++) row[j] *= inverse;
+    for (int i = 0; i < p; i++) subtract(columns, A[i * width + p], row, A + i * width + first);
+  }
 }
 
-/* The common columns and rows of block i before elimination. */
+MHB_INLINE double dot(int n, const double *a, const double *b) {
+  double sum = 0;
+  for (int j = 0; j < n; j++) sum += a[j] * b[j];
+  return sum;
+}
+
+/* x[n] <- A^-1 x with the factors in A[n][width] */
+MHB_HOT static void solve_rows(int n, int width, const double *A, const int *pivot, double *x) {
+  for (int p = 0; p < n; p++) {
+    const double old = x[p];
+    x[p]             = x[pivot[p]];
+    x[pivot[p]]      = old;
+  }
+  for (int i = 1; i < n; i++) x[i] -= dot(i, A + i * width, x);
+  for (int i = n - 1; i >= 0; i--) {
+    const double *row = A + i * width;
+    x[i]              = (x[i] - dot(n - i - 1, row + i + 1, x + i + 1)) / row[i];
+  }
+}
+
+/* A tile of the product of A[..][s] and B[s][width]. */
+MHB_INLINE void multiply_tile(int rows, int s, int width, const double *A, const double *B,
+                              double *C) {
+  mhb_lanes sum[TILE_ROWS][TILE_LANES] = {{{0}}};
+  for (int l = 0; l < s; l++)
+    for (int i = 0; i < rows; i++)
+      for (int j = 0; j < TILE_LANES; j++)
+        sum[i][j] += A[i * s + l] * lanes_load(B + l * width + j * MHB_LANES);
+  for (int i = 0; i < rows; i++)
+    for (int j = 0; j < TILE_LANES; j++) lanes_store(C + i * width + j * MHB_LANES, sum[i][j]);
+}
+
+/* C[rows][columns] <- A[rows][s] B[s][columns], columns in whole tiles; B and C have rows of
+ * width. */
+MHB_HOT static void multiply(int rows, int columns, int s, int width, const double *A,
+                             const double *B, double *C) {
+  for (int i = 0; i < rows; i += TILE_ROWS)
+    for (int j = 0; j < columns; j += TILE) {
+      if (i + TILE_ROWS <= rows)
+        multiply_tile(TILE_ROWS, s, width, A + i * s, B + j, C + i * width + j);
+      else
+        for (int one = i; one < rows; one++)
+          multiply_tile(1, s, width, A + one * s, B + j, C + one * width + j);
+    }
+}
+
+/* ---- factors ---- */
+
+/* to[rows][..] = from[rows][s], or += it */
+static void put_block(int s, const double *from, int width, double *to) {
+  for (int i = 0; i < s; i++)
+    for (int j = 0; j < s; j++) to[i * width + j] += from[i * s + j];
+}
+
+/* Rows and common columns of block i before elimination. */
 static void set_coupling(mhb_block_cyclic *f, int i) {
   const int s = f->size, end = f->blocks - 1, next = n_next(f, i), all = n_common(f, i);
-  double   *right = right_of(f, i), *below = below_of(f, i);
-  double   *last_columns = right + next * s, *last_rows = below + next;
-  memset(right, 0, sizeof(double) * (size_t)(s * all));
+  double   *rows = rows_of(f, i), *below = below_of(f, i), *common = rows + f->first;
+  memset(rows, 0, sizeof(double) * (size_t)(s * f->width));
   memset(below, 0, sizeof(double) * (size_t)(s * all));
-  add_rows(s, mhb_block_cyclic_at(f, f->after, i), s, right); /* of the next, or of the last */
-  add_rows(s, mhb_block_cyclic_at(f, f->before, i + 1), all, below);
+  put_block(s, mhb_block_cyclic_at(f, f->own, i), f->width, rows);
+  put_block(s, mhb_block_cyclic_at(f, f->after, i), f->width, common); /* next, or last */
+  put_block(s, mhb_block_cyclic_at(f, f->before, i + 1), s, below);
   if (i == 0) { /* round the ring */
-    add_rows(s, f->before, s, last_columns);
-    add_rows(s, mhb_block_cyclic_at(f, f->after, end), all, last_rows);
+    put_block(s, f->before, f->width, common + next);
+    put_block(s, mhb_block_cyclic_at(f, f->after, end), s, below + next * s);
   }
   for (int j = 0; j < s && f->borders; j++) {
-    last_columns[s * s + j] = f->column[i * s + j];
-    last_rows[j * all + s]  = f->row[i * s + j];
+    common[j * f->width + next + s] = f->column[i * s + j];
+    below[(next + s) * s + j]       = f->row[i * s + j];
   }
 }
 
 static void set_last(mhb_block_cyclic *f) {
   const int     s = f->size, w = s + f->borders, end = f->blocks - 1;
   const double *own = mhb_block_cyclic_at(f, f->own, end);
-  for (int j = 0; j < s; j++) memcpy(f->last + j * w, own + j * s, sizeof(double) * (size_t)s);
-  if (!f->borders) return;
-  for (int j = 0; j < s; j++) {
-    f->last[s * w + j]     = f->column[end * s + j];
-    f->last[j * w + w - 1] = f->row[end * s + j];
+  for (int i = 0; i < s; i++) {
+    memcpy(f->last + i * w, own + i * s, sizeof(double) * (size_t)s);
+    if (f->borders) f->last[i * w + s] = f->column[end * s + i];
+    if (f->borders) f->last[s * w + i] = f->row[end * s + i];
   }
-  f->last[s * w + s] = f->corner;
+  if (f->borders) f->last[s * w + s] = f->corner;
 }
 
-/* to -= a part of the product, from its row and column. */
-static void subtract_part(const mhb_block_cyclic *f, int all, int row, int column, int rows,
-                          int columns, int leading, double *to) {
-  for (int j = 0; j < columns; j++) {
-    const double *from = f->product + (column + j) * all + row;
-    for (int i = 0; i < rows; i++) to[j * leading + i] -= from[i];
-  }
+/* to[rows][columns] -= a part of the product, from its row and column. */
+static void subtract_part(const mhb_block_cyclic *f, int row, int column, int rows, int columns,
+                          int width, double *to) {
+  for (int i = 0; i < rows; i++)
+    subtract(columns, 1, f->product + (row + i) * f->width + column, to + i * width);
 }
 
 /* Eliminate block i: the next one and the last system lose it. 0: singular. */
 static int eliminate(mhb_block_cyclic *f, int i) {
   const int s = f->size, w = s + f->borders, next = n_next(f, i), all = n_common(f, i);
-  double   *own = mhb_block_cyclic_at(f, f->own, i), *right = right_of(f, i);
-  if (!factor_dense(f, s, own, pivot_of(f, i))) return 0;
-  LAPACKE_dgetrs_work(LAPACK_COL_MAJOR, 'N', s, all, own, s, pivot_of(f, i), right, s);
-  cblas_dgemm(CblasColMajor, CblasNoTrans, CblasNoTrans, all, all, s, 1, below_of(f, i), all, right,
-              s, 0, f->product, all);
-  subtract_part(f, all, next, next, w, w, w, f->last);
+  const int columns = whole_tiles(all),
+            sign    = eliminate_rows(s, f->width, rows_of(f, i), pivot_of(f, i));
+  double *common    = rows_of(f, i) + f->first;
+  f->sign *= sign;
+  if (!sign) return 0;
+  substitute_rows(s, f->width, f->first, columns, rows_of(f, i));
+  multiply(all, columns, s, f->width, below_of(f, i), common, f->product);
+  subtract_part(f, next, next, w, w, w, f->last);
   if (next == 0) return 1;
-  const int after = n_common(f, i + 1), beyond = n_next(f, i + 1);
-  subtract_part(f, all, 0, 0, s, s, s, mhb_block_cyclic_at(f, f->own, i + 1));
-  subtract_part(f, all, 0, s, s, w, s, right_of(f, i + 1) + beyond * s);
-  subtract_part(f, all, s, 0, w, s, after, below_of(f, i + 1) + beyond);
+  const int beyond = n_next(f, i + 1);
+  double   *to     = rows_of(f, i + 1);
+  subtract_part(f, 0, 0, s, s, f->width, to);
+  subtract_part(f, 0, s, s, w, f->width, to + f->first + beyond);
+  subtract_part(f, s, 0, w, s, s, below_of(f, i + 1) + beyond * s);
   return 1;
 }
 
 int mhb_block_cyclic_factor(mhb_block_cyclic *f, int borders) {
+  const int end = f->blocks - 1, w = f->size + borders;
   f->borders = borders;
   f->sign    = 1;
   set_last(f);
-  for (int i = 0; i < f->blocks - 1; i++) set_coupling(f, i);
-  for (int i = 0; i < f->blocks - 1; i++)
+  for (int i = 0; i < end; i++) set_coupling(f, i);
+  for (int i = 0; i < end; i++)
     if (!eliminate(f, i)) return 0;
-  return factor_dense(f, f->size + borders, f->last, pivot_of(f, f->blocks - 1));
+  f->sign *= eliminate_rows(w, w, f->last, pivot_of(f, end));
+  return f->sign != 0;
 }
 
-/* y[rows] -= A x, A[rows][columns] column-major. */
-static void subtract_from(int rows, int columns, const double *A, int leading, const double *x,
-                          double *y) {
-  cblas_dgemv(CblasColMajor, CblasNoTrans, rows, columns, -1, A, leading, x, 1, 1, y, 1);
+/* ---- solutions ---- */
+
+/* y[rows] -= A x, A[rows][columns] with rows of width. */
+MHB_HOT static void subtract_from(int rows, int columns, int width, const double *A,
+                                  const double *x, double *y) {
+  for (int i = 0; i < rows; i++) y[i] -= dot(columns, A + i * width, x);
 }
 
 void mhb_block_cyclic_solve(mhb_block_cyclic *f, double *rhs) {
   const int s = f->size, w = s + f->borders, end = f->blocks - 1;
   memcpy(f->x, rhs + (size_t)end * (size_t)s, sizeof(double) * (size_t)w);
   for (int i = 0; i < end; i++) {
-    const int next = n_next(f, i), all = n_common(f, i);
-    double   *y = rhs + (size_t)i * (size_t)s;
-    LAPACKE_dgetrs_work(LAPACK_COL_MAJOR, 'N', s, 1, mhb_block_cyclic_at(f, f->own, i), s,
-                        pivot_of(f, i), y, s);
-    if (next) subtract_from(s, s, below_of(f, i), all, y, y + s);
-    subtract_from(w, s, below_of(f, i) + next, all, y, f->x);
-  }
-  LAPACKE_dgetrs_work(LAPACK_COL_MAJOR, 'N', w, 1, f->last, w, pivot_of(f, end), f->x, w);
-  memcpy(rhs + (size_t)end * (size_t)s, f->x, sizeof(double) * (size_t)w);
-  for (int i = end - 1; i >= 0; i--) {
     const int next = n_next(f, i);
     double   *y    = rhs + (size_t)i * (size_t)s;
-    if (next) subtract_from(s, s, right_of(f, i), s, y + s, y);
-    subtract_from(s, w, right_of(f, i) + next * s, s, f->x, y);
+    solve_rows(s, f->width, rows_of(f, i), pivot_of(f, i), y);
+    subtract_from(next, s, s, below_of(f, i), y, y + s);
+    subtract_from(w, s, s, below_of(f, i) + next * s, y, f->x);
+  }
+  solve_rows(w, w, f->last, pivot_of(f, end), f->x);
+  memcpy(rhs + (size_t)end * (size_t)s, f->x, sizeof(double) * (size_t)w);
+  for (int i = end - 1; i >= 0; i--) {
+    const int     next   = n_next(f, i);
+    const double *common = rows_of(f, i) + f->first;
+    double       *y      = rhs + (size_t)i * (size_t)s;
+    subtract_from(s, next, f->width, common, y + s, y);
+    subtract_from(s, w, f->width, common + next, f->x, y);
   }
 }

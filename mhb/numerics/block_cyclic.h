@@ -5,7 +5,8 @@
  * i modulo the number of blocks N. LU by blocks eliminates x_0 .. x_{N-2}. The last block, the
  * coupling round the ring and the border are one dense system of size s + 1. With its pivots the
  * system may be singular without its border, as at a fold. Rows are exchanged inside blocks only.
- * Cost 12.7 N s^3 operations, memory 8 N s^2 numbers. */
+ * Small blocks are no work for BLAS: rows are eliminated by whole vectors, with all columns that
+ * meet them. Cost 12.7 N s^3 operations, memory 8 N s^2 numbers. */
 #ifndef MHB_NUMERICS_BLOCK_CYCLIC_H
 #define MHB_NUMERICS_BLOCK_CYCLIC_H
 
@@ -14,13 +15,15 @@
 
 typedef struct {
   int       blocks, size;         /* N >= 1, s >= 1; N may be lowered before the blocks are set */
-  double   *before, *own, *after; /* [N][s][s] column-major; own is destroyed by the factors */
+  double   *before, *own, *after; /* [N][s][s] row-major */
   double   *column, *row;         /* [N][s] */
   double    corner;               /* of the border */
   int       borders;              /* 0 or 1: of the last factors */
-  double   *right;   /* [N-1][2s+1][s] own^-1 times the columns of the next and the last system */
-  double   *below;   /* [N-1][s][2s+1] rows of the next and the last system */
-  double   *product; /* [2s+1][2s+1] */
+  int       first, width;         /* of the rows below, in whole vectors */
+  double   *rows;    /* [N][s][width] factors of a block; from `first` on own^-1 times the columns
+                           * of the next and the last system */
+  double   *below;   /* [N][2s+1][s] rows of the next and the last system */
+  double   *product; /* [2s+1][width] */
   double   *last;    /* [s+1][s+1] */
   double   *x;       /* [s+1] */
   int      *pivot;   /* [N][s+1] */
@@ -35,7 +38,7 @@ void       mhb_block_cyclic_destroy(mhb_block_cyclic *system);
 /* All blocks and the border <- 0. */
 void mhb_block_cyclic_clear(mhb_block_cyclic *system);
 
-/* Block [s][s], column-major. */
+/* Block [s][s], row-major. */
 static inline double *mhb_block_cyclic_at(const mhb_block_cyclic *system, double *blocks, int i) {
   return blocks + (size_t)i * (size_t)system->size * (size_t)system->size;
 }

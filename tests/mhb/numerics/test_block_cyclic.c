@@ -27,7 +27,7 @@ static void fill(mhb_block_cyclic *f, int borders, unsigned long long seed, doub
       for (int j = 0; j < s; j++)
         for (int i = 0; i < s; i++) {
           const double x = mhb_random(&seed) + (which == 1 && i == j ? 2 : 0);
-          mhb_block_cyclic_at(f, part[which], b)[j * s + i] = x;
+          mhb_block_cyclic_at(f, part[which], b)[i * s + j] = x;
           A[(column[which] * s + j) * n + b * s + i] += x;
         }
   }
