@@ -552,8 +552,7 @@ static void set_force_by_parameter(mhb_balance *b, const double *x) {
   }
 }
 
-/* r <- x - free + R p of many pairs. */
-static void residual_by_product(mhb_balance *b, const double *x, double *r) {
+void mhb_balance_residual_of_many(mhb_balance *b, const double *x, double *r) {
   mhb_receptance_product_update(b->product);
   mhb_receptance_product_apply(b->product, MHB_PRODUCT_VALUE, b->negligible, b->eval->p, r);
   for (int k = 0; k <= b->m; k++) {
@@ -593,7 +592,7 @@ static void evaluate(mhb_balance *b, const double *x, double value, int derivati
   evaluate_pairs(b, x, derivative || by_law);
   if (by_law) set_force_by_parameter(b, x);
   if (b->product) {
-    residual_by_product(b, x, r);
+    mhb_balance_residual_of_many(b, x, r);
     if (slope) slope_by_product(b, slope);
   }
   for (int k = 0; k <= b->m && !b->product; k++) {

@@ -123,6 +123,9 @@ void mhb_balance_evaluate(mhb_balance *balance, const double *x, double value, d
 void mhb_balance_linearise(mhb_balance *balance, const double *x, double value, double *r,
                            double *slope);
 
+/* r[n] <- x[n] - free + R p of many pairs, p the forces of the evaluation in use. */
+void mhb_balance_residual_of_many(mhb_balance *balance, const double *x, double *r);
+
 /* slope[n] <- dr/dparameter at x[n], which the evaluation in use was linearised at; no new
  * evaluation of the law. by_parameter of the evaluation becomes that of this parameter; for the
  * frequency it stays. */

@@ -464,15 +464,18 @@ static int solve_dense(mhb_condensation *s) {
                                              s->pivot, s->unknown, s->size) == 0;
 }
 
+mhb_block mhb_pair_block(const mhb_balance *b, int a) {
+  return b->eval->kind[a] == MHB_PAIR_OPEN    ? MHB_BLOCK_NONE
+         : b->eval->kind[a] == MHB_PAIR_STUCK ? MHB_BLOCK_SPRING
+                                              : MHB_BLOCK_FULL;
+}
+
 /* GMRES pays, and the point was factored for it. */
 static int factor_low_rank(mhb_condensation *s, const double *column, const double *row) {
   const mhb_balance *b = s->balance;
   if (!s->low_rank) return 0;
   if (3 * b->nb * s->n_nonlinear <= MOST_MOVING && 3 * s->n_stuck <= MOST_STUCK) return 0;
-  for (int a = 0; a < b->n_pairs; a++)
-    s->form[a] = b->eval->kind[a] == MHB_PAIR_OPEN    ? MHB_BLOCK_NONE
-                 : b->eval->kind[a] == MHB_PAIR_STUCK ? MHB_BLOCK_SPRING
-                                                      : MHB_BLOCK_FULL;
+  for (int a = 0; a < b->n_pairs; a++) s->form[a] = mhb_pair_block(b, a);
   return mhb_woodbury_factor(s->low_rank, s->form, b->eval->dp, b->law, column, row);
 }
 

@@ -107,6 +107,9 @@ int mhb_condensation_factor(mhb_condensation *condensation, const double *column
  * many pairs. Many pairs: to `accuracy`, which the caller may change; 1e-4 at first. */
 int mhb_condensation_solve(mhb_condensation *condensation, double *rhs);
 
+/* Form of a pair's stiffness at the balance's evaluation in use, for low_rank. */
+mhb_block mhb_pair_block(const mhb_balance *balance, int pair);
+
 /* Sign of the determinant of the system that was factored: 1 or -1. */
 int mhb_condensation_sign(const mhb_condensation *condensation);
 

@@ -1,5 +1,6 @@
 #include "mhb/balance/higher_harmonics.h"
 
+#include <cblas.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -24,7 +25,9 @@ static int allocate(mhb_higher_harmonics *h, int product, size_t change) {
   h->c        = shb_arena_take(&h->arena, n, sizeof(double complex));
   h->A        = shb_arena_take(&h->arena, h->by_modes ? m * m : n * n, sizeof(double complex));
   h->y        = shb_arena_take(&h->arena, m, sizeof(double complex));
-  h->V        = shb_arena_take(&h->arena, 3 * m, sizeof(double complex));
+  h->V        = shb_arena_take(&h->arena, n * m, sizeof(double complex));
+  h->C        = shb_arena_take(&h->arena, m * m, sizeof(double complex));
+  h->f        = shb_arena_take(&h->arena, n, sizeof(double complex));
   size_t high = product ? 2 * K * n : 0;
   h->change   = shb_arena_take(&h->arena, change > high ? change : high, sizeof(double));
   h->motion   = shb_arena_take(&h->arena, high, sizeof(double));
@@ -101,18 +104,20 @@ static void pair_force(mhb_higher_harmonics *h, const mhb_balance *balance, cons
                          h->p, NULL, &info);
 }
 
-/* D of all pairs, and p_k of the nonlinear ones. */
-static void set_forces(mhb_higher_harmonics *h, const mhb_balance *balance, const double *x) {
-  int wide = mhb_real_size(h->last);
-  memset(h->force, 0, sizeof *h->force * (size_t)(h->last - h->first + 1) * (size_t)h->n);
+void mhb_higher_harmonics_set_force(mhb_higher_harmonics *h, int pair, const double *p) {
+  const int wide = mhb_real_size(h->last);
+  for (int k = h->first; k <= h->last; k++)
+    for (int c = 0; c < 3; c++)
+      harmonic_of(h, h->force, k)[3 * pair + c] =
+          p ? CMPLX(p[c * wide + 2 * k - 1], p[c * wide + 2 * k]) : 0;
+}
+
+void mhb_higher_harmonics_evaluate(mhb_higher_harmonics *h, const mhb_balance *balance,
+                                   const double *x) {
   for (int a = 0; a < balance->n_pairs; a++) {
-    mhb_last_stiffness(balance, a, (double complex(*)[3])(h->D + 9 * a));
-    if (balance->eval->kind[a] != MHB_PAIR_NONLINEAR) continue;
-    pair_force(h, balance, x, a, 0);
-    for (int k = h->first; k <= h->last; k++)
-      for (int c = 0; c < 3; c++)
-        harmonic_of(h, h->force, k)[3 * a + c] =
-            CMPLX(h->p[c * wide + 2 * k - 1], h->p[c * wide + 2 * k]);
+    const bool moves = balance->eval->kind[a] == MHB_PAIR_NONLINEAR;
+    if (moves) pair_force(h, balance, x, a, 0);
+    mhb_higher_harmonics_set_force(h, a, moves ? h->p : NULL);
   }
 }
 
@@ -170,43 +175,39 @@ static double complex modal_receptance(const mhb_receptance *r, int k, int i) {
   return 1.0 / CMPLX(wi * wi - w * w, 2 * model->damping_ratio[i] * wi * w);
 }
 
-/* A += B^H D W B, y += B^H D W c of a pair. */
-static void add_pair(mhb_higher_harmonics *h, const double complex *B, int pair) {
-  int                   m = h->n_modes;
+/* Rows of a pair: V <- D W B [3][modes], f <- D W c [3]. */
+static void set_rows(mhb_higher_harmonics *h, const double complex *B, int pair) {
+  const int             m = h->n_modes;
   const double complex *D = h->D + 9 * pair, *W = h->W + 9 * pair, *c = h->c + 3 * pair;
   for (int i = 0; i < 3; i++) {
-    double complex DW[3], *V = h->V + i * m;
+    double complex DW[3], *V = h->V + (3 * pair + i) * m;
     for (int j = 0; j < 3; j++)
       DW[j] = D[3 * i] * W[j] + D[3 * i + 1] * W[3 + j] + D[3 * i + 2] * W[6 + j];
     for (int j = 0; j < m; j++) V[j] = DW[0] * B[j] + DW[1] * B[m + j] + DW[2] * B[2 * m + j];
-    double complex f = DW[0] * c[0] + DW[1] * c[1] + DW[2] * c[2];
-    for (int j = 0; j < m; j++) h->y[j] += conj(B[i * m + j]) * f;
+    h->f[3 * pair + i] = DW[0] * c[0] + DW[1] * c[1] + DW[2] * c[2];
   }
-  for (int j = 0; j < m; j++)
-    for (int l = 0; l < m; l++)
-      h->A[j * m + l] += conj(B[l]) * h->V[j] + conj(B[m + l]) * h->V[m + j] +
-                         conj(B[2 * m + l]) * h->V[2 * m + j];
 }
 
 static int solve_modes(mhb_higher_harmonics *h, int k, double complex *u) {
-  int                   m = h->n_modes;
-  const double complex *B = h->receptance->B + (size_t)k * (size_t)h->n * (size_t)m;
-  memset(h->A, 0, sizeof *h->A * (size_t)m * (size_t)m);
-  memset(h->y, 0, sizeof *h->y * (size_t)m);
-  for (int a = 0; a < h->n / 3; a++) {
+  const int             m = h->n_modes, n = h->n;
+  const double complex *B   = h->receptance->B + (size_t)k * (size_t)n * (size_t)m;
+  const double complex  one = 1, less = -1, none = 0;
+  for (int a = 0; a < n / 3; a++) {
     set_W(h, k, a, (double complex(*)[3])(h->W + 9 * a));
-    if (power_of(9, h->D + 9 * a) > 0) add_pair(h, B + 3 * a * m, a);
+    set_rows(h, B + 3 * a * m, a);
   }
+  cblas_zgemv(CblasRowMajor, CblasConjTrans, n, m, &one, B, m, h->f, 1, &none, h->y, 1);
+  cblas_zgemm(CblasRowMajor, CblasConjTrans, CblasNoTrans, m, m, n, &one, B, m, h->V, m, &none,
+              h->C, m);
   for (int i = 0; i < m; i++) {
     double complex L = modal_receptance(h->receptance, k, i);
     h->y[i] *= L;
-    for (int j = 0; j < m; j++) h->A[j * m + i] = L * h->A[j * m + i] + (i == j);
+    for (int j = 0; j < m; j++) h->A[j * m + i] = L * h->C[i * m + j] + (i == j);
   }
   if (!mhb_factor_complex(m, h->A, h->pivot) || !mhb_solve_complex(m, h->A, h->pivot, 1, h->y))
     return 0;
-  for (int row = 0; row < h->n; row++)
-    for (int i = 0; i < m; i++) h->c[row] -= B[row * m + i] * h->y[i];
-  for (int row = 0; row < h->n; row++) {
+  cblas_zgemv(CblasRowMajor, CblasNoTrans, n, m, &less, B, m, h->y, 1, &one, h->c, 1);
+  for (int row = 0; row < n; row++) {
     const double complex *W = h->W + 3 * row, *c = h->c + row - row % 3;
     u[row] = W[0] * c[0] + W[1] * c[1] + W[2] * c[2];
   }
@@ -241,11 +242,12 @@ static void set_free_motion(mhb_higher_harmonics *h, int k) {
     h->c[i] = h->receptance->free[k * h->n + i] - CMPLX(from[0], from[1]);
 }
 
-double mhb_higher_harmonics_estimate(mhb_higher_harmonics *h, const mhb_balance *balance,
-                                     const double *x) {
+double mhb_higher_harmonics_estimate(mhb_higher_harmonics *h, const mhb_balance *stiffness,
+                                     double negligible) {
   double sum = 0;
-  set_forces(h, balance, x);
-  if (h->product) set_motions(h, balance->negligible);
+  for (int a = 0; a < stiffness->n_pairs; a++)
+    mhb_last_stiffness(stiffness, a, (double complex(*)[3])(h->D + 9 * a));
+  if (h->product) set_motions(h, negligible);
   for (int k = h->first; k <= h->last; k++) {
     double complex *u = harmonic_of(h, h->u, k);
     set_free_motion(h, k);
@@ -257,12 +259,12 @@ double mhb_higher_harmonics_estimate(mhb_higher_harmonics *h, const mhb_balance 
 }
 
 void mhb_higher_harmonics_feedback(mhb_higher_harmonics *h, const mhb_balance *balance,
-                                   const double *x, double *change) {
+                                   const mhb_balance *stiffness, const double *x, double *change) {
   int    wide = mhb_real_size(h->last), nb = balance->nb, n = h->n;
   size_t size = sizeof(double) * (size_t)balance->n;
   memset(change, 0, size);
   for (int a = 0; a < balance->n_pairs; a++) { /* change of the forces */
-    if (balance->eval->kind[a] != MHB_PAIR_NONLINEAR) continue;
+    if (stiffness->eval->kind[a] != MHB_PAIR_NONLINEAR) continue;
     pair_force(h, balance, x, a, 1);
     for (int row = 3 * a, c = 0; c < 3; c++, row++)
       for (int i = 0; i < nb; i++)

@@ -23,7 +23,9 @@ typedef struct {
   double complex         *force, *u;   /* [k - first][n] p_k N, u_k m */
   double complex         *D, *W;       /* [pair][3][3] */
   double complex         *A, *c;   /* matrix [n][n] or [modes][modes] and c [n] of one harmonic */
-  double complex         *y, *V;   /* [modes], [3][modes] D W B of one pair */
+  double complex         *y;       /* [modes] */
+  double complex         *V, *f;   /* [n][modes] D W B; [n] D W c */
+  double complex         *C;       /* [modes][modes] B^H V */
   int                    *pivot;   /* [n or modes] */
   mhb_receptance_product *product; /* of many pairs: harmonics first..last */
   double                 *change;  /* [columns of the product or of the balance] in real form */
@@ -37,14 +39,24 @@ shb_status mhb_higher_harmonics_create(const mhb_balance *balance, mhb_receptanc
                                        mhb_higher_harmonics **higher);
 void       mhb_higher_harmonics_destroy(mhb_higher_harmonics *higher);
 
-/* Estimate u_k of all harmonics at x[n], the point of the balance's last linearisation. Returns
- * |u|, m. A harmonic whose system is singular is set to 0. */
-double mhb_higher_harmonics_estimate(mhb_higher_harmonics *higher, const mhb_balance *balance,
-                                     const double *x);
+/* p_k of all pairs at x[n], the point of the balance's last linearisation. */
+void mhb_higher_harmonics_evaluate(mhb_higher_harmonics *higher, const mhb_balance *balance,
+                                   const double *x);
 
-/* change[n] <- change of the balance's residual at x by the estimated harmonics, m. */
+/* p_k of a pair from its force p[3][2 last + 1] in real form, N; NULL: none. */
+void mhb_higher_harmonics_set_force(mhb_higher_harmonics *higher, int pair, const double *p);
+
+/* Estimate u_k of all harmonics from their p_k. Returns |u|, m. A harmonic whose system is singular
+ * is set to 0.
+ *   stiffness   in  a balance that was linearised there, of these harmonics or of fewer
+ *   negligible  in  error of R_k p_k, as in mhb_balance */
+double mhb_higher_harmonics_estimate(mhb_higher_harmonics *higher, const mhb_balance *stiffness,
+                                     double negligible);
+
+/* change[n] <- change of the balance's residual at x by the estimated harmonics, m. The balance's
+ * evaluation in use has the forces at x. */
 void mhb_higher_harmonics_feedback(mhb_higher_harmonics *higher, const mhb_balance *balance,
-                                   const double *x, double *change);
+                                   const mhb_balance *stiffness, const double *x, double *change);
 
 /* D <- stiffness of a pair at the balance's last harmonic, by its last linearisation, without the
  * part that couples k with -k; N/m. */

@@ -80,7 +80,7 @@ static double solve_by_system(const mhb_balance *b, mhb_truncation *t, double si
       du[(size_t)i * (size_t)larger->nb + (size_t)(2 * k - 1)] = creal(e[k * n + i]);
       du[(size_t)i * (size_t)larger->nb + (size_t)(2 * k)]     = cimag(e[k * n + i]);
     }
-  if (du && mhb_condensation_solve(t->system, du)) length = mhb_norm(du, larger->n);
+  if (du && mhb_truncation_solve(t, du)) length = mhb_norm(du, larger->n);
   if (length > LONG * size) length *= fmin(1, mhb_truncation_part(t, du));
   free(du);
   return length;

@@ -8,7 +8,10 @@
 #include "mhb/numerics/vector.h"
 
 /* Higher harmonics below this share of the step are not fed back. */
-static const double NEGLIGIBLE = 0.1;
+static const double NEGLIGIBLE = 0.2;
+
+/* A longer step of Broyden's method, relative to the vibration, may lead to another solution. */
+static const double FAR = 0.1;
 
 /* Distance of the evaluation that measures the curvature, relative to the vibration. */
 static const double NEARBY = 0.1;
@@ -49,14 +52,17 @@ shb_status mhb_truncation_create(const mhb_balance *balance, mhb_truncation **ou
     t->r                   = shb_arena_take(&t->arena, n, sizeof(double));
     t->trial               = shb_arena_take(&t->arena, n, sizeof(double));
     t->feedback            = shb_arena_take(&t->arena, n, sizeof(double));
+    t->force = shb_arena_take(&t->arena, 3 * (size_t)mhb_real_size(top), sizeof(double));
     if (t->arena.failed) status = shb_fail(SHB_ERR_IO, __FILE__, __LINE__, "out of memory");
   }
-  if (status == SHB_OK && balance->receptance->ring)
-    status = mhb_ring_truncation_create(balance, t->doubled, &t->ring);
   if (status == SHB_OK && !balance->receptance->ring)
     status = mhb_higher_harmonics_create(t->doubled, t->receptance, &t->higher);
   if (status == SHB_OK)
     status = mhb_condensation_create_within(t->doubled, MHB_MOST_DOUBLED, &t->system);
+  if (status == SHB_OK && (balance->receptance->ring || t->system->low_rank))
+    status = mhb_truncation_step_create(balance, t->doubled, t->system->low_rank, &t->broyden);
+  if (status == SHB_OK && t->system->low_rank)
+    status = mhb_contact_evaluator_create(m, top, balance->settings->tolerance, &t->contact);
   if (status != SHB_OK) {
     mhb_truncation_destroy(t);
     return status;
@@ -67,9 +73,10 @@ shb_status mhb_truncation_create(const mhb_balance *balance, mhb_truncation **ou
 
 void mhb_truncation_destroy(mhb_truncation *t) {
   if (!t) return;
+  mhb_contact_evaluator_destroy(t->contact);
+  mhb_truncation_step_destroy(t->broyden);
   mhb_condensation_destroy(t->system);
   mhb_higher_harmonics_destroy(t->higher);
-  mhb_ring_truncation_destroy(t->ring);
   mhb_balance_destroy(t->doubled);
   mhb_receptance_destroy(t->receptance);
   shb_arena_free(&t->arena);
@@ -78,7 +85,7 @@ void mhb_truncation_destroy(mhb_truncation *t) {
 
 /* Rows of nb coefficients into rows of wide ones, or back; the rest is left as it is. */
 static void copy_rows(int rows, const double *from, int nb, double *to, int wide) {
-  size_t length = sizeof(double) * (size_t)(nb < wide ? nb : wide);
+  size_t length = sizeof(double) * (size_t)least(nb, wide);
   for (int i = 0; i < rows; i++)
     memcpy(to + (size_t)i * (size_t)wide, from + (size_t)i * (size_t)nb, length);
 }
@@ -104,39 +111,90 @@ static double first_root(double kappa) {
   return root >= 0 ? 2 / (1 + sqrt(root)) : 1 / sqrt(-kappa);
 }
 
-double mhb_truncation_part(mhb_truncation *t, const double *step) {
+static double part_of(mhb_truncation *t, const double *step) {
   double length = mhb_norm(step, t->doubled->n), size = mhb_balance_vibration(t->doubled, t->x);
   return length > 0 ? first_root(curvature(t, step, length, size)) : 1;
 }
 
 static void scale_step(mhb_truncation *t) {
   t->part     = 1;
-  double part = mhb_truncation_part(t, t->step);
+  double part = part_of(t, t->step);
   for (int i = 0; i < t->doubled->n; i++) t->step[i] *= part;
   t->part = part;
 }
 
+/* Whether harmonics above 2m count beside a step; their forces at t->x are set. stiffness: the
+ * balance that was linearised. */
+static bool higher_count(mhb_truncation *t, const mhb_balance *stiffness, const double *step) {
+  if (!t->higher) return false;
+  t->higher_size = mhb_higher_harmonics_estimate(t->higher, stiffness, t->doubled->negligible);
+  return t->higher_size > NEGLIGIBLE * mhb_norm(step, t->doubled->n);
+}
+
 /* step <- the Newton step, or -r where the step does not exist or is too large a system. */
-static mhb_truncation_kind set_step(mhb_truncation *t) {
+static mhb_truncation_kind set_newton_step(mhb_truncation *t) {
   mhb_balance *b     = t->doubled;
-  double       omega = t->balance->eval->at.omega;
   size_t       bytes = sizeof(double) * (size_t)b->n;
-  mhb_balance_linearise(b, t->x, omega, t->r, NULL);
+  mhb_balance_linearise(b, t->x, t->balance->eval->at.omega, t->r, NULL);
   for (int i = 0; i < b->n; i++) t->step[i] = -t->r[i];
   if (!mhb_condensation_factor(t->system, NULL, NULL)) return MHB_TRUNCATION_FIRST_ORDER;
   memcpy(t->trial, t->step, bytes);
   if (!mhb_condensation_solve(t->system, t->trial)) return MHB_TRUNCATION_FIRST_ORDER;
   memset(t->feedback, 0, bytes);
-  double length  = mhb_norm(t->trial, b->n);
-  t->higher_size = t->higher ? mhb_higher_harmonics_estimate(t->higher, b, t->x) : 0;
-  if (t->higher_size > NEGLIGIBLE * length) {
-    mhb_higher_harmonics_feedback(t->higher, b, t->x, t->feedback);
+  if (t->higher) mhb_higher_harmonics_evaluate(t->higher, b, t->x);
+  if (higher_count(t, b, t->trial)) {
+    mhb_higher_harmonics_feedback(t->higher, b, b, t->x, t->feedback);
     for (int i = 0; i < b->n; i++) t->trial[i] = -t->r[i] - t->feedback[i];
     mhb_condensation_solve(t->system, t->trial);
   }
   memcpy(t->step, t->trial, bytes);
   scale_step(t);
   return MHB_TRUNCATION_NEWTON;
+}
+
+/* Residual t->r of many pairs at t->x, and the forces of all harmonics that are estimated. Those up
+ * to m are the balance's. The motion has m harmonics only, which makes the others cheap. */
+static void evaluate_above(mhb_truncation *t) {
+  const mhb_balance *b  = t->balance;
+  mhb_balance       *d  = t->doubled;
+  const int          nb = b->nb, wide = mhb_real_size(t->higher->last);
+  memset(d->eval->p, 0, sizeof(double) * (size_t)d->n);
+  for (int a = 0; a < b->n_pairs; a++) {
+    const bool       moves = b->eval->kind[a] == MHB_PAIR_NONLINEAR;
+    double           motion[3 * nb];
+    mhb_contact_info info;
+    copy_rows(3, t->x + 3 * a * d->nb, d->nb, motion, nb);
+    if (moves)
+      mhb_contact_force_near(t->contact, &b->law[a], b->eval->info[a].slider, motion, t->force,
+                             NULL, &info);
+    mhb_higher_harmonics_set_force(t->higher, a, moves ? t->force : NULL);
+    if (moves) copy_rows(3, t->force, wide, d->eval->p + 3 * a * d->nb, d->nb);
+    copy_rows(3, b->eval->p + 3 * a * nb, nb, d->eval->p + 3 * a * d->nb, d->nb);
+  }
+  mhb_receptance_set_frequency(d->receptance, b->eval->at.omega);
+  mhb_balance_residual_of_many(d, t->x, t->r);
+}
+
+/* The same without linearising the doubled balance. false: it failed. */
+static bool set_broyden_step(mhb_truncation *t) {
+  mhb_truncation_step *by = t->broyden;
+  if (!t->higher) return mhb_truncation_step_find(by, t->factors, t->x, NULL, NULL, t->step);
+  evaluate_above(t);
+  if (!mhb_truncation_step_find(by, NULL, t->x, t->r, NULL, t->step)) return false;
+  if (mhb_norm(t->step, t->doubled->n) > FAR * mhb_balance_vibration(t->doubled, t->x))
+    return false;
+  if (!higher_count(t, t->balance, t->step)) return true;
+  evaluate_above(t);
+  mhb_higher_harmonics_feedback(t->higher, t->doubled, t->balance, t->x, t->feedback);
+  return mhb_truncation_step_find(by, NULL, t->x, t->r, t->feedback, t->step);
+}
+
+static void set_step(mhb_truncation *t, bool by_broyden) {
+  t->doubled->eval->near = true;
+  t->part                = 1;
+  t->by_broyden          = by_broyden && set_broyden_step(t);
+  t->kind                = t->by_broyden ? MHB_TRUNCATION_NEWTON : set_newton_step(t);
+  t->doubled->eval->near = false;
 }
 
 double mhb_truncation_error(mhb_truncation *t, const double *x) {
@@ -150,13 +208,18 @@ double mhb_truncation_error(mhb_truncation *t, const double *x) {
   mhb_balance_set_operating_point(b, &t->balance->eval->at);
   for (int a = 0; a < b->n_pairs; a++)
     memcpy(b->eval->info[a].slider, t->balance->eval->info[a].slider, sizeof(double[2]));
-  b->eval->near = true;
-  t->part       = 1;
-  t->kind = t->ring && t->factors && mhb_ring_truncation_step(t->ring, t->factors, t->x, t->step)
-                ? MHB_TRUNCATION_NEWTON
-                : set_step(t);
-  b->eval->near = false;
+  set_step(t, t->broyden != NULL);
   return size > 0 ? hypot(mhb_norm(t->step, b->n), t->higher_size) / size : 0;
+}
+
+bool mhb_truncation_solve(mhb_truncation *t, double *change) {
+  return t->by_broyden ? mhb_truncation_step_solve(t->broyden, change)
+                       : mhb_condensation_solve(t->system, change);
+}
+
+double mhb_truncation_part(mhb_truncation *t, const double *step) {
+  if (t->by_broyden) set_step(t, false);
+  return t->kind == MHB_TRUNCATION_NEWTON ? part_of(t, step) : 1;
 }
 
 double mhb_truncation_power(const mhb_truncation *t, int k) {

@@ -7,15 +7,17 @@
  *
  * A harmonic above 2m may be at a resonance. Those harmonics are estimated one by one
  * (higher_harmonics.h). Where they are not small, r is evaluated anew with them before the step. In
- * a ring of different blades those above 2m are not looked at. The factors of the curve save the
- * Newton step there (ring_truncation.h). */
+ * a ring of different blades those above 2m are not looked at. With many pairs, and in such a ring,
+ * Broyden's method saves the Jacobian with 2m harmonics (truncation_step.h). */
 #ifndef MHB_BALANCE_TRUNCATION_ERROR_H
 #define MHB_BALANCE_TRUNCATION_ERROR_H
+
+#include <stdbool.h>
 
 #include "mesh/base/arena.h"
 #include "mhb/balance/condensation.h"
 #include "mhb/balance/higher_harmonics.h"
-#include "mhb/balance/ring_truncation.h"
+#include "mhb/balance/truncation_step.h"
 
 /* With more nonlinear unknowns of the doubled balance than this, 3 (4m+1) a nonlinear pair, few
  * pairs are estimated to first order. Many pairs (MHB_MANY_PAIRS) have no limit. */
@@ -28,25 +30,28 @@ enum { MHB_LEAST_LOOKED_AT = 12, MHB_MOST_LOOKED_AT = 64 };
 typedef enum {
   MHB_TRUNCATION_NONE, /* all pairs are linear: the error is 0 */
   MHB_TRUNCATION_FIRST_ORDER,
-  MHB_TRUNCATION_NEWTON
+  MHB_TRUNCATION_NEWTON /* to the solution with 2m harmonics */
 } mhb_truncation_kind;
 
 typedef struct {
-  const mhb_balance    *balance; /* with m harmonics */
-  mhb_settings          settings;
-  mhb_receptance       *receptance; /* all harmonics that are estimated */
-  mhb_balance          *doubled;    /* with 2m harmonics */
-  mhb_condensation     *system;     /* of the doubled balance */
-  mhb_higher_harmonics *higher;     /* above 2m; NULL of a ring */
-  mhb_ring_truncation  *ring;       /* of a ring; else NULL */
-  mhb_ring_system      *factors;    /* of the balance, near its point; the caller's, or NULL */
-  double               *x;          /* [doubled->n] the solution, zero above m */
-  double               *step;       /* [doubled->n] delta, -r or 0 of the last estimate */
-  double               *r, *trial, *feedback; /* [doubled->n] */
-  double                higher_size;          /* |u_k|, k > 2m, of the last estimate */
-  double                part;                 /* of the Newton step that delta is */
-  mhb_truncation_kind   kind;                 /* of the last estimate */
-  shb_arena             arena;
+  const mhb_balance     *balance; /* with m harmonics */
+  mhb_settings           settings;
+  mhb_receptance        *receptance; /* all harmonics that are estimated */
+  mhb_balance           *doubled;    /* with 2m harmonics */
+  mhb_condensation      *system;     /* of the doubled balance */
+  mhb_higher_harmonics  *higher;     /* above 2m; NULL of a ring */
+  mhb_truncation_step   *broyden;    /* of a ring and of many pairs; else NULL */
+  mhb_contact_evaluator *contact;    /* of many pairs: motions of m harmonics, forces of all */
+  double                *force;      /* [3][2 highest + 1] of it */
+  mhb_ring_system       *factors;    /* of a ring, near its point; the caller's, or NULL */
+  double                *x;          /* [doubled->n] the solution, zero above m */
+  double                *step;       /* [doubled->n] delta, -r or 0 of the last estimate */
+  double                *r, *trial, *feedback; /* [doubled->n] */
+  double                 higher_size;          /* |u_k|, k > 2m, of the last estimate */
+  double                 part;                 /* of the Newton step that delta is */
+  mhb_truncation_kind    kind;                 /* of the last estimate */
+  bool                   by_broyden;           /* its step; the system is not factored there */
+  shb_arena              arena;
 } mhb_truncation;
 
 /* Highest harmonic that the estimate for m harmonics looks at. */
@@ -60,9 +65,14 @@ void       mhb_truncation_destroy(mhb_truncation *truncation);
  * its vibration. Of first order also where the Newton step does not exist (at a fold). */
 double mhb_truncation_error(mhb_truncation *truncation, const double *x);
 
+/* change[doubled->n] <- (I + R J)^-1 change, the change of the solution by one of the motion. Of the
+ * last estimate. false: it failed. By Broyden's step: harmonics up to m to a hundredth, the others
+ * stay. */
+bool mhb_truncation_solve(mhb_truncation *truncation, double *change);
+
 /* How much of a change of the solution, step[doubled->n], is left by the curvature of the residual:
- * 1 for a small one. A linearised change is far too long near a fold. The last estimate must have
- * been by Newton's step, and of the present solution. */
+ * 1 for a small one. A linearised change is far too long near a fold. The last estimate must be of
+ * the present solution. One by Broyden's step is made anew by Newton's. */
 double mhb_truncation_part(mhb_truncation *truncation, const double *step);
 
 /* Sum of squares of harmonic k > 0 of the last estimate, m^2. */

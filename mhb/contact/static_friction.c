@@ -243,17 +243,40 @@ static void sharpen(const discs *set, mhb_static_friction *stuck) {
   for (int k = 0; k < 2; k++) stuck->c[k] = -s.e[k] * fmax(0, s.size - s.r);
 }
 
-/* The mean over time of |f + c| <= mu n, f of zero mean, is |c| <= mu mean n. Where |f| > mu (n +
- * mean n), no c is admissible. */
+/* Whether no c is admissible, by two necessary conditions on the grid.
+ *
+ * The mean over time of |f + c| <= mu n, f of zero mean, is |c| <= mu mean n: |f| <= mu (n + mean
+ * n). Along a direction e, e.(f + c) <= mu n and -e.(f + c) <= mu n: the largest e.f - mu n and the
+ * largest -e.f - mu n have a sum below zero. e is that of the largest f. */
 MHB_HOT static int inadmissible(const mhb_signals *s, double mu) {
-  const double *mean = s->coefficient;
-  mhb_lanes     most = lanes_all(-INFINITY);
+  const double *mean    = s->coefficient;
+  mhb_lanes     most    = lanes_all(-INFINITY);
+  double        largest = 0, e[2] = {0}, scale = mu * s->bound[0][0];
   for (int i = 0; i < s->n_grid; i += MHB_LANES) {
     mhb_lanes a = lanes_load(s->value[1] + i) - mean[1], b = lanes_load(s->value[2] + i) - mean[2];
-    mhb_lanes r = mu * (lanes_load(s->value[0] + i) + mean[0]);
-    most        = lanes_max(most, a * a + b * b - 1.0001 * r * r);
+    mhb_lanes r = mu * (lanes_load(s->value[0] + i) + mean[0]), size = a * a + b * b;
+    double    top = lanes_top(size);
+    most          = lanes_max(most, size - 1.0001 * r * r);
+    if (!(top > largest)) continue;
+    largest = top;
+    for (int l = 0; l < MHB_LANES; l++) {
+      if (size[l] != top) continue;
+      e[0] = a[l];
+      e[1] = b[l];
+    }
   }
-  return lanes_top(most) > 0;
+  if (lanes_top(most) > 0) return 1;
+  if (largest == 0) return 0;
+  mhb_lanes ahead = lanes_all(-INFINITY), behind = ahead;
+  for (int k = 0; k < 2; k++) e[k] /= sqrt(largest);
+  for (int i = 0; i < s->n_grid; i += MHB_LANES) {
+    mhb_lanes along = (lanes_load(s->value[1] + i) - mean[1]) * e[0] +
+                      (lanes_load(s->value[2] + i) - mean[2]) * e[1],
+              r = mu * lanes_load(s->value[0] + i);
+    ahead       = lanes_max(ahead, along - r);
+    behind      = lanes_max(behind, -along - r);
+  }
+  return lanes_top(ahead) + lanes_top(behind) > 1e-10 * (scale + sqrt(largest));
 }
 
 void mhb_static_friction_solve(const mhb_signals *signals, double mu, mhb_static_friction *stuck) {

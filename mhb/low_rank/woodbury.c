@@ -319,11 +319,18 @@ static int factor_small(mhb_woodbury *w) {
   return 1;
 }
 
+int mhb_woodbury_prepare(mhb_woodbury *w, const mhb_law *law) {
+  if (!stiffness_holds(w, law)) renew(w, law);
+  if (w->without) return 0;
+  mhb_receptance_product_update(w->product);
+  mhb_contact_basis_update(w->basis);
+  return 1;
+}
+
 int mhb_woodbury_factor(mhb_woodbury *w, const mhb_block *form, const double *full,
                         const mhb_law *law, const double *column, const double *row) {
   size_t bytes = sizeof(double) * ((size_t)w->n + 1);
-  if (!stiffness_holds(w, law)) renew(w, law);
-  if (w->without) return 0;
+  if (!mhb_woodbury_prepare(w, law)) return 0;
   w->form   = form;
   w->full   = full;
   w->law    = law;
@@ -336,8 +343,6 @@ int mhb_woodbury_factor(mhb_woodbury *w, const mhb_block *form, const double *fu
   }
   w->gmres->iterations = 0;
   w->size              = w->basis->size + (column != NULL);
-  mhb_receptance_product_update(w->product);
-  mhb_contact_basis_update(w->basis);
   set_T(w);
   set_G(w);
   return factor_small(w);

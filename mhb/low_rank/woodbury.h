@@ -65,6 +65,10 @@ shb_status mhb_woodbury_create(mhb_receptance_product *product, const mhb_law *l
                                double high, mhb_woodbury **out);
 void       mhb_woodbury_destroy(mhb_woodbury *woodbury);
 
+/* Basis and K for these laws at the product's frequency. 0: there is no small basis. Allocates only
+ * where the basis is made. */
+int mhb_woodbury_prepare(mhb_woodbury *woodbury, const mhb_law *law);
+
 /* Factor at the product's frequency, which is up to date. full, form and law must stay until the
  * last solution. Both borders are NULL or [n+1] with the same corner last. 0: singular, or there is
  * no small basis. Allocates only where the basis is made. */

@@ -147,7 +147,7 @@ static void estimates(void **state) {
     periodic_create(&model, &s, SHB_TWO_PI * row->frequency, NULL, &p);
     assert_int_equal(mhb_truncation_create(p.residual, &t), SHB_OK);
     double estimate = mhb_truncation_error(t, p.x);
-    for (int a = 0; a < row->pairs; a++) moving += t->doubled->eval->kind[a] == MHB_PAIR_NONLINEAR;
+    for (int a = 0; a < row->pairs; a++) moving += p.residual->eval->kind[a] == MHB_PAIR_NONLINEAR;
     assert_in_range(moving, row->few, row->many);
     assert_int_equal(t->kind, MHB_TRUNCATION_NEWTON);
     mhb_truncation_destroy(t);

@@ -1,0 +1,246 @@
+#include "mhb/balance/truncation_step.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "mesh/base/constants.h"
+#include "mhb/balance/higher_harmonics.h"
+#include "mhb/low_rank/lone_harmonics.h"
+#include "mhb/numerics/lu.h"
+#include "mhb/numerics/vector.h"
+#include "mhb/structure/ring_receptance.h"
+
+/* What may be left of the step. */
+static const double LEFT = 0.1;
+
+/* A correction must be smaller than this part of the one before. The first one has the harmonics
+ * above m only, the second one what the others make of them. */
+static const double GAIN = 0.7;
+
+/* Error of the solutions with m harmonics and many pairs; the next residual removes it. */
+static const double ROUGH = 1e-2;
+
+static void take_ring_arrays(mhb_truncation_step *t) {
+  const mhb_ring_receptance *ring = t->balance->receptance->ring;
+  const size_t n = (size_t)ring->n, N = (size_t)ring->blades, m = (size_t)t->balance->m;
+  t->A     = shb_arena_take(&t->arena, m * N * n * n, sizeof *t->A);
+  t->pivot = shb_arena_take(&t->arena, m * N * n, sizeof *t->pivot);
+  t->u     = shb_arena_take(&t->arena, n, sizeof *t->u);
+  t->along = shb_arena_take(&t->arena, (size_t)t->balance->n + 1, sizeof(double));
+}
+
+static shb_status create_pairs(mhb_truncation_step *t) {
+  const mhb_balance *b       = t->balance;
+  const double      *between = b->settings->frequency;
+  t->form                    = shb_arena_take(&t->arena, (size_t)b->n_pairs, sizeof *t->form);
+  t->D                       = shb_arena_take(&t->arena, 9 * (size_t)b->n_pairs, sizeof *t->D);
+  return mhb_woodbury_create(b->product, b->law, SHB_TWO_PI * between[0], SHB_TWO_PI * between[1],
+                             &t->jacobian);
+}
+
+shb_status mhb_truncation_step_create(const mhb_balance *b, mhb_balance *doubled,
+                                      mhb_woodbury *above, mhb_truncation_step **out) {
+  mhb_truncation_step *t = calloc(1, sizeof *t);
+  SHB_CHECK(t, SHB_ERR_IO, "out of memory");
+  const size_t all  = (size_t)doubled->n;
+  t->balance        = b;
+  t->doubled        = doubled;
+  t->above          = above;
+  t->low            = shb_arena_take(&t->arena, (size_t)b->n + 1, sizeof(double));
+  t->at             = shb_arena_take(&t->arena, all, sizeof(double));
+  t->r              = shb_arena_take(&t->arena, all, sizeof(double));
+  t->steps          = shb_arena_take(&t->arena, MHB_MOST_TRUNCATION_STEPS * all, sizeof(double));
+  shb_status status = SHB_OK;
+  if (b->receptance->ring)
+    take_ring_arrays(t);
+  else
+    status = create_pairs(t);
+  if (status == SHB_OK && t->arena.failed)
+    status = shb_fail(SHB_ERR_IO, __FILE__, __LINE__, "out of memory for %d harmonics", doubled->m);
+  if (status != SHB_OK) {
+    mhb_truncation_step_destroy(t);
+    return status;
+  }
+  *out = t;
+  return SHB_OK;
+}
+
+void mhb_truncation_step_destroy(mhb_truncation_step *t) {
+  if (!t) return;
+  mhb_woodbury_destroy(t->jacobian);
+  shb_arena_free(&t->arena);
+  free(t);
+}
+
+/* ---- a ring ---- */
+
+/* Place of the factors of harmonic k > m of a contact. */
+static size_t place_of(const mhb_truncation_step *t, int k, int contact) {
+  const size_t blades = (size_t)t->balance->receptance->ring->blades;
+  return (size_t)(k - t->balance->m - 1) * blades + (size_t)contact;
+}
+
+/* A[n][n] column-major <- I + R D of a contact alone, R[n][n]. */
+static void fill(int n, const double complex *R, const double complex (*D)[9], double complex *A) {
+  for (int i = 0; i < n; i++, R += n)
+    for (int j = 0; j < n; j++) {
+      const double complex *d = D[j / 3] + j % 3, *row = R + j - j % 3;
+      A[(size_t)j * (size_t)n + (size_t)i] =
+          row[0] * d[0] + row[1] * d[3] + row[2] * d[6] + (i == j);
+    }
+}
+
+/* Factors of all harmonics above m. 0: singular. */
+static int factor_high(mhb_truncation_step *t) {
+  const mhb_balance         *b    = t->balance;
+  const mhb_ring_receptance *ring = t->doubled->receptance->ring;
+  const int                  n = ring->n, P = n / 3;
+  mhb_receptance_set_frequency(t->doubled->receptance, b->eval->at.omega);
+  for (int k = b->m + 1; k <= t->doubled->m; k++) mhb_receptance_update(t->doubled->receptance, k);
+  for (int c = 0; c < ring->blades; c++) {
+    double complex D[P][9];
+    for (int j = 0; j < P; j++) mhb_last_stiffness(b, c * P + j, (double complex(*)[3])D[j]);
+    for (int k = b->m + 1; k <= t->doubled->m; k++) {
+      const size_t    at = place_of(t, k, c);
+      double complex *A  = t->A + at * (size_t)(n * n);
+      fill(n, mhb_ring_receptance_block(ring, k, c, MHB_RING_OWN), (const double complex(*)[9])D,
+           A);
+      if (!mhb_factor_complex(n, A, t->pivot + at * (size_t)n)) return 0;
+    }
+  }
+  return 1;
+}
+
+/* Harmonics above m of r[doubled->n] <- the solution of their systems. */
+static void solve_high(mhb_truncation_step *t, double *r) {
+  const mhb_ring_receptance *ring = t->doubled->receptance->ring;
+  const int                  n = ring->n, nb = t->doubled->nb;
+  for (int c = 0; c < ring->blades; c++)
+    for (int k = t->balance->m + 1; k <= t->doubled->m; k++) {
+      const size_t at = place_of(t, k, c);
+      double      *to = r + (size_t)c * (size_t)n * (size_t)nb + (2 * k - 1);
+      for (int i = 0; i < n; i++) t->u[i] = CMPLX(to[i * nb], to[i * nb + 1]);
+      mhb_solve_complex(n, t->A + at * (size_t)(n * n), t->pivot + at * (size_t)n, 1, t->u);
+      for (int i = 0; i < n; i++) {
+        to[i * nb]     = creal(t->u[i]);
+        to[i * nb + 1] = cimag(t->u[i]);
+      }
+    }
+}
+
+/* along <- the solution for the border alone, by which a solution loses its border. 0: singular. */
+static int set_along(mhb_truncation_step *t) {
+  const int n = t->balance->n;
+  if (!t->factors->borders) return 1;
+  memset(t->along, 0, sizeof(double) * (size_t)n);
+  t->along[n] = 1;
+  return mhb_ring_system_solve(t->factors, t->along) && t->along[n] != 0;
+}
+
+/* t->low[n] <- the solution of the ring's Jacobian, without its border. */
+static int solve_ring(mhb_truncation_step *t) {
+  const int n = t->balance->n;
+  t->low[n]   = 0;
+  if (!mhb_ring_system_solve(t->factors, t->low)) return 0;
+  if (!t->factors->borders) return 1;
+  const double part = t->low[n] / t->along[n];
+  for (int i = 0; i < n; i++) t->low[i] -= part * t->along[i];
+  return 1;
+}
+
+/* ---- many pairs ---- */
+
+static const double complex (*stiffness_of(const mhb_truncation_step *t))[9] {
+  return (const double complex(*)[9])t->D;
+}
+
+/* Factors with m harmonics, and of those above. 0: singular, or there is no small basis. */
+static int factor_pairs(mhb_truncation_step *t) {
+  const mhb_balance *b = t->balance;
+  for (int a = 0; a < b->n_pairs; a++) {
+    t->form[a] = mhb_pair_block(b, a);
+    mhb_last_stiffness(b, a, (double complex(*)[3])(t->D + 9 * a));
+  }
+  mhb_receptance_set_frequency(t->doubled->receptance, b->eval->at.omega);
+  return mhb_woodbury_factor(t->jacobian, t->form, b->eval->dp, b->law, NULL, NULL) &&
+         mhb_lone_harmonics_factor(t->above, b->law, b->m + 1, stiffness_of(t));
+}
+
+/* ---- both ---- */
+
+static int factor(mhb_truncation_step *t) {
+  if (t->jacobian) return factor_pairs(t);
+  return t->factors && t->factors->regular && set_along(t) && factor_high(t);
+}
+
+int mhb_truncation_step_solve(mhb_truncation_step *t, double *change) {
+  const mhb_balance *b    = t->balance;
+  const int          rows = 3 * b->n_pairs, nb = b->nb, wide = t->doubled->nb;
+  const size_t       length = sizeof(double) * (size_t)nb;
+  for (int i = 0; i < rows; i++) memcpy(t->low + i * nb, change + i * wide, length);
+  if (!(t->jacobian ? mhb_woodbury_solve(t->jacobian, ROUGH, t->low) : solve_ring(t))) return 0;
+  for (int i = 0; i < rows; i++) memcpy(change + i * wide, t->low + i * nb, length);
+  return 1;
+}
+
+/* change[doubled->n] <- the first matrix' solution. 0: it failed. */
+static int solve(mhb_truncation_step *t, double *change) {
+  if (t->jacobian)
+    mhb_lone_harmonics_solve(t->above, t->balance->m + 1, stiffness_of(t), change);
+  else
+    solve_high(t, change);
+  return mhb_truncation_step_solve(t, change);
+}
+
+static double product(int n, const double *a, const double *b) {
+  double sum = 0;
+  for (int i = 0; i < n; i++) sum += a[i] * b[i];
+  return sum;
+}
+
+/* Broyden's update of correction `done` by those before (Kelley 1995, 7.3). */
+static void update(const double *steps, int done, int n, double *step) {
+  for (int j = 0; j + 1 < done; j++) {
+    const double *s = steps + j * n, *after = s + n;
+    const double  part = product(n, s, step) / product(n, s, s);
+    for (int i = 0; i < n; i++) step[i] += part * after[i];
+  }
+  if (done == 0) return;
+  const double *s    = steps + (done - 1) * n;
+  const double  rest = 1 - product(n, s, step) / product(n, s, s);
+  for (int i = 0; i < n; i++) step[i] /= rest;
+}
+
+/* t->r <- the residual at x + step. */
+static void evaluate(mhb_truncation_step *t, const double *x, const double *step) {
+  mhb_balance *b = t->doubled;
+  for (int i = 0; i < b->n; i++) t->at[i] = x[i] + step[i];
+  b->assumed = t->balance->eval->kind;
+  mhb_balance_evaluate(b, t->at, t->balance->eval->at.omega, t->r, NULL, NULL);
+  b->assumed = NULL;
+}
+
+int mhb_truncation_step_find(mhb_truncation_step *t, mhb_ring_system *factors, const double *x,
+                             const double *r, const double *feedback, double *step) {
+  mhb_balance *b      = t->doubled;
+  const int    n      = b->n;
+  double       before = INFINITY;
+  t->factors          = factors;
+  if (!factor(t)) return 0;
+  memset(step, 0, sizeof(double) * (size_t)n);
+  for (int done = 0; done < MHB_MOST_TRUNCATION_STEPS; done++) {
+    double *change = t->steps + done * n;
+    if (done > 0 || !r) evaluate(t, x, step);
+    const double *residual = done > 0 || !r ? t->r : r;
+    for (int i = 0; i < n; i++) change[i] = -residual[i] - (feedback ? feedback[i] : 0);
+    if (!solve(t, change)) return 0;
+    update(t->steps, done, n, change);
+    for (int i = 0; i < n; i++) step[i] += change[i];
+    const double size = mhb_norm(change, n), part = size / before;
+    if (done > 1 && !(part < GAIN)) return 0;
+    if (done > 1 && size * part / (1 - part) <= LEFT * mhb_norm(step, n)) return 1;
+    before = size;
+  }
+  return 0;
+}
