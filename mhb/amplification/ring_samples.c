@@ -83,8 +83,9 @@ static shb_status one(const work *w, int sample, int preload, mhb_ring_peak *pea
   settings.ring = NULL;
   SHB_TRY(mhb_mistuned_ring_create(w->blade, &settings,
                                    s->deviation + (size_t)sample * (size_t)s->blades, 1, &ring));
-  settings.ring     = ring;
-  shb_status status = trace(&settings, s->n0[preload], peak);
+  settings.ring      = ring;
+  settings.stability = MHB_STABILITY_NEVER; /* the peak alone is kept */
+  shb_status status  = trace(&settings, s->n0[preload], peak);
   mhb_mistuned_ring_destroy(ring);
   return status;
 }
