@@ -43,7 +43,7 @@ void       mhb_transition_schedule_destroy(mhb_transition_schedule *schedule);
 int mhb_transition_schedule_usable(const mhb_contact_info *info);
 
 /* Set from the transitions of the contacts, info[orbit]. The start is right after the event that
- * leaves the fewest friction states. Returns 0 if there are too many events or one is not usable. */
+ * leaves the fewest friction states. Returns 0 if there are too many events or one is unusable. */
 int mhb_transition_schedule_set(mhb_transition_schedule *schedule, const mhb_contact_info *info);
 
 /* Whose transitions and laws contact j has. */

@@ -744,9 +744,9 @@ static void mistuning(void **state) {
        "c.yaml:12:85: error: rotor.mistuning.sample: unknown key; give a list, {file: NAME} or "
        "{deviation: 1 %, seed: 7}",
        1},
-      {"axis: -y", "axis: -y, mistuning: {file: nope.csv}",
-       "c.yaml:12:59: error: rotor.mistuning: nope.csv: cannot be read: No such file or directory",
-       1},
+      {"axis: -y", "axis: w, mistuning: {file: nope.csv}",
+       "c.yaml:12:58: error: rotor.mistuning: nope.csv: cannot be read: No such file or directory",
+       2},
       {"axis: -y", "axis: -y, mistuning: {deviation: 30 %, seed: 1}",
        "c.yaml:12:71: error: rotor.mistuning.deviation: is 0.3, must be 0 to 0.1", 1},
       {"axis: -y", "axis: -y, mistuning: [-0.5]",
