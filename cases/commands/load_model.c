@@ -61,8 +61,8 @@ static shb_status deviations(const case_file *file, int n_modes, int *columns, d
   return mhb_deviations_random(m->deviation, m->seed, 0, (int)N, to);
 }
 
-/* The model becomes that of the ring. Its stability is not judged, and it is searched for other
- * motions only where the case says how. */
+/* The model becomes that of the ring. It is searched for other motions only where the case says
+ * how. */
 static shb_status make_ring(const case_file *file, case_model *m) {
   double *value     = NULL;
   int     columns   = 1;
@@ -73,11 +73,10 @@ static shb_status make_ring(const case_file *file, case_model *m) {
     status = mhb_mistuned_ring_create(&m->tuned, &m->settings, value, columns, &m->ring);
   free(value);
   SHB_TRY(status);
-  m->model              = m->ring->whole;
-  m->settings.ring      = m->ring;
-  m->settings.stability = MHB_STABILITY_NEVER;
-  m->settings.lasting   = MHB_LASTING_NEVER;
-  m->settings.flips     = false;
+  m->model            = m->ring->whole;
+  m->settings.ring    = m->ring;
+  m->settings.lasting = MHB_LASTING_NEVER;
+  m->settings.flips   = false;
   if (m->settings.search.starts == MHB_SEARCH_PEAKS) m->settings.search.starts = 0;
   return SHB_OK;
 }

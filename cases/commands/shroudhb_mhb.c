@@ -2,20 +2,13 @@
  * MPI. */
 #include <cblas.h>
 #include <stdio.h>
-#include <stdlib.h>
 #include <string.h>
 
+#include "cases/commands/balance_run.h"
 #include "cases/commands/command.h"
-#include "cases/commands/load_model.h"
-#include "cases/commands/up_to_date.h"
 #include "cases/contact/contact_command.h"
 #include "cases/schema/case.h"
-#include "cases/schema/case_paths.h"
 #include "mesh/base/progress.h"
-#include "mesh/base/publish.h"
-#include "mhb/amplification/ring_response.h"
-#include "mhb/branches/forced_response.h"
-#include "mhb/tracking/tracked_response.h"
 
 static const char usage[] =
     "usage: shroudhb-mhb [--quiet] [--verbose] [--force] [--set KEY=VALUE]... [--into FOLDER] "
@@ -28,124 +21,6 @@ static const char usage[] =
     "harmonics, transitions and energy for a prescribed relative motion; with --svg also draws "
     "its\n"
     "hysteresis loops, friction path and states.\n";
-
-/* Does the file at path hold the complete result of these settings? */
-static bool up_to_date(const char *path, const char *settings, int samples) {
-  bool          same     = up_to_date_with(path, settings);
-  mhb_response *response = NULL;
-  same                   = same && mhb_response_read(path, &response) == SHB_OK;
-  same                   = same && !response->unfinished;
-  for (int i = 0; same && i < response->n_branches; i++) {
-    const mhb_branch *branch = &response->branch[i];
-    same                     = branch->main != i || (branch->complete && branch->searched);
-  }
-  const mhb_samples *drawn = same ? response->samples : NULL;
-  if (samples > 0) same = same && drawn != NULL;
-  for (int i = 0; same && drawn && i < drawn->preloads; i++)
-    same = mhb_samples_done(drawn, i) == drawn->n;
-  mhb_response_destroy(response);
-  return same;
-}
-
-static void summarise(shb_progress *progress, const mhb_response *response) {
-  long   points = 0, iterations = 0;
-  int    further = 0;
-  double seconds = 0;
-  for (int i = 0; i < response->n_branches; i++) {
-    const mhb_branch *b = &response->branch[i];
-    if (b->kind != MHB_BRANCH_NONLINEAR && b->kind != MHB_BRANCH_TRACKED) continue;
-    points += b->n_points;
-    further += b->origin != MHB_FROM_END;
-    for (int p = 0; p < b->n_points; p++) {
-      iterations += b->iterations[p];
-      seconds += b->seconds[p];
-    }
-  }
-  shb_progress_note(progress, "%ld points, %.1f Newton steps and %.3f ms a point", points,
-                    points ? (double)iterations / (double)points : 0.,
-                    points ? 1e3 * seconds / (double)points : 0.);
-  if (further > 0)
-    shb_progress_note(progress, "%d further curve%s beside the main ones", further,
-                      further > 1 ? "s" : "");
-}
-
-static void note_run_up(shb_progress *progress, const case_model *model) {
-  const mhb_speed_table *r = model->run_up;
-  shb_progress_note(progress, "run-up: engine order %d, %.6g to %.6g rpm, %d speeds, %d modes",
-                    r->engine_order, 60 * model->settings.frequency[0] / r->engine_order,
-                    60 * model->settings.frequency[1] / r->engine_order, r->n, r->n_modes);
-  if (!r->speeds.overlap)
-    shb_progress_note(progress,
-                      "run-up: the modal file has no /speeds/overlap: modes are joined by their "
-                      "tracks, which take a veering between two speeds for a crossing");
-  if (r->n_dropped > 0)
-    shb_progress_note(progress,
-                      "run-up: %d modes change places with ones left out and answer statically",
-                      r->n_dropped);
-}
-
-/* How many contact points contact.points: auto has chosen. */
-static void note_points(shb_progress *progress, const case_file *file, const case_model *model) {
-  if (model->points)
-    shb_progress_note(progress,
-                      "contact.points auto: %d of %d, estimated spatial error %.2g (tolerance %g)",
-                      model->model.n_pairs, model->points->other.n_pairs, model->points->estimate,
-                      file->points_tolerance);
-  else
-    shb_progress_note(progress, "contact.points auto: all %d, fewer do not keep the tolerance %g",
-                      model->model.n_pairs, file->points_tolerance);
-}
-
-static shb_status solve(const case_file *file, const char *modal, char *settings,
-                        const char *output, shb_progress *progress) {
-  case_model         model;
-  mhb_response      *response   = NULL;
-  shb_provenance     provenance = command_provenance(file, settings, "shroudhb-mhb");
-  shb_status         status     = case_model_read(file, modal, 0, true, &model);
-  const mhb_sampling sampling   = {.n         = file->mistuning.samples,
-                                   .deviation = file->mistuning.deviation,
-                                   .seed      = file->mistuning.seed};
-  if (status == SHB_OK && model.run_up) note_run_up(progress, &model);
-  if (status == SHB_OK && file->points < 0) note_points(progress, file, &model);
-  if (status == SHB_OK && !file->modal_file) status = case_model_judge_points(&model);
-  if (status == SHB_OK) status = case_model_face(&model, modal);
-  if (status == SHB_OK && model.settings.track != MHB_TRACK_NOTHING)
-    status = mhb_tracked_response(&model.model, &model.settings, output, &provenance, progress,
-                                  &response);
-  else if (status == SHB_OK && model.ring)
-    status =
-        mhb_ring_response(&model.settings, &sampling, output, &provenance, progress, &response);
-  else if (status == SHB_OK)
-    status = mhb_forced_response(&model.model, &model.settings, output, &provenance, progress,
-                                 &response);
-  shb_progress_clear(progress);
-  if (response) summarise(progress, response);
-  shb_progress_note(progress, "%.2f s in all", shb_seconds() - progress->started);
-  mhb_response_destroy(response);
-  case_model_free(&model);
-  return status;
-}
-
-static shb_status run(const case_file *file, const command_options *options) {
-  shb_progress progress = shb_progress_start("mhb", options->quiet, options->verbose);
-  char        *modal = case_modal_path(file), *output = case_output(file, ".response.h5");
-  char        *settings = NULL;
-  shb_status   status =
-      modal && output ? SHB_OK : shb_fail(SHB_ERR_IO, __FILE__, __LINE__, "out of memory");
-  if (status == SHB_OK && !file->modal_file) up_to_date_warn(file, CASE_MODAL, modal);
-  if (status == SHB_OK) status = up_to_date_settings(file, CASE_MHB, modal, &settings);
-  if (status == SHB_OK) {
-    if (!options->force && up_to_date(output, settings, file->mistuning.samples)) {
-      shb_progress_note(&progress, "%s is up to date", output);
-    } else {
-      status = solve(file, modal, settings, output, &progress);
-    }
-  }
-  free(modal);
-  free(output);
-  free(settings);
-  return status;
-}
 
 int main(int argc, char **argv) {
   command_options options;
@@ -164,7 +39,7 @@ int main(int argc, char **argv) {
   /* the preloads run in parallel and their systems are small, so BLAS uses one thread */
   openblas_set_num_threads(1);
   file.mhb.resume = !options.force;
-  status          = run(&file, &options);
+  status          = balance_run(&file, &options, NULL);
   case_free(&file);
   return command_finish(status);
 }

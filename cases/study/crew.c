@@ -8,7 +8,7 @@
 
 enum { TAG_WORK, TAG_STOP, TAG_DONE };
 
-/* Between two looks for a message. A design takes 100 ms and more. */
+/* Between two looks for a message. A job takes 100 ms and more. */
 static const struct timespec PAUSE = {.tv_nsec = 1000000};
 
 static int n_ranks(void) {
@@ -27,14 +27,14 @@ void crew_dismiss(void) {
     MPI_Send(NULL, 0, MPI_DOUBLE, rank, TAG_STOP, MPI_COMM_WORLD);
 }
 
-/* One rank: the manager computes by its own child process. */
-static shb_status work_alone(const crew_work *w, design_process *process) {
+/* One rank: the manager computes. */
+static shb_status work_alone(const crew_work *w, const crew_computer *computer) {
   const double *value;
-  for (int design; (design = w->next(w->context, &value)) >= 0;) {
-    char      *bytes;
-    size_t     size;
-    shb_status status = design_process_run(process, value, &bytes, &size);
-    if (status == SHB_OK) status = w->done(w->context, design, bytes, size);
+  for (int job; (job = w->next(w->context, &value)) >= 0;) {
+    char      *bytes  = NULL;
+    size_t     size   = 0;
+    shb_status status = computer->compute(computer->context, value, &bytes, &size);
+    if (status == SHB_OK) status = w->done(w->context, job, bytes, size);
     if (status == SHB_OK) status = w->tick(w->context);
     free(bytes);
     SHB_TRY(status);
@@ -70,10 +70,10 @@ static shb_status manage(const crew_work *w, int n_request, int *at_work) {
     for (int rank = 1; rank < n && status == SHB_OK; rank++) {
       const double *value;
       if (at_work[rank] >= 0) continue;
-      int design = w->next(w->context, &value);
-      if (design < 0) break;
+      int job = w->next(w->context, &value);
+      if (job < 0) break;
       MPI_Send(value, n_request, MPI_DOUBLE, rank, TAG_WORK, MPI_COMM_WORLD);
-      at_work[rank] = design;
+      at_work[rank] = job;
       busy++;
     }
     int rank = busy > 0 ? take_result(w, at_work, &status) : 0;
@@ -90,14 +90,10 @@ static shb_status manage(const crew_work *w, int n_request, int *at_work) {
   return status;
 }
 
-shb_status crew_manage(const crew_work *w, design_process *process) {
-  if (n_ranks() == 1) {
-    shb_status status = work_alone(w, process);
-    design_process_stop(process);
-    return status;
-  }
+shb_status crew_manage(const crew_work *w, const crew_computer *computer) {
+  if (n_ranks() == 1) return work_alone(w, computer);
   int       *at_work = calloc((size_t)n_ranks(), sizeof *at_work);
-  shb_status status  = at_work ? manage(w, process->n_request, at_work)
+  shb_status status  = at_work ? manage(w, computer->n_request, at_work)
                                : shb_fail(SHB_ERR_IO, __FILE__, __LINE__, "out of memory");
   free(at_work);
   crew_dismiss();
@@ -114,20 +110,20 @@ static int await(void) {
   }
 }
 
-shb_status crew_serve(design_process *process) {
-  double    *value  = calloc((size_t)process->n_request + 1, sizeof *value);
+shb_status crew_serve(const crew_computer *computer) {
+  double    *value  = calloc((size_t)computer->n_request + 1, sizeof *value);
   shb_status status = SHB_OK;
   while (value && await() == TAG_WORK) {
     char  *bytes = NULL;
     size_t size  = 0;
-    MPI_Recv(value, process->n_request, MPI_DOUBLE, 0, TAG_WORK, MPI_COMM_WORLD, MPI_STATUS_IGNORE);
-    status = design_process_run(process, value, &bytes, &size);
+    MPI_Recv(value, computer->n_request, MPI_DOUBLE, 0, TAG_WORK, MPI_COMM_WORLD,
+             MPI_STATUS_IGNORE);
+    status = computer->compute(computer->context, value, &bytes, &size);
     /* without an answer the manager would wait for ever */
     if (status != SHB_OK || size > INT_MAX) MPI_Abort(MPI_COMM_WORLD, SHB_ERR_IO);
     MPI_Send(bytes, (int)size, MPI_CHAR, 0, TAG_DONE, MPI_COMM_WORLD);
     free(bytes);
   }
   free(value);
-  design_process_stop(process);
   return status;
 }

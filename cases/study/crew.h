@@ -1,29 +1,37 @@
-/* Workers of a study over MPI: rank 0 manages, the others compute. With one rank it computes
+/* Workers over MPI, of a study or of the samples of a ring: rank 0 manages, the others compute. With one rank it computes
  * itself. Who waits sleeps: a core is not kept busy by waiting. */
 #ifndef CASES_STUDY_CREW_H
 #define CASES_STUDY_CREW_H
 
 #include <stddef.h>
 
-#include "cases/study/design_process.h"
+#include "mesh/base/status.h"
 
 /* The manager's side. */
 typedef struct {
   void *context;
-  /* The next design to compute and its request [n_request]; -1: none at present. */
+  /* The next job and its request [n_request]; -1: none at present. */
   int (*next)(void *context, const double **value);
-  /* A design is done. Errors end the study. */
-  shb_status (*done)(void *context, int design, const char *bytes, size_t size);
-  /* Called some hundred times a second at most; errors end the study. */
+  /* A job is done. Errors end the work. */
+  shb_status (*done)(void *context, int job, const char *bytes, size_t size);
+  /* Called some hundred times a second at most; errors end the work. */
   shb_status (*tick)(void *context);
 } crew_work;
 
-/* Hand out designs until none is left and all are done, then release the workers. process starts
- * the child that computes; only the manager without workers uses it. */
-shb_status crew_manage(const crew_work *work, design_process *process);
+/* What computes a job. */
+typedef struct {
+  void *context;
+  int   n_request; /* values of a request */
+  /* bytes: the answer, malloc'ed. Errors end the work. */
+  shb_status (*compute)(void *context, const double *value, char **bytes, size_t *size);
+} crew_computer;
 
-/* Compute designs until the manager releases the worker. */
-shb_status crew_serve(design_process *process);
+/* Hand out jobs until none is left and all are done, then release the workers. The manager without
+ * workers computes itself. */
+shb_status crew_manage(const crew_work *work, const crew_computer *computer);
+
+/* Compute jobs until the manager releases the worker. */
+shb_status crew_serve(const crew_computer *computer);
 
 /* Release the workers without work, after an error of the manager. */
 void crew_dismiss(void);

@@ -9,6 +9,7 @@
 #include "cases/commands/command.h"
 #include "cases/commands/subprocess.h"
 #include "cases/parse/units.h"
+#include "cases/study/design_process.h"
 #include "cases/study/study_run.h"
 #include "mesh/base/progress.h"
 #include "postproc/study/study_file.h"
@@ -136,13 +137,18 @@ static void tell_one_core(void) {
       stderr);
 }
 
+/* A design, by the child process. */
+static shb_status compute(void *process, const double *value, char **bytes, size_t *size) {
+  return design_process_run(process, value, bytes, size);
+}
+
 /* The study on the manager. */
 static shb_status manage(const study_spec *spec, const command_options *options,
-                         design_process *process) {
+                         const crew_computer *computer) {
   shb_progress progress = shb_progress_start("study", options->quiet, options->verbose);
   design_study study    = {0};
   tell_one_core();
-  shb_status status = study_run(spec, options->force, process, &progress, &study);
+  shb_status status = study_run(spec, options->force, computer, &progress, &study);
   bool       whole  = status == SHB_OK || status == SHB_NOT_CONVERGED;
   if (whole && options->json) {
     shb_status printed = print_json(spec);
@@ -169,7 +175,10 @@ static int work(const command_options *options) {
   MPI_Bcast(go, 4, MPI_INT, 0, MPI_COMM_WORLD);
   design_process process = {
       .study = options->path, .n_request = 2 * go[1], .n_outputs = go[2], .n_derivatives = go[3]};
-  if (go[0] == SHB_OK) status = rank == 0 ? manage(&spec, options, &process) : crew_serve(&process);
+  const crew_computer computer = {&process, process.n_request, compute};
+  if (go[0] == SHB_OK)
+    status = rank == 0 ? manage(&spec, options, &computer) : crew_serve(&computer);
+  design_process_stop(&process);
   int code = rank == 0 ? command_finish(status) : SHB_OK;
   study_spec_free(&spec);
   return code;

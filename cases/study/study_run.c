@@ -375,7 +375,7 @@ static shb_status put_statistics(running *r) {
   return spec->keys.n_uncertain > 0 ? design_statistics(&samples, r->study) : SHB_OK;
 }
 
-static shb_status run_all(running *r, bool force, design_process *process) {
+static shb_status run_all(running *r, bool force, const crew_computer *computer) {
   SHB_TRY(find_twins(r));
   if (!force) SHB_TRY(take_all_known(r));
   r->n_to_compute = count_work(r);
@@ -383,7 +383,7 @@ static shb_status run_all(running *r, bool force, design_process *process) {
                     r->n_to_compute, crew_workers());
   r->started = r->published = shb_seconds();
   const crew_work work      = {r, next_design, done, tick};
-  SHB_TRY(crew_manage(&work, process));
+  SHB_TRY(crew_manage(&work, computer));
   SHB_TRY(copy_twins(r));
   shb_progress_clear(r->progress);
   if (!shb_interrupted()) SHB_TRY(put_statistics(r));
@@ -392,7 +392,7 @@ static shb_status run_all(running *r, bool force, design_process *process) {
 }
 
 /* An optimisation: the designs come from its search. */
-static shb_status search(running *r, bool force, design_process *process) {
+static shb_status search(running *r, bool force, const crew_computer *computer) {
   const crew_work work   = {r, next_design, done, tick};
   shb_status      status = force ? SHB_OK : take_all_known(r);
   r->n_to_compute        = r->spec->optimise.evaluations;
@@ -400,7 +400,7 @@ static shb_status search(running *r, bool force, design_process *process) {
                     crew_workers());
   r->started = r->published = shb_seconds();
   if (status == SHB_OK)
-    status = crew_manage(&work, process);
+    status = crew_manage(&work, computer);
   else
     crew_dismiss();
   shb_progress_clear(r->progress);
@@ -410,17 +410,17 @@ static shb_status search(running *r, bool force, design_process *process) {
   return study_publish(r->study, r->path);
 }
 
-static shb_status search_all(running *r, bool force, design_process *process) {
+static shb_status search_all(running *r, bool force, const crew_computer *computer) {
   shb_status status = optimisation_create(r->spec, r->study, &r->search);
   if (status == SHB_OK)
-    status = search(r, force, process);
+    status = search(r, force, computer);
   else
     crew_dismiss();
   optimisation_destroy(r->search);
   return status;
 }
 
-shb_status study_run(const study_spec *spec, bool force, design_process *process,
+shb_status study_run(const study_spec *spec, bool force, const crew_computer *computer,
                      shb_progress *progress, design_study *s) {
   shb_status status = set_up(spec, s);
   running    r      = {.spec = spec, .study = s, .progress = progress};
@@ -433,9 +433,9 @@ shb_status study_run(const study_spec *spec, bool force, design_process *process
   if (status == SHB_OK && !(r.path && r.twin && r.given && r.tried && r.request))
     status = shb_fail(SHB_ERR_IO, __FILE__, __LINE__, "out of memory");
   if (status == SHB_OK && spec->optimise.wanted)
-    status = search_all(&r, force, process);
+    status = search_all(&r, force, computer);
   else if (status == SHB_OK)
-    status = run_all(&r, force, process);
+    status = run_all(&r, force, computer);
   else
     crew_dismiss();
   free(r.path);

@@ -12,10 +12,12 @@ static const double PUBLISH_EVERY = 10; /* s */
 typedef struct {
   const modal_model   *blade;
   const mhb_settings  *settings;
+  const mhb_sampling  *sampling;
   const mhb_ring_peak *tuned;
   mhb_response        *response;
   mhb_publisher        publisher;
   shb_progress        *progress;
+  int                  handed; /* samples that the crew was given or does not need */
 } work;
 
 /* ---- the monitor of one curve ---- */
@@ -76,16 +78,22 @@ static shb_status trace(const mhb_settings *settings, double n0, mhb_ring_peak *
   return status;
 }
 
-static shb_status one(const work *w, int sample, int preload, mhb_ring_peak *peak) {
-  const mhb_samples *s        = w->response->samples;
-  mhb_settings       settings = *w->settings;
+shb_status mhb_ring_sample(const modal_model *blade, const mhb_settings *asked,
+                           const mhb_sampling *sampling, int sample, int preload,
+                           mhb_ring_peak *peak) {
+  mhb_settings       settings = *asked;
   mhb_mistuned_ring *ring;
+  double             deviation[asked->blades];
+  *peak         = (mhb_ring_peak){0};
   settings.ring = NULL;
-  SHB_TRY(mhb_mistuned_ring_create(w->blade, &settings,
-                                   s->deviation + (size_t)sample * (size_t)s->blades, 1, &ring));
-  settings.ring     = ring;
-  shb_status status = trace(&settings, s->n0[preload], peak);
+  SHB_TRY(
+      mhb_deviations_random(sampling->deviation, sampling->seed, sample, asked->blades, deviation));
+  SHB_TRY(mhb_mistuned_ring_create(blade, &settings, deviation, 1, &ring));
+  settings.ring      = ring;
+  settings.stability = MHB_STABILITY_NEVER; /* the peak alone is kept */
+  shb_status status  = trace(&settings, asked->n0[preload], peak);
   mhb_mistuned_ring_destroy(ring);
+  if (shb_interrupted()) peak->worst = 0;
   return status;
 }
 
@@ -118,22 +126,63 @@ static shb_status make(const mhb_settings *settings, const mhb_sampling *samplin
   return SHB_OK;
 }
 
-static void run(work *w) {
+/* With the lock held. */
+static bool is_wanted(const work *w, int at) {
+  const mhb_samples *s = w->response->samples;
+  return !(s->factor[at] > 0) && w->publisher.status == SHB_OK && w->tuned[at / s->n].worst > 0;
+}
+
+static void run_threads(work *w) {
   const mhb_samples *s = w->response->samples;
 #pragma omp parallel for schedule(dynamic, 1)
   for (int at = 0; at < s->n * s->preloads; at++) {
-    mhb_ring_peak peak = {0};
+    mhb_ring_peak peak;
     mhb_publisher_lock(&w->publisher, true);
-    const bool wanted =
-        !(s->factor[at] > 0) && w->publisher.status == SHB_OK && w->tuned[at / s->n].worst > 0;
+    const bool wanted = is_wanted(w, at);
     mhb_publisher_lock(&w->publisher, false);
     if (!wanted || shb_interrupted()) continue;
-    const shb_status status = one(w, at % s->n, at / s->n, &peak);
+    const shb_status status =
+        mhb_ring_sample(w->blade, w->settings, w->sampling, at % s->n, at / s->n, &peak);
     mhb_publisher_lock(&w->publisher, true);
     mhb_publisher_note(&w->publisher, status);
-    if (status == SHB_OK && peak.worst > 0 && !shb_interrupted()) store(w, at, &peak);
+    if (status == SHB_OK && peak.worst > 0) store(w, at, &peak);
     mhb_publisher_lock(&w->publisher, false);
   }
+}
+
+/* ---- by a crew: one thread here ---- */
+
+static bool next(void *context, int *sample, int *preload) {
+  work              *w = context;
+  const mhb_samples *s = w->response->samples;
+  while (w->handed < s->n * s->preloads && !is_wanted(w, w->handed)) w->handed++;
+  if (w->handed == s->n * s->preloads) return false;
+  *sample  = w->handed % s->n;
+  *preload = w->handed / s->n;
+  w->handed++;
+  return true;
+}
+
+static shb_status done(void *context, int sample, int preload, const mhb_ring_peak *peak) {
+  work *w = context;
+  if (peak->worst > 0) store(w, preload * w->response->samples->n + sample, peak);
+  return mhb_publisher_status(&w->publisher);
+}
+
+static shb_status tick(void *context) {
+  (void)context;
+  return shb_interrupted() ? SHB_INTERRUPTED : SHB_OK;
+}
+
+static void run(work *w) {
+  const mhb_sample_work  shared = {w, next, done, tick};
+  const mhb_sample_crew *crew   = w->sampling->crew;
+  if (!crew) {
+    run_threads(w);
+    return;
+  }
+  const shb_status status = crew->share(crew->context, &shared);
+  if (status != SHB_INTERRUPTED) mhb_publisher_note(&w->publisher, status);
 }
 
 shb_status mhb_ring_samples(const modal_model *blade, const mhb_settings *settings,
@@ -143,6 +192,7 @@ shb_status mhb_ring_samples(const modal_model *blade, const mhb_settings *settin
   const int preloads = settings->parameter == MHB_IN_N0 ? 1 : settings->n_preloads;
   work      w        = {.blade    = blade,
                         .settings = settings,
+                        .sampling = sampling,
                         .tuned    = tuned,
                         .response = response,
                         .progress = progress};

@@ -28,6 +28,10 @@ enum {
 };
 static const double BUDGET = 0.8, SECONDS_A_CUBE = 1.5e-9, SECONDS_A_STATE = 1e-5;
 
+/* A mistuned ring is integrated over the whole period with the events of all blades: a state and
+ * blade squared takes this on top. */
+static const double SECONDS_MISTUNED = 5e-7;
+
 /* Distances of a modulus from 1: the margin outside that counts as unstable, the accuracy of a
  * located bifurcation, and the end of the search. It is COARSE above DEAR states. A search takes
  * MOST_TRIALS multipliers at most: a test function that jumps is not followed further. */
@@ -63,7 +67,7 @@ struct mhb_branch_stability {
 
 /* Number of states of the blade or ring with all its modes, each contact sticking. */
 static int count_states(const mhb_balance *b) {
-  int blades = b->settings->to_ground ? 1 : b->settings->blades;
+  int blades = b->settings->to_ground || b->receptance->ring ? 1 : b->settings->blades;
   return 2 * blades * (b->receptance->n_modes + b->n_pairs);
 }
 
@@ -194,7 +198,9 @@ static int affordable(const mhb_branch_stability *w) {
   int    g      = mhb_floquet_cells(w->floquet);
   double states = w->states < MAX_STATES ? w->states : MAX_STATES;
   double cube   = SECONDS_A_CUBE * states * states * states * (g > 2 ? 2. : 1.) / (g * g);
-  int    n      = (int)(BUDGET / (cube + SECONDS_A_STATE * states));
+  double blades = w->balance->receptance->ring ? w->balance->receptance->ring->blades : 0;
+  double period = SECONDS_A_STATE + SECONDS_MISTUNED * blades * blades;
+  int    n      = (int)(BUDGET / (cube + period * states));
   return n > LEAST_POINTS ? n : LEAST_POINTS;
 }
 

@@ -46,27 +46,28 @@ static int affordable(const mhb_floquet *s) {
 
 static shb_status fill(mhb_floquet *s, const mhb_receptance *receptance,
                        const mhb_settings *settings, int substeps) {
-  SHB_TRY(
-      mhb_modal_structure_create(receptance, settings, receptance->n_modes, false, &s->structure));
+  SHB_TRY(mhb_modal_structure_create(receptance, settings, receptance->n_modes,
+                                     settings->ring != NULL, &s->structure));
   const mhb_modal_structure *all_modes = &s->structure;
   int                        m         = settings->harmonics,
       all = 2 * (all_modes->modes * all_modes->blades + all_modes->contacts);
   SHB_TRY(mhb_transition_schedule_create(all_modes->blades, all_modes->pairs, all_modes->wave,
-                                         &s->schedule));
-  SHB_TRY(mhb_linear_exponents_create(all_modes, &s->exponents));
+                                         all_modes->mistuned, &s->schedule));
   SHB_TRY(mhb_contact_evaluator_create(m, m, settings->tolerance, &s->contact));
   if (affordable(s) > 0) {
     SHB_TRY(mhb_modal_structure_create(receptance, settings, affordable(s), true, &s->reduced));
     SHB_TRY(mhb_monodromy_create(&s->reduced, &s->schedule, s->contact, m, (substeps + 1) / 2,
                                  FINEST, &s->monodromy));
     int cells  = mhb_floquet_cells(s),
-        states = 2 * s->schedule.n_segments * (s->reduced.modes + all_modes->pairs);
+        states = 2 * s->schedule.cell * (s->reduced.modes + all_modes->pairs);
     SHB_TRY(mhb_bloch_create(cells, states, &s->bloch));
     s->coarse = shb_arena_take(&s->arena, (size_t)cells * (size_t)states * (size_t)states,
                                sizeof *s->coarse);
   }
+  const mhb_modal_structure *linear = all_modes->mistuned && s->monodromy ? &s->reduced : all_modes;
+  SHB_TRY(mhb_linear_exponents_create(linear, &s->exponents));
   s->nu         = settings->subharmonics;
-  s->state      = shb_arena_take(&s->arena, (size_t)all_modes->pairs, sizeof(int));
+  s->state      = shb_arena_take(&s->arena, (size_t)s->schedule.orbits, sizeof(int));
   s->multiplier = shb_arena_take(&s->arena, (size_t)all, sizeof(double complex));
   SHB_CHECK(!s->arena.failed, SHB_ERR_IO, "out of memory for the stability of %d states", all);
   return SHB_OK;
@@ -110,7 +111,7 @@ void mhb_floquet_move(mhb_floquet *s, const mhb_receptance *receptance) {
 }
 
 int mhb_floquet_cells(const mhb_floquet *s) {
-  return s->structure.blades / s->schedule.n_segments;
+  return s->structure.blades / s->schedule.cell;
 }
 
 static double square(double complex z) {
@@ -142,7 +143,7 @@ static void set_multipliers(mhb_floquet *s, int n, mhb_multipliers *out) {
 
 /* No contact slips, opens or closes. */
 static int is_linear(const mhb_floquet *s, const mhb_solution *solution) {
-  for (int a = 0; a < s->structure.pairs; a++)
+  for (int a = 0; a < s->schedule.orbits; a++)
     if (!s->schedule.constant_state[a] ||
         (s->schedule.state[a] == MHB_SLIDE && solution->law[a].mu > 0))
       return 0;
@@ -152,10 +153,10 @@ static int is_linear(const mhb_floquet *s, const mhb_solution *solution) {
 static const char *linear(mhb_floquet *s, const mhb_solution *solution, double period,
                           mhb_multipliers *out) {
   mhb_linear_exponents *x = &s->exponents;
-  for (int a = 0; a < s->structure.pairs; a++) s->state[a] = s->schedule.state[a];
+  for (int a = 0; a < s->schedule.orbits; a++) s->state[a] = s->schedule.state[a];
   if (!mhb_linear_exponents_set(x, s->state, solution->law)) return "the eigensolver failed";
   for (int i = 0; i < x->n; i++) s->multiplier[i] = cexp(x->exponent[i] * period);
-  out->modes         = s->structure.modes;
+  out->modes         = x->structure->modes;
   s->bloch.n_aligned = 0;
   set_multipliers(s, x->n, out);
   return NULL;
@@ -241,9 +242,11 @@ static int first_refinement(const mhb_floquet *s, const mhb_law *law, double ome
   double                     fastest    = 0; /* squared */
   int                        refinement = 1;
   const mhb_disc_modes      *disc       = structure->disc;
-  for (int i = 0; i < structure->modes * (disc ? disc->diameters : 1); i++) {
+  const int sets = disc ? disc->diameters : structure->mistuned ? structure->blades : 1;
+  for (int i = 0; i < structure->modes * sets; i++) {
     double omega_i = disc ? disc->omega[i] : structure->omega[i], own = omega_i * omega_i;
-    double more = disc ? stiffening_of_disc(disc, law, i) : stiffening_of_blade(structure, law, i);
+    double more = disc ? stiffening_of_disc(disc, law, i)
+                       : stiffening_of_blade(structure, law, i % structure->modes);
     if (more > SHIFTED * own) fastest = fmax(fastest, own + more);
   }
   while (s->monodromy->substeps * refinement * omega < CYCLE * sqrt(fastest) &&
@@ -284,7 +287,7 @@ static void count_left_out(const mhb_floquet *s, const mhb_solution *solution,
                            mhb_multipliers *out) {
   const mhb_transition_schedule *t = &s->schedule;
   for (int j = 0; j < s->structure.contacts; j++) {
-    double mu = solution->law[j % s->structure.pairs].mu;
+    double mu = solution->law[mhb_transition_schedule_orbit(t, j)].mu;
     if (mu == 0 || (t->constant_state[j] && t->state[j] == MHB_SEPARATE)) continue;
     if (t->constant_state[j] && t->state[j] == MHB_STICK) {
       out->n_stuck += 2;

@@ -10,7 +10,8 @@
  *
  * For a wave around the ring any disturbance of any blade is followed, whether or not it has the
  * form of the wave. Integrated is g/N of a period, after which the blades are renamed
- * (transition_schedule.h). There are 2 modes + 2 contacts states a blade. If these exceed
+ * (transition_schedule.h). In a mistuned ring the whole period is integrated, and nothing repeats.
+ * There are 2 modes + 2 contacts states a blade. If these exceed
  * max_states the lowest modes keep their dynamics and the others respond statically. Derivation:
  * docs/theory/stability.md. */
 #ifndef MHB_FLOQUET_FLOQUET_H
@@ -45,7 +46,7 @@ typedef struct mhb_floquet mhb_floquet; /* workspace; one a thread */
 
 /* For the harmonics of settings.
  *   substeps    in  of a period of the fundamental, to begin with
- *   max_states  in  0: 600
+ *   max_states  in  0: 600. In a mistuned ring it bounds the states of linear motions too
  * The receptance must outlive it.
  * Errors: SHB_ERR_INPUT substeps < 1; SHB_ERR_IO no memory. */
 shb_status mhb_floquet_create(const mhb_receptance *receptance, const mhb_settings *settings,

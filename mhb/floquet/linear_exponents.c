@@ -8,18 +8,24 @@
 #include "mesh/base/constants.h"
 
 shb_status mhb_linear_exponents_create(const mhb_modal_structure *s, mhb_linear_exponents *x) {
-  size_t m = (size_t)s->modes, pairs = (size_t)s->pairs, n3 = 3 * pairs;
-  *x          = (mhb_linear_exponents){.structure = s, .n = 2 * s->modes * s->blades};
-  x->state    = shb_arena_take(&x->arena, pairs, sizeof *x->state);
-  x->law      = shb_arena_take(&x->arena, pairs, sizeof *x->law);
-  x->exponent = shb_arena_take(&x->arena, (size_t)x->n, sizeof *x->exponent);
-  x->A        = shb_arena_take(&x->arena, 4 * m * m, sizeof *x->A);
-  x->left     = shb_arena_take(&x->arena, n3 * m, sizeof *x->left);
-  x->R        = shb_arena_take(&x->arena, n3 * n3, sizeof *x->R);
-  x->S        = shb_arena_take(&x->arena, n3 * (n3 + m), sizeof *x->S);
-  x->work     = shb_arena_take(&x->arena, 40 * m, sizeof *x->work);
-  x->rwork    = shb_arena_take(&x->arena, 4 * m, sizeof *x->rwork);
+  *x       = (mhb_linear_exponents){.structure = s,
+                                    .n         = 2 * s->modes * s->blades,
+                                    .orbits    = s->mistuned ? s->contacts : s->pairs};
+  size_t m = (size_t)s->modes, orbits = (size_t)x->orbits, n3 = 3 * orbits, n = (size_t)x->n;
+  x->state    = shb_arena_take(&x->arena, orbits, sizeof *x->state);
+  x->law      = shb_arena_take(&x->arena, orbits, sizeof *x->law);
+  x->exponent = shb_arena_take(&x->arena, n, sizeof *x->exponent);
   x->pivot    = shb_arena_take(&x->arena, n3, sizeof *x->pivot);
+  if (s->mistuned) {
+    x->ring = shb_arena_take(&x->arena, n * n + n3 * (n3 + n / 2) + 10 * n, sizeof *x->ring);
+  } else {
+    x->A     = shb_arena_take(&x->arena, 4 * m * m, sizeof *x->A);
+    x->left  = shb_arena_take(&x->arena, n3 * m, sizeof *x->left);
+    x->R     = shb_arena_take(&x->arena, n3 * n3, sizeof *x->R);
+    x->S     = shb_arena_take(&x->arena, n3 * (n3 + m), sizeof *x->S);
+    x->work  = shb_arena_take(&x->arena, 40 * m, sizeof *x->work);
+    x->rwork = shb_arena_take(&x->arena, 4 * m, sizeof *x->rwork);
+  }
   if (!x->arena.failed) return SHB_OK;
   mhb_linear_exponents_destroy(x);
   SHB_FAIL(SHB_ERR_IO, "out of memory for the exponents of %d modes", s->modes);
@@ -129,8 +135,68 @@ static void copy_conjugate(mhb_linear_exponents *x, int d) {
   for (size_t i = 0; i < n; i++) to[i] = conj(from[i]);
 }
 
+/* ---- mistuned ---- */
+
+/* Motion of row r by mode c of the ring [blade][mode]. */
+static double ring_shape(const mhb_modal_structure *s, int r, int c) {
+  const int n3 = 3 * s->pairs, blade = c / s->modes, mode = c % s->modes;
+  double    sum = 0;
+  for (int side = 0; side < s->sides; side++)
+    if (r / n3 * s->pairs == mhb_modal_structure_contact(s, blade, side))
+      sum += s->shape[(side * s->modes + mode) * n3 + r % n3];
+  return sum;
+}
+
+/* [I + K R | K B], column-major with n3 rows. */
+static void ring_contacts(const mhb_linear_exponents *x, double *S) {
+  const mhb_modal_structure *s  = x->structure;
+  const int                  n3 = 3 * s->contacts, half = x->n / 2;
+  double                     K[3][3];
+  for (int row = 0; row < n3; row++) {
+    stiffness(x->state[row / 3], &x->law[row / 3], K);
+    for (int c = 0; c < n3 + half; c++) {
+      double sum = c == row;
+      for (int k = 0; k < 3; k++) {
+        const int of = row - row % 3 + k;
+        if (c >= n3) sum += K[row % 3][k] * ring_shape(s, of, c - n3);
+        if (c < n3 && s->flexibility)
+          sum += K[row % 3][k] * s->flexibility[(size_t)of * (size_t)n3 + (size_t)c];
+      }
+      S[(size_t)c * (size_t)n3 + (size_t)row] = sum;
+    }
+  }
+}
+
+/* Exponents of all blades at once. Returns 0 if singular, or if the eigensolver failed. */
+static int mistuned_ring(mhb_linear_exponents *x) {
+  const mhb_modal_structure *s  = x->structure;
+  const int                  n3 = 3 * s->contacts, n = x->n, half = n / 2;
+  const size_t               rows = (size_t)n;
+  double                    *A = x->ring, *S = A + rows * rows, *SB = S + (size_t)n3 * (size_t)n3;
+  double                    *re = SB + (size_t)n3 * (size_t)half, *im = re + n, *work = im + n;
+  ring_contacts(x, S);
+  if (LAPACKE_dgesv_work(LAPACK_COL_MAJOR, n3, half, S, n3, x->pivot, SB, n3) != 0) return 0;
+  memset(A, 0, sizeof *A * rows * rows);
+  for (int i = 0; i < half; i++) {
+    const double w = s->omega[i], damping = 2 * s->zeta[i % s->modes] * w;
+    A[(size_t)(half + i) * rows + (size_t)i]          = 1;
+    A[(size_t)(half + i) * rows + (size_t)(half + i)] = -damping;
+    A[(size_t)i * rows + (size_t)(half + i)]          = -w * w;
+    for (int r = 0; r < n3; r++) {
+      const double b = ring_shape(s, r, i);
+      for (int k = 0; b != 0 && k < half; k++)
+        A[(size_t)k * rows + (size_t)(half + i)] -= b * SB[(size_t)k * (size_t)n3 + (size_t)r];
+    }
+  }
+  if (LAPACKE_dgeev_work(LAPACK_COL_MAJOR, 'N', 'N', n, A, n, re, im, NULL, 1, NULL, 1, work,
+                         8 * n) != 0)
+    return 0;
+  for (int i = 0; i < n; i++) x->exponent[i] = CMPLX(re[i], im[i]);
+  return 1;
+}
+
 static int same(const mhb_linear_exponents *x, const int *state, const mhb_law *law) {
-  for (int a = 0; a < x->structure->pairs; a++) {
+  for (int a = 0; a < x->orbits; a++) {
     const mhb_law *old = &x->law[a];
     if (state[a] != x->state[a] || law[a].kv != old->kv || (law[a].mu == 0) != (old->mu == 0) ||
         law[a].ku[0] != old->ku[0] || law[a].ku[1] != old->ku[1] || law[a].ku[2] != old->ku[2])
@@ -148,10 +214,10 @@ static int by_real_part(const void *a, const void *b) {
 int mhb_linear_exponents_set(mhb_linear_exponents *x, const int *state, const mhb_law *law) {
   const mhb_modal_structure *s = x->structure;
   if (x->known && same(x, state, law)) return 1;
-  memcpy(x->state, state, sizeof *state * (size_t)s->pairs);
-  memcpy(x->law, law, sizeof *law * (size_t)s->pairs);
-  x->known = 1;
-  for (int d = 0; d < s->blades; d++) {
+  memcpy(x->state, state, sizeof *state * (size_t)x->orbits);
+  memcpy(x->law, law, sizeof *law * (size_t)x->orbits);
+  x->known = s->mistuned ? mistuned_ring(x) : 1;
+  for (int d = 0; d < s->blades && !s->mistuned; d++) {
     if (2 * d > s->blades) {
       copy_conjugate(x, d);
     } else {

@@ -5,6 +5,8 @@
  *   B = right - exp(-j 2 pi d/N) left,   S = (I + diag(kv, Ku) R)^-1 diag(kv, Ku)
  *   lambda: eigenvalues of [0 I; -(w_i^2 + B^H S B), -2 zeta w_i]
  *
+ * A mistuned ring has no nodal diameters: its exponents are those of all blades at once.
+ *
  * They do not depend on the excitation. They are computed anew if a state or a stiffness
  * changes. */
 #ifndef MHB_FLOQUET_LINEAR_EXPONENTS_H
@@ -18,24 +20,27 @@
 
 typedef struct {
   const mhb_modal_structure *structure;
-  int                        n;        /* 2 modes blades */
-  int                        known;    /* 1: the exponents are those of the states and laws below */
-  int                       *state;    /* [pair] */
-  mhb_law                   *law;      /* [pair] */
-  double complex            *exponent; /* [n] 1/s */
+  int                        n;      /* 2 modes blades */
+  int                        known;  /* 1: the exponents are those of the states and laws below */
+  int                        orbits; /* contacts with a state of their own: pairs; mistuned: all */
+  int                       *state;  /* [orbit] */
+  mhb_law                   *law;    /* [orbit] */
+  double complex            *exponent;                /* [n] 1/s */
   double complex            *A, *left, *R, *S, *work; /* of one nodal diameter */
+  double                    *ring; /* mistuned, in their place: A [n][n], then [n3][n3 + n/2] and
+                                      [10 n] */
   double                    *rwork;
   int                       *pivot;
   shb_arena                  arena;
 } mhb_linear_exponents;
 
-/* SHB_ERR_IO: no memory. The structure must outlive it. */
+/* SHB_ERR_IO: no memory. The structure must outlive it; a mistuned one has flexibility of all. */
 shb_status mhb_linear_exponents_create(const mhb_modal_structure *structure,
                                        mhb_linear_exponents      *exponents);
 void       mhb_linear_exponents_destroy(mhb_linear_exponents *exponents);
 
-/* Exponents for states (mhb_state) and laws of the pairs, the same on all blades. Returns 0 if the
- * eigensolver failed. */
+/* Exponents for states (mhb_state) and laws [orbit]; equal blades have equal contacts. Returns 0 if
+ * the eigensolver failed. */
 int mhb_linear_exponents_set(mhb_linear_exponents *exponents, const int *state, const mhb_law *law);
 
 #endif

@@ -15,7 +15,7 @@ shb_status mhb_monodromy_create(const mhb_modal_structure     *s,
                                 mhb_monodromy **out) {
   mhb_monodromy *d = calloc(1, sizeof *d);
   SHB_CHECK(d, SHB_ERR_IO, "out of memory");
-  int    blades = schedule->n_segments, capacity = 2 * blades * (s->modes + s->pairs);
+  int    blades = schedule->cell, capacity = 2 * blades * (s->modes + s->pairs);
   int    pieces = schedule->capacity + 1;
   int    steps  = finest * ((int)(substeps * schedule->span) + 1 + pieces);
   size_t cells  = (size_t)(s->blades / blades);

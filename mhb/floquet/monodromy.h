@@ -1,6 +1,6 @@
 /* The map of small disturbances of (q, q', friction) over a segment of the period
  * (transition_schedule.h). For a blade on the ground it is the monodromy matrix. For a ring it is
- * the columns of one cell's disturbances, blades renamed (bloch.h).
+ * the columns of one cell's disturbances, blades renamed (bloch.h). A mistuned ring is one cell.
  *
  * Sub-steps (variational.h) end at the transitions of every contact. The law is linearised at their
  * middles (linearised_law.h, orbit_contacts.h). The states are q and q' of every mode and blade,

@@ -18,18 +18,19 @@ shb_status mhb_orbit_contacts_create(const mhb_modal_structure     *s,
                                      mhb_orbit_contacts **out) {
   mhb_orbit_contacts *d = calloc(1, sizeof *d);
   SHB_CHECK(d, SHB_ERR_IO, "out of memory");
-  size_t contacts = (size_t)s->contacts, n = 3 * contacts;
-  d->structure     = s;
-  d->schedule      = schedule;
-  d->contact       = contact;
-  d->m             = m;
-  d->nb            = mhb_real_size(m);
-  d->capacity      = s->blades * n_samples;
-  shb_arena *arena = &d->arena;
-  d->motion        = shb_arena_take(arena, n * (size_t)d->nb, sizeof(double));
-  d->sample  = shb_arena_take(arena, (size_t)s->pairs * (size_t)d->capacity, sizeof *d->sample);
-  d->n_taken = shb_arena_take(arena, (size_t)s->pairs, sizeof(int));
-  d->point   = shb_arena_take(arena, contacts, sizeof *d->point);
+  size_t contacts = (size_t)s->contacts, n = 3 * contacts, orbits = (size_t)schedule->orbits;
+  d->structure        = s;
+  d->schedule         = schedule;
+  d->contact          = contact;
+  d->m                = m;
+  d->nb               = mhb_real_size(m);
+  d->capacity         = s->contacts / schedule->orbits * n_samples;
+  shb_arena *arena    = &d->arena;
+  d->own              = shb_arena_take(arena, 3 * orbits * (size_t)d->nb, sizeof(double));
+  d->motion           = shb_arena_take(arena, 3 * orbits * (size_t)d->nb, sizeof(double));
+  d->sample           = shb_arena_take(arena, orbits * (size_t)d->capacity, sizeof *d->sample);
+  d->n_taken          = shb_arena_take(arena, orbits, sizeof(int));
+  d->point            = shb_arena_take(arena, contacts, sizeof *d->point);
   d->solution_columns = shb_arena_take(arena, 2 * n, sizeof(mhb_columns));
   d->force_rate       = shb_arena_take(arena, n, sizeof(double));
   d->force_jump       = shb_arena_take(arena, n, sizeof(double));
@@ -51,48 +52,61 @@ void mhb_orbit_contacts_destroy(mhb_orbit_contacts *d) {
   free(d);
 }
 
-static int pair_of(const mhb_orbit_contacts *d, int contact) {
-  return contact % d->structure->pairs;
+static int orbit_of(const mhb_orbit_contacts *d, int contact) {
+  return mhb_transition_schedule_orbit(d->schedule, contact);
 }
 
 /* ---- the periodic motion ---- */
 
-/* Harmonic k of (R p)_r of blade 0; the force of blade b lags by k b 2 pi E/N. */
+static double complex harmonic(const double *a, int k) {
+  return k ? CMPLX(a[2 * k - 1], a[2 * k]) : a[0];
+}
+
+/* Harmonic k of a wave in blade `blade`, by that of blade 0: it lags by k b 2 pi E/N. */
+static double complex lag(const mhb_orbit_contacts *d, int k, int blade) {
+  const mhb_modal_structure *s = d->structure;
+  return cexp(-I * SHB_TWO_PI * (double)((long)k * blade * s->wave % s->blades) / s->blades);
+}
+
+/* Harmonic k of (R p)_r. */
 static double complex flexibility_motion(const mhb_orbit_contacts *d, int k, int r) {
   const mhb_modal_structure *s = d->structure;
-  size_t         n = 3 * (size_t)s->contacts, n3 = 3 * (size_t)s->pairs, nb = (size_t)d->nb;
-  double complex sum = 0;
-  for (size_t c = 0; c < n; c++) {
-    const double  *a  = d->solution->p + c % n3 * nb;
-    double complex pk = k ? CMPLX(a[2 * k - 1], a[2 * k]) : a[0];
-    double lag = SHB_TWO_PI * (double)((long)k * (long)(c / n3) * s->wave % s->blades) / s->blades;
-    sum += s->flexibility[(size_t)r * n + c] * pk * cexp(-I * lag);
+  const int                  n = 3 * s->contacts, given = 3 * d->schedule->orbits;
+  double complex             sum = 0;
+  for (int c = 0; c < n; c++) {
+    double complex pk = harmonic(d->solution->p + (size_t)(c % given) * (size_t)d->nb, k);
+    if (c >= given) pk *= lag(d, k, c / given); /* equal blades: p is that of blade 0 */
+    sum += s->flexibility[(size_t)r * (size_t)n + (size_t)c] * pk;
   }
   return sum;
 }
 
-/* w = u + R p */
-static void set_modal_motion(mhb_orbit_contacts *d) {
-  int n3 = 3 * d->structure->pairs, nb = d->nb;
-  memcpy(d->motion, d->solution->x, sizeof(double) * (size_t)n3 * (size_t)nb);
-  if (!d->structure->flexibility) return;
-  for (int r = 0; r < n3; r++) {
-    double *w = d->motion + (size_t)r * (size_t)nb;
-    for (int k = 0; k <= d->m; k++) {
-      double complex more = flexibility_motion(d, k, r);
-      w[k ? 2 * k - 1 : 0] += creal(more);
-      if (k) w[2 * k] += cimag(more);
-    }
-  }
+/* Harmonic k of row r of a motion: out <- a, in the time of the row's own blade. */
+static void put_harmonic(const mhb_orbit_contacts *d, int k, int r, double complex a, double *out) {
+  const int blade = r / (3 * d->structure->pairs);
+  double   *to    = out + (size_t)r * (size_t)d->nb;
+  if (blade > 0) a *= conj(lag(d, k, blade));
+  to[k ? 2 * k - 1 : 0] = creal(a);
+  if (k) to[2 * k] = cimag(a);
 }
 
-/* Time derivative of the motion of a contact, of x[pair][3][nb]. */
+static void set_modal_motion(mhb_orbit_contacts *d) {
+  for (int r = 0; r < 3 * d->schedule->orbits; r++)
+    for (int k = 0; k <= d->m; k++) {
+      double complex u = harmonic(d->solution->x + (size_t)r * (size_t)d->nb, k);
+      put_harmonic(d, k, r, u, d->own);
+      if (d->structure->flexibility) u += flexibility_motion(d, k, r);
+      put_harmonic(d, k, r, u, d->motion);
+    }
+}
+
+/* Time derivative of the motion of a contact, of x[orbit][3][nb] in the time of its own blade. */
 static void motion_rate(mhb_orbit_contacts *d, const double *x, int contact, double at,
                         double rate[3]) {
   double *basis = d->basis, *slope = basis + d->nb;
   mhb_basis(d->m, SHB_TWO_PI * mhb_transition_schedule_phase(d->schedule, contact, at), basis,
             slope);
-  const double *of = x + (size_t)(3 * pair_of(d, contact)) * (size_t)d->nb;
+  const double *of = x + (size_t)(3 * orbit_of(d, contact)) * (size_t)d->nb;
   for (int i = 0; i < 3; i++) {
     double sum = 0;
     for (int k = 1; k < d->nb; k++) sum += slope[k] * of[i * d->nb + k];
@@ -103,10 +117,10 @@ static void motion_rate(mhb_orbit_contacts *d, const double *x, int contact, dou
 /* Normal load and friction direction of a slipping contact; in the first pass only the phase is
  * collected. */
 static void take_sample(mhb_orbit_contacts *d, int contact, double at) {
-  int                 pair = pair_of(d, contact);
+  int                 orbit = orbit_of(d, contact);
   mhb_contact_sample *sample =
-      &d->sample[(size_t)pair * (size_t)d->capacity + (size_t)d->n_taken[pair]];
-  d->n_taken[pair]++;
+      &d->sample[(size_t)orbit * (size_t)d->capacity + (size_t)d->n_taken[orbit]];
+  d->n_taken[orbit]++;
   if (d->first_pass) {
     sample->phase = mhb_transition_schedule_phase(d->schedule, contact, at);
     return;
@@ -194,19 +208,19 @@ void mhb_orbit_contacts_set_solution(mhb_orbit_contacts *d, const mhb_solution *
 void mhb_orbit_contacts_begin(mhb_orbit_contacts *d, int first_pass) {
   const mhb_modal_structure *s = d->structure;
   d->first_pass                = first_pass;
-  memset(d->n_taken, 0, sizeof *d->n_taken * (size_t)s->pairs);
+  memset(d->n_taken, 0, sizeof *d->n_taken * (size_t)d->schedule->orbits);
   for (int j = 0; j < s->contacts; j++) {
     mhb_contact_state *point = &d->point[j];
-    *point                   = (mhb_contact_state){.law   = &d->solution->law[pair_of(d, j)],
+    *point                   = (mhb_contact_state){.law   = &d->solution->law[orbit_of(d, j)],
                                                    .state = (mhb_state)d->schedule->state[j]};
     if (s->flexibility && is_slipping(point)) take_sample(d, j, NEAR);
   }
 }
 
 int mhb_orbit_contacts_evaluate_samples(mhb_orbit_contacts *d) {
-  for (int a = 0; a < d->structure->pairs; a++) {
+  for (int a = 0; a < d->schedule->orbits; a++) {
     if (d->n_taken[a] == 0) continue;
-    const double *x = d->solution->x + (size_t)(3 * a) * (size_t)d->nb;
+    const double *x = d->own + (size_t)(3 * a) * (size_t)d->nb;
     mhb_contact_time_history(d->contact, &d->solution->law[a], x, d->n_taken[a],
                              d->sample + (size_t)a * (size_t)d->capacity, &d->info);
     if (!mhb_transition_schedule_usable(&d->info)) return 0;
@@ -246,7 +260,7 @@ static void closing_direction(mhb_orbit_contacts *d, int contact, double at) {
   const mhb_law     *law     = point->law;
   const double       K[2][2] = {{law->ku[0], law->ku[1]}, {law->ku[1], law->ku[2]}};
   double             u[3];
-  motion_rate(d, d->solution->x, contact, at, u);
+  motion_rate(d, d->own, contact, at, u);
   double x[2] = {K[0][0] * u[1] + K[0][1] * u[2], K[1][0] * u[1] + K[1][1] * u[2]};
   mhb_slip_return(K, law->mu * law->kv * u[0], x, point->e);
   point->n = 0;

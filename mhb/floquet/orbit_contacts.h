@@ -14,7 +14,8 @@
 #include "mhb/floquet/transition_schedule.h"
 #include "mhb/floquet/variational.h"
 
-/* A solution of the harmonic balance with the results of the contact law. */
+/* A solution of the harmonic balance with the results of the contact law. Of a mistuned ring the
+ * pairs are all contacts; info is in the time of each contact's own blade, x and p are not. */
 typedef struct {
   double                  omega; /* rad/s, of the excitation */
   const mhb_law          *law;   /* [pair] */
@@ -30,11 +31,12 @@ typedef struct {
   int                            m, nb; /* harmonics; 2m+1 */
   const mhb_solution            *solution;
   double                         omega;      /* rad/s, fundamental */
-  double                        *motion;     /* [pair][3][nb] w = u + R p */
-  mhb_contact_sample            *sample;     /* [pair][capacity] */
-  int                            capacity;   /* samples a pair */
+  double                        *own;        /* [orbit][3][nb] x, in the time of its own blade */
+  double                        *motion;     /* [orbit][3][nb] w = u + R p, likewise */
+  mhb_contact_sample            *sample;     /* [orbit][capacity] */
+  int                            capacity;   /* samples an orbit */
   int                            first_pass; /* 1: phases are collected; 0: samples are used */
-  int                           *n_taken;    /* [pair] samples collected or used */
+  int                           *n_taken;    /* [orbit] samples collected or used */
   mhb_contact_info               info;       /* of a time history */
   mhb_contact_state             *point;      /* [contact] now */
   mhb_ring_band                  band;       /* I + G R, n = 3 contacts */
@@ -46,7 +48,7 @@ typedef struct {
   shb_arena                      arena;
 } mhb_orbit_contacts;
 
-/* For n_samples samples of each contact of a pair. SHB_ERR_IO: no memory. */
+/* For n_samples samples of each contact. SHB_ERR_IO: no memory. */
 shb_status mhb_orbit_contacts_create(const mhb_modal_structure     *structure,
                                      const mhb_transition_schedule *schedule,
                                      mhb_contact_evaluator *contact, int m, int n_samples,

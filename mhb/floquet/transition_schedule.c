@@ -11,6 +11,9 @@ static const double CLOSE = 1e-12;
  * be used. */
 static const double USABLE_ERROR = 1e-5;
 
+/* Events of a contact of a mistuned ring that there is room for, on average. */
+enum { EVENTS_MISTUNED = 24 };
+
 static int common_divisor(int a, int b) {
   while (b) {
     int rest = a % b;
@@ -20,14 +23,18 @@ static int common_divisor(int a, int b) {
   return a;
 }
 
-shb_status mhb_transition_schedule_create(int blades, int pairs, int wave,
+shb_status mhb_transition_schedule_create(int blades, int pairs, int wave, bool mistuned,
                                           mhb_transition_schedule *t) {
   int E = ((wave % blades) + blades) % blades, g = common_divisor(blades, E);
-  *t = (mhb_transition_schedule){
-      .blades = blades, .pairs = pairs, .wave = E, .n_segments = blades / g};
+  *t      = (mhb_transition_schedule){.blades     = blades,
+                                      .pairs      = pairs,
+                                      .wave       = E,
+                                      .orbits     = mistuned ? blades * pairs : pairs,
+                                      .n_segments = mistuned ? 1 : blades / g,
+                                      .cell       = mistuned ? blades : blades / g};
   t->span = 1. / t->n_segments;
-  while (((long)t->blade_shift * E - g) % blades) t->blade_shift++;
-  t->capacity       = 64 + 64 * pairs * g;
+  while (!mistuned && ((long)t->blade_shift * E - g) % blades) t->blade_shift++;
+  t->capacity       = 64 + (mistuned ? EVENTS_MISTUNED * blades : 64 * g) * pairs;
   size_t n          = (size_t)blades * (size_t)pairs;
   t->event          = shb_arena_take(&t->arena, (size_t)t->capacity, sizeof *t->event);
   t->state          = shb_arena_take(&t->arena, n, sizeof *t->state);
@@ -84,7 +91,7 @@ static int friction_states_at(const mhb_transition_schedule *t, const mhb_contac
                               double phase) {
   int sum = 0;
   for (int j = 0; j < t->blades * t->pairs; j++) {
-    const mhb_contact_info *of = &info[j % t->pairs];
+    const mhb_contact_info *of = &info[mhb_transition_schedule_orbit(t, j)];
     sum += mhb_friction_states(state_at(of, phase - lag(t, j)), is_constant(of), 1);
   }
   return sum;
@@ -93,12 +100,13 @@ static int friction_states_at(const mhb_transition_schedule *t, const mhb_contac
 static void choose_start(mhb_transition_schedule *t, const mhb_contact_info *info) {
   int least = -1;
   t->start  = 0;
-  for (int a = 0; a < t->pairs; a++) {
+  for (int a = 0; a < t->orbits; a++) {
     for (int i = 0; i < info[a].n_transitions; i++) {
-      int states = friction_states_at(t, info, info[a].transition[i].phase);
+      double at     = fraction(info[a].transition[i].phase + lag(t, a));
+      int    states = friction_states_at(t, info, at);
       if (least >= 0 && states >= least) continue;
       least    = states;
-      t->start = info[a].transition[i].phase;
+      t->start = at;
     }
   }
 }
@@ -121,7 +129,7 @@ static void sort_events(mhb_transition_schedule *t) {
 static int list_events(mhb_transition_schedule *t, const mhb_contact_info *info) {
   t->n_events = 0;
   for (int j = 0; j < t->blades * t->pairs; j++) {
-    const mhb_contact_info *of = &info[j % t->pairs];
+    const mhb_contact_info *of = &info[mhb_transition_schedule_orbit(t, j)];
     for (int i = 0; i < of->n_transitions; i++) {
       double at = fraction(of->transition[i].phase + lag(t, j) - t->start);
       if (at <= CLOSE) at += 1;
@@ -140,11 +148,11 @@ int mhb_transition_schedule_usable(const mhb_contact_info *info) {
 }
 
 int mhb_transition_schedule_set(mhb_transition_schedule *t, const mhb_contact_info *info) {
-  for (int a = 0; a < t->pairs; a++)
+  for (int a = 0; a < t->orbits; a++)
     if (!mhb_transition_schedule_usable(&info[a])) return 0;
   choose_start(t, info);
   for (int j = 0; j < t->blades * t->pairs; j++) {
-    const mhb_contact_info *of = &info[j % t->pairs];
+    const mhb_contact_info *of = &info[mhb_transition_schedule_orbit(t, j)];
     t->state[j]                = state_at(of, t->start - lag(t, j));
     t->constant_state[j]       = is_constant(of);
   }

@@ -3,7 +3,10 @@
  * Phases are t/T, T the period of the motion. In a travelling wave blade b at phase s is where
  * blade 0 is at s - b E/N. Let g = gcd(E, N) and k E = g (mod N). Then blade b at s + g/N is where
  * blade b - k was at s. So one segment, g/N of a period, is integrated. After it blade b becomes
- * blade b - k. A blade on the ground: E = 0, N = 1. */
+ * blade b - k. A blade on the ground: E = 0, N = 1.
+ *
+ * In a mistuned ring no blade is like another. Every contact has its own transitions, in the time
+ * of its own blade, and one segment is the whole period. */
 #ifndef MHB_FLOQUET_TRANSITION_SCHEDULE_H
 #define MHB_FLOQUET_TRANSITION_SCHEDULE_H
 
@@ -19,7 +22,9 @@ typedef struct {
 
 typedef struct {
   int        blades, pairs, wave;     /* N, pairs, E of the fundamental */
+  int        orbits;                  /* contacts with transitions of their own: pairs; all */
   int        n_segments, blade_shift; /* N/g of a period; k */
+  int        cell;                    /* blades of a cell of equal disturbances: N/g; N */
   double     start, span;             /* phase; 1/n_segments */
   int        n_events, capacity;
   mhb_event *event;          /* by time */
@@ -28,8 +33,8 @@ typedef struct {
   shb_arena  arena;
 } mhb_transition_schedule;
 
-/* SHB_ERR_IO: no memory. */
-shb_status mhb_transition_schedule_create(int blades, int pairs, int wave,
+/* mistuned: every blade moves in its own way. SHB_ERR_IO: no memory. */
+shb_status mhb_transition_schedule_create(int blades, int pairs, int wave, bool mistuned,
                                           mhb_transition_schedule *schedule);
 void       mhb_transition_schedule_destroy(mhb_transition_schedule *schedule);
 
@@ -37,9 +42,15 @@ void       mhb_transition_schedule_destroy(mhb_transition_schedule *schedule);
  * transitions are recorded. */
 int mhb_transition_schedule_usable(const mhb_contact_info *info);
 
-/* Set from the transitions of the pairs, info[pair]. The start is right after the event that leaves
- * the fewest friction states. Returns 0 if there are too many events or a pair is not usable. */
+/* Set from the transitions of the contacts, info[orbit]. The start is right after the event that
+ * leaves the fewest friction states. Returns 0 if there are too many events or one is unusable. */
 int mhb_transition_schedule_set(mhb_transition_schedule *schedule, const mhb_contact_info *info);
+
+/* Whose transitions and laws contact j has. */
+static inline int mhb_transition_schedule_orbit(const mhb_transition_schedule *schedule,
+                                                int                            contact) {
+  return contact % schedule->orbits;
+}
 
 /* Phase of contact j's own blade at a phase after the start, in [0, 1). */
 double mhb_transition_schedule_phase(const mhb_transition_schedule *schedule, int contact,

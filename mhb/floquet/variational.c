@@ -9,6 +9,17 @@ static int unknowns(const mhb_modal_structure *s) {
   return 3 * s->contacts;
 }
 
+/* Different ones. */
+static int oscillators(const mhb_modal_structure *s) {
+  return s->modes * (s->mistuned ? s->blades : 1);
+}
+
+/* [mode][PROPAGATOR] of a blade. */
+static const double *propagator_of(const mhb_variational *v, int blade) {
+  const mhb_modal_structure *s = v->structure;
+  return v->propagator + (s->mistuned ? (size_t)(blade * s->modes) * PROPAGATOR : 0);
+}
+
 static int modal_rows(const mhb_modal_structure *s) {
   return s->blades * s->modes;
 }
@@ -29,7 +40,7 @@ shb_status mhb_variational_create(const mhb_modal_structure *s, int capacity,
   v->work       = shb_arena_take(&v->arena, 3 * n, sizeof(mhb_columns));
   v->linearised = shb_arena_take(&v->arena, contacts, sizeof *v->linearised);
   if (!s->disc)
-    v->propagator = shb_arena_take(&v->arena, (size_t)s->modes * PROPAGATOR, sizeof(double));
+    v->propagator = shb_arena_take(&v->arena, (size_t)oscillators(s) * PROPAGATOR, sizeof(double));
   v->compliance = shb_arena_take(&v->arena, n * n, sizeof(double));
   v->neighbour  = shb_arena_take(&v->arena, (size_t)groups, sizeof *v->neighbour);
   v->du         = shb_arena_take(&v->arena, n, sizeof(double));
@@ -87,7 +98,7 @@ static void set_compliance(mhb_variational *v) {
                 (size_t)(3 * mhb_modal_structure_contact(s, blade, to)) * (size_t)n +
                 3 * mhb_modal_structure_contact(s, blade, by);
     for (int i = 0; i < s->modes; i++) {
-      double answer = v->propagator[i * PROPAGATOR + DQ_P];
+      double answer = propagator_of(v, blade)[i * PROPAGATOR + DQ_P];
       for (int r = 0; r < n3; r++)
         for (int c = 0; c < n3; c++)
           C[(size_t)r * (size_t)n + (size_t)c] += phi[i * n3 + r] * answer * psi[i * n3 + c];
@@ -101,13 +112,13 @@ MHB_HOT static void apply_force(const mhb_variational *v, mhb_columns *Y, const 
   int                        n3 = 3 * s->pairs, m = s->modes;
   for (int k = 0; k < s->blades * s->sides; k++) {
     int                b = k / s->sides, side = k % s->sides;
-    const double      *shape = s->shape + side * m * n3;
-    const mhb_columns *p     = P + 3 * mhb_modal_structure_contact(s, b, side);
+    const double      *shape = s->shape + side * m * n3, *e = propagator_of(v, b);
+    const mhb_columns *p = P + 3 * mhb_modal_structure_contact(s, b, side);
     for (int i = 0; i < m; i++) {
       mhb_columns force = {0};
       for (int r = 0; r < n3; r++) force += shape[i * n3 + r] * p[r];
-      Y[b * m + i] -= v->propagator[i * PROPAGATOR + DQ_P] * force;
-      Y[(s->blades + b) * m + i] -= v->propagator[i * PROPAGATOR + V_P] * force;
+      Y[b * m + i] -= e[i * PROPAGATOR + DQ_P] * force;
+      Y[(s->blades + b) * m + i] -= e[i * PROPAGATOR + V_P] * force;
     }
   }
 }
@@ -143,8 +154,8 @@ void mhb_variational_set_step(mhb_variational *v, double h) {
     mhb_disc_propagation_set_step(v->disc, h, v->compliance);
     return;
   }
-  for (int i = 0; i < s->modes; i++)
-    propagator_set(s->omega[i], s->zeta[i], h, v->propagator + i * PROPAGATOR);
+  for (int i = 0; i < oscillators(s); i++)
+    propagator_set(s->omega[i], s->zeta[i % s->modes], h, v->propagator + i * PROPAGATOR);
   set_compliance(v);
 }
 
@@ -241,7 +252,7 @@ MHB_INLINE void step_block(const mhb_variational *v, ring_size size, mhb_columns
   for (int b = 0; b < blades && !v->disc; b++) { /* W, the modes propagating freely */
     int right = 3 * mhb_modal_structure_contact(s, b, 0);
     int left  = 3 * mhb_modal_structure_contact(s, b, sides - 1);
-    advance_blade(sides, n3, m, v->propagator,
+    advance_blade(sides, n3, m, propagator_of(v, b),
                   (const double *const[2]){s->shape, s->shape + (sides - 1) * m * n3},
                   (mhb_columns *const[2]){Y + b * m, Y + (blades + b) * m},
                   (const mhb_columns *const[2]){P + right, P + left},

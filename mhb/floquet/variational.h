@@ -49,10 +49,10 @@ typedef struct {
   mhb_columns               *work;       /* [3][n] */
   mhb_linearised_law        *linearised; /* [contact] of the coming sub-step */
   double                     h;          /* s, of the propagator; negative: none */
-  double                    *propagator; /* [mode][PROPAGATOR]; NULL on a disc */
-  mhb_disc_propagation      *disc;       /* in its place on a disc, else NULL */
-  double                    *compliance; /* [n][n] C, n = 3 contacts */
-  int (*neighbour)[3];                   /* [group] groups that are coupled with it, itself too */
+  double *propagator; /* [mode][PROPAGATOR], mistuned: [blade][mode][PROPAGATOR]; NULL on a disc */
+  mhb_disc_propagation *disc;       /* in its place on a disc, else NULL */
+  double               *compliance; /* [n][n] C, n = 3 contacts */
+  int (*neighbour)[3];              /* [group] groups that are coupled with it, itself too */
   int           n_neighbours;
   mhb_ring_band band;        /* I + C mean_du/2 + R df_du, factored */
   double       *du, *dsigma; /* [n], [2 contacts] of a jump */

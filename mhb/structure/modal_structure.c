@@ -3,6 +3,7 @@
 #include <string.h>
 
 #include "mesh/base/constants.h"
+#include "mhb/structure/ring_receptance.h"
 #include "modal/model/nodal_diameters.h"
 
 /* Wave number E' = (E + N l)/nu of the fundamental. */
@@ -66,11 +67,30 @@ static void spread(mhb_modal_structure *s, const double *block, int step) {
   }
 }
 
+/* R of a mistuned ring: the own R of every blade between the contacts on both sides. A blade is one
+ * to ground whose pairs are those of the right and then of the left side (blade_model.h). */
+static void spread_blades(const mhb_ring_receptance *ring, mhb_modal_structure *s) {
+  const int    n3 = ring->n;
+  const size_t n  = 3 * (size_t)s->contacts;
+  for (int k = 0; k < 4 * s->blades; k++) {
+    const int blade = k / 4, to = k / 2 % 2, by = k % 2;
+    double   *block = s->flexibility + (size_t)(3 * mhb_modal_structure_contact(s, blade, to)) * n +
+                    3 * mhb_modal_structure_contact(s, blade, by);
+    for (int i = 0; i < n3 * n3; i++)
+      block[(size_t)(i / n3) * n + (size_t)(i % n3)] +=
+          flexibility(ring->blade[blade], 0, to * n3 + i / n3, 0, by * n3 + i % n3, s->modes);
+  }
+}
+
 static void set_flexibility(const mhb_receptance *r, mhb_modal_structure *s) {
   const size_t n = 3 * (size_t)s->contacts, square = (size_t)r->n * (size_t)r->n;
   if (s->block) set_blocks(r, s);
   if (!s->flexibility) return;
   memset(s->flexibility, 0, n * n * sizeof *s->flexibility);
+  if (s->mistuned) {
+    spread_blades(r->ring, s);
+    return;
+  }
   if (s->disc) {
     mhb_disc_modes_add_map(s->disc, s->disc->flexibility, s->flexibility);
     return;
@@ -81,29 +101,36 @@ static void set_flexibility(const mhb_receptance *r, mhb_modal_structure *s) {
   spread(s, s->block + PREVIOUS * square, s->blades - 1);
 }
 
+/* The receptance of a blade; of equal blades their own. */
+static const mhb_receptance *blade_of(const mhb_receptance *r, int blade) {
+  return r->ring ? r->ring->blade[blade] : r;
+}
+
 static void take_arrays(const mhb_receptance *r, bool whole, mhb_modal_structure *s) {
-  const size_t n = 3 * (size_t)s->contacts, m = (size_t)s->modes, side = m * (size_t)r->n;
-  const bool   flexible = r->model->residual_flexibility || s->modes < r->n_modes;
+  const mhb_receptance *blade = blade_of(r, 0);
+  const size_t n = 3 * (size_t)s->contacts, m = (size_t)s->modes, side = m * 3 * (size_t)s->pairs;
+  const bool   flexible = blade->model->residual_flexibility || s->modes < blade->n_modes;
   if (!s->disc) {
-    s->omega = shb_arena_take(&s->arena, m, sizeof(double));
+    s->omega = shb_arena_take(&s->arena, m * (s->mistuned ? (size_t)s->blades : 1), sizeof(double));
     s->zeta  = shb_arena_take(&s->arena, m, sizeof(double));
     s->shape = shb_arena_take(&s->arena, (size_t)s->sides * side, sizeof(double));
   }
-  if (flexible && !s->disc)
+  if (flexible && !s->disc && !s->mistuned)
     s->block = shb_arena_take(&s->arena, BLOCKS * (size_t)r->n * (size_t)r->n, sizeof(double));
   if (flexible && whole) s->flexibility = shb_arena_take(&s->arena, n * n, sizeof(double));
 }
 
 shb_status mhb_modal_structure_create(const mhb_receptance *r, const mhb_settings *settings,
                                       int modes, bool whole, mhb_modal_structure *s) {
-  const modal_model           *model = r->model;
-  const modal_nodal_diameters *of    = settings->nodal_diameters;
+  const modal_nodal_diameters *of        = settings->nodal_diameters;
+  const int                    own_modes = blade_of(r, 0)->n_modes;
   const int ground = settings->to_ground, blades = of ? of->blades : ground ? 1 : settings->blades;
-  *s          = (mhb_modal_structure){.blades = blades,
-                                      .sides  = ground ? 1 : 2,
-                                      .modes  = modes < r->n_modes ? modes : r->n_modes,
-                                      .pairs  = model->n_pairs,
-                                      .wave   = ground && !of ? 0 : wave_of(settings, blades)};
+  *s          = (mhb_modal_structure){.blades   = blades,
+                                      .sides    = ground ? 1 : 2,
+                                      .modes    = modes < own_modes ? modes : own_modes,
+                                      .pairs    = r->ring ? r->ring->n / 3 : r->model->n_pairs,
+                                      .wave     = ground && !of ? 0 : wave_of(settings, blades),
+                                      .mistuned = r->ring != NULL};
   s->contacts = s->blades * s->pairs;
   if (of) SHB_TRY(mhb_disc_modes_create(r, settings, s->modes, &s->disc));
   take_arrays(r, whole, s);
@@ -116,13 +143,17 @@ shb_status mhb_modal_structure_create(const mhb_receptance *r, const mhb_setting
 }
 
 void mhb_modal_structure_set(const mhb_receptance *r, mhb_modal_structure *s) {
-  const size_t side = (size_t)s->modes * (size_t)r->n;
-  for (int i = 0; i < s->modes && !s->disc; i++) {
-    s->omega[i] = SHB_TWO_PI * r->model->frequency[i];
-    s->zeta[i]  = r->model->damping_ratio[i];
+  const int n3 = 3 * s->pairs, side = s->modes * n3;
+  for (int k = 0; k < s->modes * (s->mistuned ? s->blades : 1) && !s->disc; k++) {
+    const modal_model *blade = blade_of(r, k / s->modes)->model;
+    s->omega[k]              = SHB_TWO_PI * blade->frequency[k % s->modes];
+    s->zeta[k % s->modes]    = blade->damping_ratio[k % s->modes];
   }
-  for (size_t k = 0; k < (size_t)s->sides * side && !s->disc; k++)
-    s->shape[k] = shape_of(r, k >= side, (int)(k % (size_t)r->n), (int)(k % side) / r->n);
+  for (int k = 0; k < s->sides * side && !s->disc; k++) {
+    const int to = k / side, row = k % n3, mode = k % side / n3;
+    s->shape[k] =
+        s->mistuned ? shape_of(blade_of(r, 0), 0, to * n3 + row, mode) : shape_of(r, to, row, mode);
+  }
   set_flexibility(r, s);
 }
 

@@ -4,6 +4,7 @@
  * blade and the left side of the next one. To ground (sides = 1) there is one blade. Motion du = B
  * dq - R dp, force on the modes -B^T dp.
  *
+ * Of a mistuned ring (settings->ring) all blades have the same shapes and damping ratios.
  * With settings->nodal_diameters the blades are also coupled by their disc (disc_modes.h); then the
  * modes are those of the nodal diameters. */
 #ifndef MHB_STRUCTURE_MODAL_STRUCTURE_H
@@ -17,10 +18,11 @@
 typedef struct {
   int     blades, sides, modes, pairs, contacts;
   int     wave;         /* E of the fundamental: the next blade lags by 2 pi E/N */
-  double *omega, *zeta; /* [modes] rad/s, - */
+  bool    mistuned;     /* every blade its own frequencies and flexibility */
+  double *omega, *zeta; /* [modes] rad/s, -; mistuned: omega[blade][modes] */
   double *shape;        /* [side][mode][3 pairs] (v, u, w) by the mode, kg^-1/2; left: negative */
   /* [self, next, previous][3 pairs][3 pairs] R of a blade's contacts by forces on its own and on
-   * the neighbours', m/N. NULL: none, or a disc. */
+   * the neighbours', m/N. NULL: none, a disc, or mistuned. */
   double *block;
   double *flexibility; /* [3 contacts][3 contacts] R of all; NULL: none, or not asked for */
   /* NULL: blades that their contacts alone couple. Else omega, zeta and shape are NULL. */
@@ -39,6 +41,11 @@ shb_status mhb_modal_structure_create(const mhb_receptance *receptance,
 /* Anew for the same modes, after the receptance went to another speed of a run-up. */
 void mhb_modal_structure_set(const mhb_receptance *receptance, mhb_modal_structure *structure);
 void mhb_modal_structure_destroy(mhb_modal_structure *structure);
+
+/* [modes] rad/s of a blade; not of a disc. */
+static inline const double *mhb_modal_structure_omega(const mhb_modal_structure *s, int blade) {
+  return s->omega + (s->mistuned ? blade * s->modes : 0);
+}
 
 /* Groups of contacts that are coupled with the neighbouring groups only: the blades; on a disc all
  * contacts are one group. */

@@ -95,6 +95,9 @@ if(SHROUDHB_PYTHON)
     COMMAND ${SHROUDHB_PYTHON} -B ${CMAKE_CURRENT_SOURCE_DIR}/cases/study/test_samples.py
             $<TARGET_FILE_DIR:shroudhb-study> ${PROJECT_SOURCE_DIR}/cases/bring_your_own)
   set_tests_properties(cases.study.samples PROPERTIES SKIP_RETURN_CODE 77)
+  add_test(NAME cases.study.ring_samples
+    COMMAND ${SHROUDHB_PYTHON} -B ${CMAKE_CURRENT_SOURCE_DIR}/cases/study/test_ring_samples.py
+            $<TARGET_FILE_DIR:shroudhb-study> ${PROJECT_SOURCE_DIR}/cases/mistuned_ring)
   add_test(NAME cases.study.eval
     COMMAND ${SHROUDHB_PYTHON} -B ${CMAKE_CURRENT_SOURCE_DIR}/cases/study/test_eval.py
             $<TARGET_FILE_DIR:shroudhb-study> ${PROJECT_SOURCE_DIR}/cases/bring_your_own)

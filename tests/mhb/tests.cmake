@@ -41,8 +41,8 @@ target_sources(test_mhb_balance_condensation PRIVATE bench/shroud_face.c)
 target_sources(test_mhb_balance_spatial_error PRIVATE bench/shroud_face.c)
 target_sources(test_mhb_balance_stuck_solver PRIVATE bench/shroud_face.c)
 shb_counts_allocations(test_mhb_balance_condensation)
-foreach(noun multipliers floquet disc_stability friction_limit hill linearised_law ring_band bloch
-        hessenberg_qr curve_verdicts)
+foreach(noun multipliers floquet disc_stability mistuned_stability friction_limit hill
+        linearised_law ring_band bloch hessenberg_qr curve_verdicts)
   shb_test(mhb/floquet ${noun} tests_models)
 endforeach()
 shb_counts_allocations(test_mhb_floquet_floquet)

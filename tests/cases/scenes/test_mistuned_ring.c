@@ -55,7 +55,13 @@ static void numbers_are_those_of_the_readme(void **state) {
     assert_near(1e3 * a->tuned, TABLE[i].tuned, 2e-3);
     assert_near(a->worst_at, TABLE[i].at, 0.02);
     assert_int_equal(a->blade, TABLE[i].blade);
-    for (int p = 0; p < b->n_points; p++) assert_int_equal(b->stable[p], -1); /* not judged */
+    int judged = 0;
+    for (int p = 0; p < b->n_points; p++) {
+      assert_true(b->stable[p] != 0);
+      judged += b->stable[p] == 1;
+    }
+    assert_true(judged > 0.8 * b->n_points);
+    if (TABLE[i].n0 > 20) assert_int_equal(judged, b->n_points);
   }
 }
 
