@@ -117,6 +117,7 @@ shb_status mhb_modal_structure_create(const mhb_receptance *r, const mhb_setting
 
 void mhb_modal_structure_set(const mhb_receptance *r, mhb_modal_structure *s) {
   const size_t side = (size_t)s->modes * (size_t)r->n;
+  if (s->disc) mhb_disc_modes_set(r, s->disc);
   for (int i = 0; i < s->modes && !s->disc; i++) {
     s->omega[i] = SHB_TWO_PI * r->model->frequency[i];
     s->zeta[i]  = r->model->damping_ratio[i];

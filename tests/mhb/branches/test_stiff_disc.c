@@ -85,7 +85,7 @@ static void on_disc(const mesh_fe *sector, double stiffer, double first, peaks *
   settings.n_regions = 2;
   settings.region    = region;
   assert_ok(modal_solve(PETSC_COMM_SELF, &mesh, &settings, NULL, &result));
-  assert_ok(modal_sector_solve(&mesh, &settings, NULL, &result, &all));
+  assert_ok(modal_sector_solve(&mesh, &settings, NULL, &result, NULL, &all));
   s.nodal_diameters = &all.models;
   sweep(&all.models.model[0], &s, out);
   modal_sector_free(&all, &result);
