@@ -197,6 +197,59 @@ static void between_speeds_it_is_as_near_as_a_blade(void **state) {
   destroy(&disc);
 }
 
+/* ---- stability ---- */
+
+static mhb_response *along_scale(const run_up *r, const mhb_settings *settings) {
+  mhb_settings  s = *settings;
+  mhb_response *response;
+  s.frequency[0] = s.frequency[1] = 1720;
+  s.parameter                     = MHB_IN_SCALE;
+  s.range[0]                      = 0.5;
+  s.range[1]                      = 2;
+  s.stability                     = MHB_STABILITY_ALWAYS;
+  assert_ok(mhb_forced_response(model_of(r), &s, NULL, NULL, NULL, &response));
+  return response;
+}
+
+/* The main curve: the last one with friction. */
+static const mhb_branch *main_curve(const mhb_response *r) {
+  const mhb_branch *found = NULL;
+  for (int i = 0; i < r->n_branches; i++)
+    if (r->branch[i].kind != MHB_BRANCH_OPEN && r->branch[i].kind != MHB_BRANCH_STUCK)
+      found = &r->branch[i];
+  assert_non_null(found);
+  return found;
+}
+
+/* Multipliers are those of the structure frozen at the point's speed, with all its nodal
+ * diameters. */
+static void multipliers_are_those_of_the_speed(void **state) {
+  const modal_settings settings = stage_case();
+  run_up               r        = on_disc(*state, &settings);
+  mhb_settings         frozen   = r.settings;
+  double               worst    = 0;
+  frozen.run_up                 = NULL;
+  frozen.disc_run_up            = NULL;
+  mhb_disc_speeds_set(r.top, SHB_TWO_PI * 1720);
+  mhb_disc_speeds_set_all(r.top);
+  mhb_response     *a = along_scale(&r, &r.settings), *b = along_scale(&r, &frozen);
+  const mhb_branch *p = main_curve(a), *q = main_curve(b);
+  assert_true(a->n_multipliers > 0);
+  for (int i = 0; i < 2 * a->n_multipliers; i++) {
+    const int      m = i % a->n_multipliers, last = i / a->n_multipliers;
+    const size_t   at = (size_t)(last * (p->n_points - 1) * a->n_multipliers + m);
+    const size_t   by = (size_t)(last * (q->n_points - 1) * a->n_multipliers + m);
+    const double   x = cabs(p->multipliers[at]), y = cabs(q->multipliers[by]);
+    assert_true(y > 0.5 && y < 1);
+    worst = fmax(worst, fabs(x - y));
+  }
+  print_message("%d multipliers at both ends of the scale off by %.1e\n", a->n_multipliers, worst);
+  assert_below(worst, 1e-7);
+  mhb_response_destroy(a);
+  mhb_response_destroy(b);
+  destroy(&r);
+}
+
 /* ---- a stiff disc ---- */
 
 /* Height and place of the highest peak with friction. */
@@ -267,6 +320,7 @@ static int tear_down(void **state) {
 
 int main(int argc, char **argv) {
   const struct CMUnitTest tests[] = {cmocka_unit_test(between_speeds_it_is_as_near_as_a_blade),
+                                     cmocka_unit_test(multipliers_are_those_of_the_speed),
                                      cmocka_unit_test(a_stiff_disc_is_a_clamp)};
   modal_session           session;
   if (modal_session_start(&argc, &argv, &session) != SHB_OK) return 1;
