@@ -37,7 +37,7 @@ static shb_status read_disc_speeds(const char *path, int modes, bool residuals, 
   for (int i = 0; i < all.n && modes > 0; i++)
     for (int s = 0; s < all.at[i].n && status == SHB_OK; s++) {
       modal_speeds *at = &all.at[i];
-      status = modal_wave_reduce(&at->model[s], at->imaginary ? &at->imaginary[s] : NULL,
+      status           = modal_wave_reduce(&at->model[s], at->imaginary ? &at->imaginary[s] : NULL,
                                  at->backward ? &at->backward[s] : NULL, modes, residuals);
     }
   if (status == SHB_OK && all.n > 0)

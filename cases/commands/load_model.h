@@ -22,8 +22,8 @@ typedef struct {
   mhb_speed_model       *top;    /* owner of the model in a run-up */
   mhb_disc_table        *disc_run_up; /* run-up of a disc, owner of run_up */
   mhb_disc_speeds       *disc_top;    /* owner of disc and top there */
-  modal_contact_face     face;   /* for maps; without nodes: none */
-  contact_points        *points; /* the model's finer or coarser one; NULL: none */
+  modal_contact_face     face;        /* for maps; without nodes: none */
+  contact_points        *points;      /* the model's finer or coarser one; NULL: none */
 } case_model;
 
 /* Read the modal file at path, with all speeds in a run-up.

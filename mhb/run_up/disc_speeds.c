@@ -106,8 +106,7 @@ void mhb_disc_speeds_differentiate(mhb_disc_speeds *s) {
 }
 
 mhb_speed_model *mhb_disc_speeds_use(mhb_disc_speeds *s, long wave) {
-  const int i =
-      modal_nodal_diameters_find(&s->now, modal_nodal_diameter(wave, s->table->blades));
+  const int i = modal_nodal_diameters_find(&s->now, modal_nodal_diameter(wave, s->table->blades));
   if (i < 0) return NULL;
   if (!s->used[i] && s->at[0]->omega == s->at[0]->omega)
     mhb_speed_model_set(s->at[i], s->at[0]->omega);

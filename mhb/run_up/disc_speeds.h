@@ -24,8 +24,8 @@ shb_status mhb_disc_table_check(const mhb_disc_table *table, const char *path);
 /* The models at one speed; one a thread. */
 typedef struct {
   const mhb_disc_table *table;
-  mhb_speed_model     **at;   /* [n] */
-  bool                 *used; /* [n] set by mhb_disc_speeds_set; that of 0 always */
+  mhb_speed_model     **at;         /* [n] */
+  bool                 *used;       /* [n] set by mhb_disc_speeds_set; that of 0 always */
   modal_nodal_diameters now, slope; /* models of at, and their derivatives; not to be freed */
 } mhb_disc_speeds;
 

@@ -157,7 +157,7 @@ static void rotate(const mhb_speed_model *a, const double *coefficients, double 
 }
 
 void mhb_speed_model_set(mhb_speed_model *a, double omega) {
-  const mhb_speed_table *r = a->table;
+  const mhb_speed_table *r     = a->table;
   const int              width = r->width, m = r->n_modes;
   if (a->omega == omega) return;
   const double speed  = mhb_speed_table_speed(r, omega);
@@ -193,13 +193,13 @@ static void differentiate_damping(mhb_speed_model *a, const double *Z, const dou
     const double w = SHB_TWO_PI * a->model.frequency[i];
     double       d = creal(mhb_unitary_at(width, dZ, i * (m + 1)));
     for (int j = 0; j < m; j++) {
-      const double v = SHB_TWO_PI * a->model.frequency[j], apart = w * w - v * v;
-      const bool   same     = i == j || fabs(apart) <= SAME * w * w;
-      const double steep    = same ? 0 : 2 * (zeta[i] - zeta[j]) * w / apart;
-      const double part     = steep + 2 * zeta[j] / (w + v);
-      const double complex dK = mhb_speed_model_stiffness(a, i, j);
-      double              *to = a->damping + width * (i * m + j);
-      to[0]                   = creal(dK) * part;
+      const double         v = SHB_TWO_PI * a->model.frequency[j], apart = w * w - v * v;
+      const bool           same  = i == j || fabs(apart) <= SAME * w * w;
+      const double         steep = same ? 0 : 2 * (zeta[i] - zeta[j]) * w / apart;
+      const double         part  = steep + 2 * zeta[j] / (w + v);
+      const double complex dK    = mhb_speed_model_stiffness(a, i, j);
+      double              *to    = a->damping + width * (i * m + j);
+      to[0]                      = creal(dK) * part;
       if (width == 2) to[1] = cimag(dK) * part;
       if (!same) d += 2 * creal(mhb_unitary_at(width, Z, j * m + i) * conj(dK)) / apart;
     }

@@ -22,17 +22,17 @@ typedef struct {
   modal_model            model;            /* its arrays are this object's, or the table's */
   modal_model            slope; /* d/d omega of Q U, U^H Q^H f and the residual terms at fixed U */
   /* Of a travelling wave, as in modal/model/nodal_diameters.h; else zero. */
-  modal_model            imaginary, backward, slope_imaginary, slope_backward;
-  double                *stiffness;      /* [m][m] dK, by columns; width doubles each */
-  double                *damping;        /* [m][m] dN, by rows */
-  double                *coefficients;   /* [size] an entry of the table, interpolated */
-  double                *d_coefficients; /* its derivative */
-  double                *rotated_shapes; /* [rows][m] the entry's rows times U */
-  double                *d_rotated_shapes;
-  double                *U;                 /* [mode][m] eigenvectors of K, width doubles each */
-  double                *weight, *d_weight; /* [speeds] of the spline */
-  double                *work;
-  shb_arena              arena;
+  modal_model imaginary, backward, slope_imaginary, slope_backward;
+  double     *stiffness;      /* [m][m] dK, by columns; width doubles each */
+  double     *damping;        /* [m][m] dN, by rows */
+  double     *coefficients;   /* [size] an entry of the table, interpolated */
+  double     *d_coefficients; /* its derivative */
+  double     *rotated_shapes; /* [rows][m] the entry's rows times U */
+  double     *d_rotated_shapes;
+  double     *U;                 /* [mode][m] eigenvectors of K, width doubles each */
+  double     *weight, *d_weight; /* [speeds] of the spline */
+  double     *work;
+  shb_arena   arena;
 } mhb_speed_model;
 
 /* At no frequency yet. The table must outlive it. SHB_ERR_IO: no memory. */

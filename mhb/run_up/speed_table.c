@@ -146,8 +146,7 @@ static void fill_entry(const mhb_speed_table *r, const mhb_speed_parts *p, const
   mhb_unitary_diagonal(r->width, m, V, model->damping_ratio, out + r->width * m * m);
   double *at = out + 2 * r->width * m * m;
   at         = rotate_rows(r, V, model->right, im ? im->right : NULL, side, row, at);
-  if (model->has_left)
-    at = rotate_rows(r, V, model->left, im ? im->left : NULL, side, row, at);
+  if (model->has_left) at = rotate_rows(r, V, model->left, im ? im->left : NULL, side, row, at);
   at = rotate_rows(r, V, model->probe, im ? im->probe : NULL, probes, row, at);
   rotate_load(r, p, V, row, at);
   unrotated(p, data, count);
@@ -282,14 +281,13 @@ static shb_status fill(mhb_speed_table *r, int from, double *work) {
   r->entries             = calloc((size_t)r->n * r->size, sizeof *r->entries);
   shb_status status      = SHB_OK;
   if (!square || !V || !row || !r->first_entry || !r->entries)
-    status = shb_fail(SHB_ERR_IO, __FILE__, __LINE__, "out of memory for the models of %d speeds",
-                      r->n);
+    status =
+        shb_fail(SHB_ERR_IO, __FILE__, __LINE__, "out of memory for the models of %d speeds", r->n);
   for (int i = 0; status == SHB_OK && i < r->n; i++) {
     const mhb_speed_parts parts = parts_of(&r->speeds, from + i);
     square[i]                   = pow(r->speeds.speed[from + i], 2);
     basis(r, from + i, work, V);
-    fill_entry(r, &parts, V, r->entries + (size_t)i * r->size, row,
-               V + (size_t)r->width * m * m);
+    fill_entry(r, &parts, V, r->entries + (size_t)i * r->size, row, V + (size_t)r->width * m * m);
   }
   if (status == SHB_OK) {
     memcpy(r->first_entry, r->entries, r->size * sizeof *r->first_entry);
@@ -387,8 +385,8 @@ shb_status mhb_speed_tables_create(int n, modal_speeds *speeds, const char *path
     out[i]      = begin(&speeds[i], engine_order, frequency);
     begun       = out[i];
   }
-  shb_status status = begun ? make_all(n, out, &f)
-                            : shb_fail(SHB_ERR_IO, __FILE__, __LINE__, "out of memory");
+  shb_status status =
+      begun ? make_all(n, out, &f) : shb_fail(SHB_ERR_IO, __FILE__, __LINE__, "out of memory");
   free(borrowed);
   for (int i = 0; i < n && status != SHB_OK; i++) {
     mhb_speed_table_destroy(out[i]);

@@ -34,20 +34,20 @@ typedef struct {
 /* An entry: K [m][m], Z [m][m], rows [rows][m], of width doubles each (unitary.h); unrotated
  * arrays. Threads may share a table. */
 typedef struct mhb_speed_table {
-  int             width;                    /* 1: real; 2: complex */
-  int             n, n_modes, engine_order; /* n: speeds used */
-  int             n_dropped;                /* modes of the file that answer statically */
-  double          low, high;                /* rad/s, speeds covered */
-  double          band[2];                  /* rad/s of the excitation, asked for */
-  int             rows;        /* right, left, probe, then load: re, im or forward, backward */
-  size_t          size;        /* of an entry, doubles */
-  modal_speeds    speeds;      /* its models, in part */
-  const modal_model *common;   /* one of them, for all that is the same at every speed */
-  modal_spline    spline;      /* over Omega^2 */
-  double         *first_entry; /* [size] */
-  double         *entries;     /* [n][size] less the first entry */
-  size_t          unrotated[MHB_SPEED_TABLE_ALL]; /* offset in an entry */
-  size_t          count[MHB_SPEED_TABLE_ALL];     /* doubles; 0: the model has none */
+  int                width;                    /* 1: real; 2: complex */
+  int                n, n_modes, engine_order; /* n: speeds used */
+  int                n_dropped;                /* modes of the file that answer statically */
+  double             low, high;                /* rad/s, speeds covered */
+  double             band[2];                  /* rad/s of the excitation, asked for */
+  int                rows;        /* right, left, probe, then load: re, im or forward, backward */
+  size_t             size;        /* of an entry, doubles */
+  modal_speeds       speeds;      /* its models, in part */
+  const modal_model *common;      /* one of them, for all that is the same at every speed */
+  modal_spline       spline;      /* over Omega^2 */
+  double            *first_entry; /* [size] */
+  double            *entries;     /* [n][size] less the first entry */
+  size_t             unrotated[MHB_SPEED_TABLE_ALL]; /* offset in an entry */
+  size_t             count[MHB_SPEED_TABLE_ALL];     /* doubles; 0: the model has none */
 } mhb_speed_table;
 
 /* speeds  in   taken over, and empty afterwards

@@ -21,8 +21,7 @@ size_t mhb_unitary_align_work(int width, int m) {
 }
 
 static int singular_values(int width, int m, double *X, double *sigma, double *A, double *B) {
-  if (width == 1)
-    return LAPACKE_dgesdd(LAPACK_ROW_MAJOR, 'A', m, m, X, m, sigma, A, m, B, m);
+  if (width == 1) return LAPACKE_dgesdd(LAPACK_ROW_MAJOR, 'A', m, m, X, m, sigma, A, m, B, m);
   return LAPACKE_zgesdd(LAPACK_ROW_MAJOR, 'A', m, m, (lapack_complex_double *)X, m, sigma,
                         (lapack_complex_double *)A, m, (lapack_complex_double *)B, m);
 }
@@ -74,8 +73,7 @@ void mhb_unitary_congruent(int width, int m, const double *U, const double *X, d
     cblas_dgemm(CblasColMajor, CblasTrans, CblasNoTrans, m, m, m, 1, U, m, work, m, 0, out, m);
     return;
   }
-  cblas_zgemm(CblasColMajor, CblasNoTrans, CblasNoTrans, m, m, m, &one, X, m, U, m, &zero, work,
-              m);
+  cblas_zgemm(CblasColMajor, CblasNoTrans, CblasNoTrans, m, m, m, &one, X, m, U, m, &zero, work, m);
   cblas_zgemm(CblasColMajor, CblasConjTrans, CblasNoTrans, m, m, m, &one, U, m, work, m, &zero, out,
               m);
 }
@@ -95,7 +93,7 @@ size_t mhb_unitary_modes_work(int width, int m) {
 
 /* K = R^H R, R = W Sigma V^H by Jacobi: K = V Sigma^2 V^H. 0: K is not positive definite. */
 static int by_jacobi(int width, int m, const double *K, double *work, double *square, double *U) {
-  double   *A = work, *V = A + square_of(width, m), *sigma = V + square_of(width, m),
+  double *A = work, *V = A + square_of(width, m), *sigma = V + square_of(width, m),
          *rest = sigma + m, *vectors = rest + 2 * m + 6;
   lapack_complex_double *A_z = (lapack_complex_double *)A;
   memcpy(A, K, square_of(width, m) * sizeof *A);
@@ -104,13 +102,12 @@ static int by_jacobi(int width, int m, const double *K, double *work, double *sq
     return 0;
   for (int j = 0; j < m; j++)
     for (int i = j + 1; i < m; i++) put(width, A, j * m + i, 0);
-  const int failed =
-      width == 1
-          ? LAPACKE_dgesvj_work(LAPACK_COL_MAJOR, 'U', 'N', 'V', m, m, A, m, sigma, 0, V, m, rest,
-                                2 * m + 6)
-          : LAPACKE_zgesvj_work(LAPACK_COL_MAJOR, 'U', 'N', 'V', m, m, A_z, m, sigma, 0,
-                                (lapack_complex_double *)V, m, (lapack_complex_double *)vectors,
-                                2 * m + 6, rest, 2 * m + 6);
+  const int failed = width == 1 ? LAPACKE_dgesvj_work(LAPACK_COL_MAJOR, 'U', 'N', 'V', m, m, A, m,
+                                                      sigma, 0, V, m, rest, 2 * m + 6)
+                                : LAPACKE_zgesvj_work(LAPACK_COL_MAJOR, 'U', 'N', 'V', m, m, A_z, m,
+                                                      sigma, 0, (lapack_complex_double *)V, m,
+                                                      (lapack_complex_double *)vectors, 2 * m + 6,
+                                                      rest, 2 * m + 6);
   if (failed != 0) return 0;
   for (int i = 0; i < m; i++) { /* falling */
     const int from = m - 1 - i;
@@ -131,7 +128,6 @@ static void by_reduction(int width, int m, const double *K, double *work, double
                        (lapack_complex_double *)work, m * m + 19 * m, work + 2 * m * m + 38 * m);
 }
 
-void mhb_unitary_modes(int width, int m, const double *K, double *work, double *square,
-                       double *U) {
+void mhb_unitary_modes(int width, int m, const double *K, double *work, double *square, double *U) {
   if (!by_jacobi(width, m, K, work, square, U)) by_reduction(width, m, K, work, square, U);
 }

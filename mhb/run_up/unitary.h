@@ -41,8 +41,7 @@ void mhb_unitary_rows(int width, int m, int rows, const double *U, const double 
  *   U       out  [m][m] eigenvector i in row i
  *   square  out  [m]
  *   work    mhb_unitary_modes_work doubles */
-void   mhb_unitary_modes(int width, int m, const double *K, double *work, double *square,
-                         double *U);
+void mhb_unitary_modes(int width, int m, const double *K, double *work, double *square, double *U);
 size_t mhb_unitary_modes_work(int width, int m);
 
 /* Entry i of an array, a number of width doubles. */

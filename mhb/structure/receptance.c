@@ -170,8 +170,8 @@ static shb_status make_speeds(mhb_receptance *r, const mhb_settings *s) {
   r->speeds = shb_arena_take(&r->arena, (size_t)r->n_harmonics + 1, sizeof(mhb_speed_model *));
   SHB_CHECK(r->speeds, SHB_ERR_IO, "out of memory for the receptance");
   for (int k = 0; k <= r->n_harmonics; k++) {
-    r->speeds[k] = r->disc ? mhb_disc_speeds_use(r->disc, k * wave_of(s, r->disc->table->blades))
-                           : r->at;
+    r->speeds[k] =
+        r->disc ? mhb_disc_speeds_use(r->disc, k * wave_of(s, r->disc->table->blades)) : r->at;
     SHB_CHECK(r->speeds[k], SHB_ERR_INPUT, "the modal file lacks the nodal diameter of harmonic %d",
               k);
   }
@@ -179,7 +179,7 @@ static shb_status make_speeds(mhb_receptance *r, const mhb_settings *s) {
 }
 
 static shb_status make_speed_derivative(mhb_receptance *r, const mhb_settings *settings) {
-  modal_wave *wave = NULL;
+  modal_wave *wave   = NULL;
   shb_status  status = r->disc ? find_waves(r, settings, &r->disc->slope, &wave) : SHB_OK;
   if (status == SHB_OK)
     status = mhb_speed_derivative_create(r->speeds, r->disc, wave, r->part, &r->speed_derivative);

@@ -24,7 +24,8 @@ shb_status mhb_speed_derivative_create(mhb_speed_model **model, mhb_disc_speeds 
                                    .phase           = part->phase,
                                    .wave            = wave,
                                    .nodal_diameters = disc != NULL};
-  shb_status status = mhb_modal_part_create(&model[0]->slope, part->relative, &harmonics, &d->slope);
+  shb_status          status =
+      mhb_modal_part_create(&model[0]->slope, part->relative, &harmonics, &d->slope);
   if (status != SHB_OK) {
     free(d);
     return status;
@@ -77,8 +78,8 @@ static void modal_change(const mhb_speed_derivative *d, int k, double w,
   const int m = d->part->n_modes;
   for (int i = 0; i < m; i++) a[i] = lambda[i] * mhb_modal_part_force(d->part, k, p, i, scale);
   for (int i = 0; i < m; i++) {
-    change[i] = lambda[i] * (mhb_modal_part_force(d->slope, k, p, i, scale) -
-                             stiffness_change(d, k, w, i, a));
+    change[i] = lambda[i] *
+                (mhb_modal_part_force(d->slope, k, p, i, scale) - stiffness_change(d, k, w, i, a));
   }
 }
 

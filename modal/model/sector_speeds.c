@@ -62,8 +62,7 @@ static shb_status read_one(hid_t file, const char *path, modal_sector_speeds *s,
   hid_t     group = open_group(file, n, name);
   snprintf(label, sizeof label, "%s: %s", path, name);
   SHB_CHECK(group >= 0, SHB_ERR_INPUT, "%s is missing", label);
-  shb_status status =
-      modal_speeds_read_at(group, label, n != 0 && 2 * n != s->blades, &s->at[i]);
+  shb_status status = modal_speeds_read_at(group, label, n != 0 && 2 * n != s->blades, &s->at[i]);
   H5Gclose(group);
   SHB_TRY(status);
   return check_alike(label, &s->at[0], &s->at[i]);

@@ -43,8 +43,8 @@ static shb_status write_one(hid_t at, const modal_speeds *s, int i) {
   snprintf(name, sizeof name, "speed_%d", i);
   hid_t group = H5Gcreate2(at, name, H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT);
   SHB_CHECK(group >= 0, SHB_ERR_IO, "%s cannot be written", name);
-  shb_status status = modal_model_write_complex_at(group, &s->model[i],
-                                                   s->imaginary ? &s->imaginary[i] : NULL);
+  shb_status status =
+      modal_model_write_complex_at(group, &s->model[i], s->imaginary ? &s->imaginary[i] : NULL);
   if (status == SHB_OK && s->backward)
     status = modal_model_write_backward_at(group, &s->model[i], &s->backward[i]);
   H5Gclose(group);
@@ -53,11 +53,13 @@ static shb_status write_one(hid_t at, const modal_speeds *s, int i) {
 }
 
 static shb_status write_overlap(hid_t at, const modal_speeds *s) {
-  static const char text[] = "phi^H M psi of each mode at the first speed with each mode at this "
-                             "one, as numbered there";
-  const h5_shape    all = H5_SHAPE((hsize_t)s->n, (hsize_t)s->n_modes, (hsize_t)s->n_modes);
-  const size_t      n   = h5_count(all);
-  if (!s->overlap_imaginary) return h5_write_double(at, "speeds/overlap", all, s->overlap, "-", text);
+  static const char text[] =
+      "phi^H M psi of each mode at the first speed with each mode at this "
+      "one, as numbered there";
+  const h5_shape all = H5_SHAPE((hsize_t)s->n, (hsize_t)s->n_modes, (hsize_t)s->n_modes);
+  const size_t   n   = h5_count(all);
+  if (!s->overlap_imaginary)
+    return h5_write_double(at, "speeds/overlap", all, s->overlap, "-", text);
   double complex *z = malloc(n * sizeof *z);
   SHB_CHECK(z, SHB_ERR_IO, "out of memory for the modes of %d speeds", s->n);
   for (size_t i = 0; i < n; i++) z[i] = CMPLX(s->overlap[i], s->overlap_imaginary[i]);
@@ -167,7 +169,7 @@ static shb_status read_one(hid_t at, const char *path, modal_speeds *s, int i) {
 
 /* The overlap of the first speed with itself is the identity. No overlap exceeds 1. */
 static shb_status check_overlap(const char *path, const modal_speeds *s) {
-  const int m = s->n_modes;
+  const int     m  = s->n_modes;
   const double *im = s->overlap_imaginary;
   for (int i = 0; i < m * m; i++)
     SHB_CHECK(hypot(s->overlap[i] - (i % (m + 1) == 0), im ? im[i] : 0) < 1e-6, SHB_ERR_INPUT,

@@ -103,18 +103,19 @@ static PetscErrorCode drop_factor(modal_result *r) {
 
 /* All that the speeds of a range share. */
 typedef struct {
-  MPI_Comm             comm;
-  const mesh_fe       *mesh;
-  modal_settings       settings;
-  shb_progress        *progress;
-  modal_speeds        *out;
-  Mat                  shapes[2]; /* mode shapes of the first speed and of the speed before */
-  modal_sector        *sector;    /* NULL: a clamped blade */
-  modal_sector_tracks  tracks;    /* of the sector */
+  MPI_Comm            comm;
+  const mesh_fe      *mesh;
+  modal_settings      settings;
+  shb_progress       *progress;
+  modal_speeds       *out;
+  Mat                 shapes[2]; /* mode shapes of the first speed and of the speed before */
+  modal_sector       *sector;    /* NULL: a clamped blade */
+  modal_sector_tracks tracks;    /* of the sector */
 } speed_work;
 
 /* The other nodal diameters of a sector at one speed. */
-static shb_status solve_sector(speed_work *r, const modal_settings *here, int s, modal_result *now) {
+static shb_status solve_sector(speed_work *r, const modal_settings *here, int s,
+                               modal_result *now) {
   modal_sector_speeds *speeds = &r->sector->speeds;
   modal_sector         found;
   r->tracks.s       = s;
@@ -133,8 +134,7 @@ static shb_status solve_sector(speed_work *r, const modal_settings *here, int s,
     return SHB_OK;
   }
   for (int i = 1; status == SHB_OK && i < speeds->n; i++)
-    found.models.model[i] = found.models.imaginary[i] = found.models.backward[i] =
-        (modal_model){0};
+    found.models.model[i] = found.models.imaginary[i] = found.models.backward[i] = (modal_model){0};
   modal_sector_free(&found, now);
   return status;
 }
@@ -212,11 +212,11 @@ shb_status modal_speed_range_solve(MPI_Comm comm, const mesh_fe *mesh,
                                    modal_speeds *speeds, modal_sector *sector,
                                    modal_result *result) {
   speed_work r = {.comm     = comm,
-             .mesh     = mesh,
-             .settings = *settings,
-             .progress = progress,
-             .out      = speeds,
-             .sector   = sector};
+                  .mesh     = mesh,
+                  .settings = *settings,
+                  .progress = progress,
+                  .out      = speeds,
+                  .sector   = sector};
   memset(result, 0, sizeof *result);
   SHB_TRY(choose_modes(comm, mesh, settings, progress, &r.settings.modes));
   SHB_TRY(modal_speeds_create(settings->n_speeds, r.settings.modes, speeds));

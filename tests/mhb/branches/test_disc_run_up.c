@@ -61,11 +61,9 @@ static run_up clamped(const mesh_fe *sector, const modal_settings *settings) {
   mesh_fe      mesh = sector_clamp_disc(sector);
   modal_speeds all;
   modal_result result;
-  assert_ok(
-      modal_speed_range_solve(PETSC_COMM_SELF, &mesh, settings, NULL, &all, NULL, &result));
+  assert_ok(modal_speed_range_solve(PETSC_COMM_SELF, &mesh, settings, NULL, &all, NULL, &result));
   result.model = (modal_model){0}; /* the table takes it over */
-  assert_ok(
-      mhb_speed_table_create(&all, "blade", ORDER, r.settings.frequency, &r.blade));
+  assert_ok(mhb_speed_table_create(&all, "blade", ORDER, r.settings.frequency, &r.blade));
   assert_int_equal(r.blade->n_dropped, 0);
   r.settings.run_up = r.blade;
   modal_speed_range_free(&all, &result);
@@ -80,8 +78,7 @@ static run_up on_disc(const mesh_fe *mesh, const modal_settings *settings) {
   modal_sector        sector = {0};
   modal_sector_speeds taken;
   modal_result        result;
-  assert_ok(
-      modal_speed_range_solve(PETSC_COMM_SELF, mesh, settings, NULL, &all, &sector, &result));
+  assert_ok(modal_speed_range_solve(PETSC_COMM_SELF, mesh, settings, NULL, &all, &sector, &result));
   assert_int_equal(all.n, 0);
   taken         = sector.speeds;
   sector.speeds = (modal_sector_speeds){0};
@@ -236,10 +233,10 @@ static void multipliers_are_those_of_the_speed(void **state) {
   const mhb_branch *p = main_curve(a), *q = main_curve(b);
   assert_true(a->n_multipliers > 0);
   for (int i = 0; i < 2 * a->n_multipliers; i++) {
-    const int      m = i % a->n_multipliers, last = i / a->n_multipliers;
-    const size_t   at = (size_t)(last * (p->n_points - 1) * a->n_multipliers + m);
-    const size_t   by = (size_t)(last * (q->n_points - 1) * a->n_multipliers + m);
-    const double   x = cabs(p->multipliers[at]), y = cabs(q->multipliers[by]);
+    const int    m = i % a->n_multipliers, last = i / a->n_multipliers;
+    const size_t at = (size_t)(last * (p->n_points - 1) * a->n_multipliers + m);
+    const size_t by = (size_t)(last * (q->n_points - 1) * a->n_multipliers + m);
+    const double x = cabs(p->multipliers[at]), y = cabs(q->multipliers[by]);
     assert_true(y > 0.5 && y < 1);
     worst = fmax(worst, fabs(x - y));
   }
@@ -273,11 +270,11 @@ static void find_peak(const run_up *r, double peak[2]) {
 }
 
 static void a_stiff_disc_is_a_clamp(void **state) {
-  mesh_fe              mesh     = **(const mesh_fe **)state;
-  modal_settings       settings = stage_case();
-  run_up               blade    = clamped(&mesh, &settings);
-  static const double  factor[] = {1, 1e4, 1e5};
-  double               wanted[2], found[2], off[3][2];
+  mesh_fe             mesh     = **(const mesh_fe **)state;
+  modal_settings      settings = stage_case();
+  run_up              blade    = clamped(&mesh, &settings);
+  static const double factor[] = {1, 1e4, 1e5};
+  double              wanted[2], found[2], off[3][2];
   find_peak(&blade, wanted);
   sector_mark_disc(&mesh);
   for (int k = 0; k < 3; k++) {

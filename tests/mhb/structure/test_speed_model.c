@@ -346,8 +346,8 @@ int main(void) {
                                      cmocka_unit_test(straight_lines_are_exact),
                                      cmocka_unit_test(order_is_four),
                                      cmocka_unit_test(slopes_are_derivatives),
-      cmocka_unit_test(order_of_a_disc_is_four),
-      cmocka_unit_test(slopes_of_a_disc_are_derivatives),
+                                     cmocka_unit_test(order_of_a_disc_is_four),
+                                     cmocka_unit_test(slopes_of_a_disc_are_derivatives),
                                      cmocka_unit_test(modes_that_leave_are_static),
                                      cmocka_unit_test(speeds_far_away_do_not_count),
                                      cmocka_unit_test(what_cannot_be_is_refused)};

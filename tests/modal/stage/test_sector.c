@@ -595,7 +595,7 @@ static void several_speeds(void **state) {
   assert_int_equal(all.n, 3);
   settings.n_speeds = 0;
   for (int s = 0; s < 3; s++) {
-    double worst = 0;
+    double worst   = 0;
     settings.speed = all.at[0].speed[s];
     assert_true(s == 0 || all.at[0].speed[s] > all.at[0].speed[s - 1]);
     assert_ok(modal_stage(PETSC_COMM_WORLD, scratch("sector.msh"), scratch("one.modal.h5"),
@@ -607,10 +607,9 @@ static void several_speeds(void **state) {
       for (int i = 0; i < settings.modes; i++) {
         assert_near(a->frequency[i] / b->frequency[i], 1, 1e-12);
         worst = fmax(worst, fabs(cabs(a->modal_force[settings.modes + i]) /
-                                   cabs(b->modal_force[settings.modes + i]) -
+                                     cabs(b->modal_force[settings.modes + i]) -
                                  1));
-        if (settings.speed == speed[2])
-          assert_true(main.model[n].frequency[i] == a->frequency[i]);
+        if (settings.speed == speed[2]) assert_true(main.model[n].frequency[i] == a->frequency[i]);
       }
       for (int i = 0; i < 36; i++)
         assert_near(a->residual_flexibility[i] / b->residual_flexibility[0],
