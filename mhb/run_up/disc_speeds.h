@@ -1,5 +1,5 @@
-/* Run-up of a sector with a disc: a table for every nodal diameter, and the models of all of them
- * at the speed of an excitation frequency. */
+/* Run-up of a sector with a disc. Every nodal diameter has a table, and a model at the speed of an
+ * excitation frequency. */
 #ifndef MHB_RUN_UP_DISC_SPEEDS_H
 #define MHB_RUN_UP_DISC_SPEEDS_H
 

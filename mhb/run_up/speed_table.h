@@ -1,4 +1,4 @@
-/* Run-up: the speed Omega of the rotor follows the excitation, omega = E Omega, and with it the
+/* Run-up: the speed Omega of the rotor follows the excitation, omega = E Omega. With it goes the
  * modal model of the blade, or of a nodal diameter of a disc.
  *
  * Mode shapes veer within a few rpm and cannot be interpolated. The subspace of the m modes kept

@@ -12,10 +12,10 @@
 /* Doubles of scratch that align needs: of m modes kept of all. */
 size_t mhb_unitary_align_work(int width, int m);
 
-/* Orthogonal or unitary Procrustes: of the leading m x m block of an overlap phi_0^H M phi = A
- * Sigma B^H the least Sigma, and V = B A^H, unless NULL. -1: not found.
+/* Orthogonal or unitary Procrustes. Of the leading m x m block of an overlap, A Sigma B^H, returns
+ * the least Sigma (-1: not found), and V = B A^H unless NULL.
  *
- *   re, im  in  [all][all] overlap of the modes of the first speed with those of this one; im: width
+ *   re, im  in  [all][all] overlap of the first speed's modes with those of this one; im: of width
  *               2 only */
 double mhb_unitary_align(int width, int m, int all, const double *re, const double *im,
                          double *work, double *V);
@@ -33,10 +33,10 @@ void mhb_unitary_congruent(int width, int m, const double *U, const double *X, d
 /* out[rows][m] = x[rows][m] U, eigenvector i of U in row i. */
 void mhb_unitary_rows(int width, int m, int rows, const double *U, const double *x, double *out);
 
-/* Eigenvectors and eigenvalues of K, ascending. The entries of K differ by orders of magnitude:
- * one-sided Jacobi on its Cholesky factor gives the low eigenvalues to their own rounding, not to
- * that of the highest (Demmel and Veselic 1992). Where K is not positive definite: eigenvalues to
- * that of the highest, of which some are negative.
+/* Eigenvectors and eigenvalues of K, ascending. The entries of K differ by orders of magnitude, so
+ * one-sided Jacobi works on its Cholesky factor (Demmel and Veselic 1992). It gives the low
+ * eigenvalues to their own rounding, not to that of the highest. Where K is not positive definite
+ * some are negative, and all are to that of the highest.
  *
  *   U       out  [m][m] eigenvector i in row i
  *   square  out  [m]

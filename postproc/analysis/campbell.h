@@ -27,10 +27,10 @@ typedef struct {
   double frequency;    /* Hz */
 } post_crossing;
 
-/* Crossings of the excited orders E k (harmonics k of the load), of a disc those that meet its
- * nodal diameter, within the speed range, by
- * ascending speed. Between the speeds of the file lambda is the spline in Omega^2
- * (modal/model/spline.h). crossing: malloc'ed. Errors: SHB_ERR_IO no memory. */
+/* Crossings of the excited orders E k (harmonics k of the load) within the speed range, by
+ * ascending speed. Of a disc only the orders count that meet its nodal diameter. Between the speeds
+ * of the file lambda is the spline in Omega^2 (modal/model/spline.h). crossing: malloc'ed. Errors:
+ * SHB_ERR_IO no memory. */
 shb_status post_campbell_crossings(const post_campbell *campbell, int *n, post_crossing **crossing);
 
 /* A stand-alone picture, light or dark as the viewer prefers. */

@@ -84,7 +84,7 @@ typedef struct {
   const double       *area;
   const char         *stress;   /* section of the page on stress, HTML; NULL: none. Set likewise. */
   const struct post_safe *safe; /* frequencies over the nodal diameter; NULL: none. Set likewise. */
-  /* [n_campbells] modes over the speed, if there are several; of a disc by the nodal diameters that
+  /* [n_campbells] modes over the speed, if there are several. Of a disc one a nodal diameter that
    * its load meets, that of the engine order first. Set by the caller. */
   const post_campbell *campbell;
   int                  n_campbells;

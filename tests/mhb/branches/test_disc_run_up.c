@@ -1,5 +1,5 @@
-/* Run-up of a sector with a disc: between the speeds of the file against the sector at exactly that
- * speed, as near as a clamped blade; and a stiff disc gives the clamped blade's run-up. */
+/* Run-up of a sector with a disc. Between the speeds of the file it is as near to the sector at
+ * that speed as a clamped blade is. A stiff disc gives the clamped blade's run-up. */
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>

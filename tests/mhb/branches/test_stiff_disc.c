@@ -106,10 +106,10 @@ static void same_wave(int blades, int order, int beyond) {
   assert_ok(mesh_fe_orient(&mesh, MESH_AXIS_X));
   assert_ok(modal_solve(PETSC_COMM_SELF, &mesh, &settings, NULL, &result));
   assert_ok(modal_sector_solve(&mesh, &settings, NULL, &result, NULL, &all));
-  const int    met   = modal_nodal_diameters_find(&all.models, modal_nodal_diameter(order, blades));
-  mhb_settings s     = balance_case(all.models.model[met].frequency[0]);
-  s.blades           = blades;
-  s.nodal_diameters  = &all.models;
+  const int    met  = modal_nodal_diameters_find(&all.models, modal_nodal_diameter(order, blades));
+  mhb_settings s    = balance_case(all.models.model[met].frequency[0]);
+  s.blades          = blades;
+  s.nodal_diameters = &all.models;
   for (int i = 0; i < 2; i++) {
     s.engine_order = i ? beyond : order;
     sweep(&all.models.model[0], &s, &at[i]);
