@@ -28,6 +28,37 @@ static shb_status read_speeds(const char *path, int modes, bool residuals, case_
   return SHB_OK;
 }
 
+/* The same of a disc, if the file at path holds one; else nothing is read. */
+static shb_status read_disc_speeds(const char *path, int modes, bool residuals, case_model *m) {
+  const double       *f = m->settings.frequency;
+  modal_sector_speeds all;
+  SHB_TRY(modal_sector_speeds_read(path, &all));
+  shb_status status = SHB_OK;
+  for (int i = 0; i < all.n && modes > 0; i++)
+    for (int s = 0; s < all.at[i].n && status == SHB_OK; s++) {
+      modal_speeds *at = &all.at[i];
+      status           = modal_wave_reduce(&at->model[s], at->imaginary ? &at->imaginary[s] : NULL,
+                                 at->backward ? &at->backward[s] : NULL, modes, residuals);
+    }
+  if (status == SHB_OK && all.n > 0)
+    status = mhb_disc_table_create(&all, path, m->settings.engine_order, f, &m->disc_run_up);
+  modal_sector_speeds_free(&all);
+  SHB_TRY(status);
+  if (!m->disc_run_up) return SHB_OK;
+  m->run_up = m->disc_run_up->table[0];
+  SHB_TRY(mhb_disc_table_check(m->disc_run_up, path));
+  SHB_TRY(mhb_disc_speeds_create(m->disc_run_up, &m->disc_top));
+  m->top = m->disc_top->at[0];
+  mhb_disc_speeds_set(m->disc_top, SHB_TWO_PI * f[1]);
+  mhb_disc_speeds_set_all(m->disc_top);
+  m->disc                     = &m->disc_top->now;
+  m->model                    = m->disc->model[0];
+  m->settings.nodal_diameters = m->disc;
+  m->settings.run_up          = m->run_up;
+  m->settings.disc_run_up     = m->disc_run_up;
+  return SHB_OK;
+}
+
 /* The balance needs contact and a load, which modes alone do without. */
 static shb_status check_use(const char *path, const modal_model *model) {
   double force = 0;
@@ -99,9 +130,8 @@ static shb_status read_disc(const char *path, int modes, bool residuals, case_mo
 
 /* What the balance of a disc does not do. */
 static shb_status check_disc(const case_file *file, const char *path, const case_model *m) {
-  SHB_CHECK(!file->run_up, SHB_ERR_INPUT,
-            "mhb.run_up: %s holds the modes of a disc at one speed; leave it out, and give a case "
-            "for each rotor.speed",
+  SHB_CHECK(!file->run_up || m->run_up, SHB_ERR_INPUT,
+            "mhb.run_up: %s holds the modes of a disc at one speed; give rotor.speed as a list",
             path);
   SHB_CHECK(file->mistuning.kind == CASE_TUNED, SHB_ERR_INPUT,
             "rotor.mistuning: %s holds the modes of a disc, whose sectors are alike; leave it out, "
@@ -117,7 +147,8 @@ static shb_status check_disc(const case_file *file, const char *path, const case
 shb_status case_model_read(const case_file *file, const char *path, int modes, bool residuals,
                            case_model *m) {
   *m = (case_model){.settings = file->mhb};
-  SHB_TRY(read_disc(path, modes, residuals, m));
+  if (file->run_up) SHB_TRY(read_disc_speeds(path, modes, residuals, m));
+  if (!m->disc) SHB_TRY(read_disc(path, modes, residuals, m));
   if (m->disc) return check_disc(file, path, m);
   if (file->run_up) return read_speeds(path, modes, residuals, m);
   SHB_TRY(modal_model_read(path, &m->model));
@@ -157,6 +188,12 @@ void case_model_free(case_model *m) {
   mhb_mistuned_ring_destroy(m->ring);
   modal_model_free(&m->tuned);
   contact_points_free(m->points);
+  if (m->disc_run_up) { /* it owns all */
+    mhb_disc_speeds_destroy(m->disc_top);
+    mhb_disc_table_destroy(m->disc_run_up);
+    *m = (case_model){0};
+    return;
+  }
   if (m->disc) modal_nodal_diameters_free(m->disc);
   free(m->disc);
   mhb_speed_model_destroy(m->top);

@@ -5,8 +5,8 @@
 #include "cases/commands/contact_points.h"
 #include "cases/parse/case_file.h"
 #include "mhb/mistuning/mistuned_ring.h"
+#include "mhb/run_up/disc_speeds.h"
 #include "mhb/structure/receptance.h"
-#include "mhb/structure/speed_model.h"
 #include "modal/model/contact_face.h"
 #include "modal/model/nodal_diameters.h"
 
@@ -15,12 +15,15 @@ typedef struct {
                       * different blades that of the whole ring */
   mhb_settings settings;         /* of the case, including the run-up and the ring */
   modal_model  tuned;            /* with a ring: the blade of the file; owned */
-  modal_nodal_diameters *disc;   /* NULL: a clamped blade; else model is that of its first; owned */
+  modal_nodal_diameters *disc;   /* NULL: a clamped blade; else model is that of its first; owned,
+                                  * but in a run-up */
   mhb_mistuned_ring     *ring;   /* NULL: equal blades */
   mhb_speed_table       *run_up; /* NULL: one speed */
   mhb_speed_model       *top;    /* owner of the model in a run-up */
-  modal_contact_face     face;   /* for maps; without nodes: none */
-  contact_points        *points; /* the model's finer or coarser one; NULL: none */
+  mhb_disc_table        *disc_run_up; /* run-up of a disc, owner of run_up */
+  mhb_disc_speeds       *disc_top;    /* owner of disc and top there */
+  modal_contact_face     face;        /* for maps; without nodes: none */
+  contact_points        *points;      /* the model's finer or coarser one; NULL: none */
 } case_model;
 
 /* Read the modal file at path, with all speeds in a run-up.

@@ -95,6 +95,9 @@ static shb_status integrate(const case_file *file, case_model *model, const mhb_
   modal_model  dense;
   mhb_settings settings;
   shb_status   status;
+  SHB_CHECK(!model->disc_run_up, SHB_ERR_INPUT,
+            "mhb.run_up: the sectors of a disc are integrated at one speed; leave it out, and give "
+            "a case for each rotor.speed");
   if (model->disc) {
     status = mhb_dense_disc(&model->settings, &dense);
     mhb_dense_disc_settings(&model->settings, &settings);

@@ -47,13 +47,17 @@ static const case_key table[] = {
      .help = "root block, radial, below the first section"},
     {"mesh.blade.disc.bore", CASE_NUMBER, "m", 0, 100, true, .required = true, AT(blade.disc_bore),
      .stages = CASE_MESH, .when = CASE_IF_DISC,
-     .help = "a disc below the root block, with tet10: radius of its bore, which is clamped"},
+     .help = "a disc below the root block: radius of its bore, which is clamped"},
     {"mesh.blade.disc.web", CASE_NUMBER, "m", 0, 100, true, .required = true, AT(blade.disc_web),
      .stages = CASE_MESH, .when = CASE_IF_DISC,
      .help = "axial thickness of the web"},
     {"mesh.blade.disc.rim", CASE_NUMBER, "m", 0, 100, true, .required = true, AT(blade.disc_rim),
      .stages = CASE_MESH, .when = CASE_IF_DISC,
      .help = "radial height of the rim, which is as long as the root block"},
+    {"mesh.blade.disc.taper", CASE_NUMBER, "m", 0, 100, .fallback = "0 m", AT(blade.disc_taper),
+     .stages = CASE_MESH, .when = CASE_IF_DISC,
+     .help = "radial height below the rim over which the web widens to the length of the rim; "
+             "hexahedra need one; 0: a step"},
     {"mesh.blade.sections", CASE_LIST, "", 2, MESH_MAX_SECTIONS, .required = true,
      LIST(blade.section, blade.n_sections), .stages = CASE_MESH, .when = CASE_IF_BLADE,
      .help = "airfoil sections, 2 to 16, radius increasing: a list of {radius, chord, thickness, "

@@ -343,10 +343,6 @@ static void check_disc(case_reader *r, int stages) {
   const bool       disc =
       file->has_disc || file->source.rules.usual[MESH_CYCLIC_RIGHT].kind != MESH_RULE_NONE;
   if (!disc || file->modal_file) return;
-  if (file->n_speeds > 1 && case_reader_good(r, "rotor.speed"))
-    case_reader_issue(r, "rotor.speed",
-                      "has %d speeds; a sector with a disc takes one, so give a case for each",
-                      file->n_speeds);
   if (file->modes == 0 && case_reader_good(r, "modal.modes"))
     case_reader_issue(r, "modal.modes",
                       "is auto, which a disc does not know; give the number of modes at each nodal "

@@ -294,6 +294,7 @@ shb_status modal_store_get(modal_store *s, const double *value, const case_file 
   *field                          = s->entry[at].field;
   model->settings                 = file->mhb;
   model->settings.run_up          = s->entry[at].model.run_up;
+  model->settings.disc_run_up     = s->entry[at].model.disc_run_up;
   model->settings.nodal_diameters = s->entry[at].model.disc;
   if (ring) model->settings = s->entry[at].model.settings;
   return SHB_OK;

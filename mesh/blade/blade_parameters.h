@@ -30,7 +30,8 @@ typedef struct {
   double       root_length, root_width, root_height; /* axial, tangential, radial, m */
   double       disc_bore;          /* radius of the clamped bore of a disc, m; 0: no disc */
   double       disc_web, disc_rim; /* axial thickness of the web, radial height of the rim, m */
-  int          n_sections;         /* at least 2, in order of radius */
+  double       disc_taper; /* radial height over which the web widens to the rim, m; 0: a step */
+  int          n_sections; /* at least 2, in order of radius */
   mesh_section section[MESH_MAX_SECTIONS];
   double       shroud_length;    /* axial, m */
   double       shroud_thickness; /* radial, m; begins at the last section */

@@ -348,6 +348,7 @@ shb_status mhb_stuck_frequencies(const modal_model *model, const mhb_settings *s
   one.harmonics = one.subharmonics = 1;
   one.motion_tolerance             = 0;
   one.run_up                       = NULL;
+  one.disc_run_up                  = NULL;
   one.ring                         = NULL; /* equal blades */
   one.other_pairs                  = NULL;
   SHB_TRY(mhb_balance_create(model, &one, &balance));

@@ -104,6 +104,8 @@ typedef struct {
       *run_up; /* NULL: one speed. Else the modal model follows the frequency. */
   const struct modal_nodal_diameters
       *nodal_diameters; /* NULL: a clamped blade. Else harmonic k has the model of its own. */
+  const struct mhb_disc_table
+      *disc_run_up; /* run-up of a disc; run_up is then its table of nodal diameter 0 */
   /* NULL: equal blades that move as one wave. Else every blade has its own model, and the modal
    * model of the balance is that of the whole ring (mhb/mistuning/mistuned_ring.h). */
   const struct mhb_mistuned_ring *ring;

@@ -2,6 +2,7 @@
 
 #include <math.h>
 #include <stdlib.h>
+#include <string.h>
 
 #include "mesh/base/constants.h"
 #include "modal/model/nodal_diameters.h"
@@ -31,6 +32,7 @@ static void set_modes(mhb_disc_modes *d, const mhb_modal_part *part, int diamete
   }
   if (!d->flexibility) return;
   double complex *R = d->flexibility + (size_t)diameter * (size_t)(d->n * d->n);
+  memset(R, 0, (size_t)(d->n * d->n) * sizeof *R);
   mhb_residual_terms_matrix(part->residual_terms, diameter, 0, R);
   for (int i = d->modes; i < d->all; i++) {
     const double w = SHB_TWO_PI * model->frequency[i];
@@ -42,25 +44,36 @@ static void set_modes(mhb_disc_modes *d, const mhb_modal_part *part, int diamete
 
 /* The nodal diameters in the place of harmonics: the one of index n lags by n turns of 1/N. */
 static shb_status fill(mhb_disc_modes *d, const mhb_receptance *r, const mhb_settings *s) {
-  modal_wave     wave[d->diameters];
-  double complex phase[d->diameters];
+  const modal_nodal_diameters *from = s->nodal_diameters;
+  if (r->disc) {
+    mhb_disc_speeds_set_all(r->disc);
+    from = &r->disc->now;
+  }
   for (int n = 0; n < d->diameters; n++) {
     int missing;
-    phase[n] = cexp(-I * SHB_TWO_PI * n / d->blades);
-    SHB_CHECK(modal_nodal_diameters_wave(s->nodal_diameters, n, &wave[n], &missing), SHB_ERR_INPUT,
+    d->phase[n] = cexp(-I * SHB_TWO_PI * n / d->blades);
+    SHB_CHECK(modal_nodal_diameters_wave(from, n, &d->wave[n], &missing), SHB_ERR_INPUT,
               "the modal file lacks nodal diameter %d", missing);
   }
   const mhb_relative  relative  = {d->n, s->to_ground ? 1 : 2, r->T0};
   const mhb_harmonics harmonics = {.nu              = 1,
                                    .n_harmonics     = d->diameters - 1,
-                                   .phase           = phase,
-                                   .wave            = wave,
+                                   .phase           = d->phase,
+                                   .wave            = d->wave,
                                    .nodal_diameters = true};
-  mhb_modal_part     *part;
-  SHB_TRY(mhb_modal_part_create(r->model, relative, &harmonics, &part));
-  for (int n = 0; n < d->diameters; n++) set_modes(d, part, n);
-  mhb_modal_part_destroy(part);
+  SHB_TRY(mhb_modal_part_create(r->model, relative, &harmonics, &d->part));
+  for (int n = 0; n < d->diameters; n++) set_modes(d, d->part, n);
+  if (r->disc) return SHB_OK;
+  mhb_modal_part_destroy(d->part);
+  d->part = NULL;
   return SHB_OK;
+}
+
+void mhb_disc_modes_set(const mhb_receptance *r, mhb_disc_modes *d) {
+  if (!d->part) return;
+  mhb_disc_speeds_set_all(r->disc);
+  mhb_modal_part_update(d->part);
+  for (int n = 0; n < d->diameters; n++) set_modes(d, d->part, n);
 }
 
 shb_status mhb_disc_modes_create(const mhb_receptance *r, const mhb_settings *s, int modes,
@@ -77,6 +90,8 @@ shb_status mhb_disc_modes_create(const mhb_receptance *r, const mhb_settings *s,
   const size_t K = (size_t)d->diameters, n = (size_t)d->n, m = (size_t)d->modes;
   d->omega   = shb_arena_take(&d->arena, K * m, sizeof *d->omega);
   d->zeta    = shb_arena_take(&d->arena, K * m, sizeof *d->zeta);
+  d->wave    = shb_arena_take(&d->arena, K, sizeof *d->wave);
+  d->phase   = shb_arena_take(&d->arena, K, sizeof *d->phase);
   d->shape   = shb_arena_take(&d->arena, K * m * n, sizeof *d->shape);
   d->fourier = shb_arena_take(&d->arena, (size_t)N * (size_t)N, sizeof *d->fourier);
   if (r->model->residual_flexibility || d->modes < d->all)
@@ -95,6 +110,7 @@ shb_status mhb_disc_modes_create(const mhb_receptance *r, const mhb_settings *s,
 
 void mhb_disc_modes_destroy(mhb_disc_modes *d) {
   if (!d) return;
+  mhb_modal_part_destroy(d->part);
   shb_arena_free(&d->arena);
   free(d);
 }

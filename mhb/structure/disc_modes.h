@@ -23,6 +23,9 @@ typedef struct mhb_disc_modes {
   double complex *shape;       /* [diameter][modes][n] (v, u, w) of the contact, kg^-1/2 */
   double complex *flexibility; /* [diameter][n][n] static one of all else, m/N; NULL: none */
   double         *fourier;     /* [N][N] real coordinates of z by y */
+  modal_wave     *wave;        /* [diameter] and the phase of the next blade */
+  double complex *phase;
+  mhb_modal_part *part; /* run-up: of the models at one speed; else NULL */
   shb_arena       arena;
 } mhb_disc_modes;
 
@@ -31,6 +34,9 @@ typedef struct mhb_disc_modes {
 shb_status mhb_disc_modes_create(const mhb_receptance *receptance, const mhb_settings *settings,
                                  int modes, mhb_disc_modes **disc);
 void       mhb_disc_modes_destroy(mhb_disc_modes *disc);
+
+/* Anew, after the receptance, which it was made with, went to another speed of a run-up. */
+void mhb_disc_modes_set(const mhb_receptance *receptance, mhb_disc_modes *disc);
 
 /* First of the real coordinates of a nodal diameter; *count of them, 1 or 2. */
 int mhb_disc_modes_first(const mhb_disc_modes *disc, int diameter, int *count);

@@ -144,6 +144,7 @@ shb_status mhb_modal_structure_create(const mhb_receptance *r, const mhb_setting
 
 void mhb_modal_structure_set(const mhb_receptance *r, mhb_modal_structure *s) {
   const int n3 = 3 * s->pairs, side = s->modes * n3;
+  if (s->disc) mhb_disc_modes_set(r, s->disc);
   for (int k = 0; k < s->modes * (s->mistuned ? s->blades : 1) && !s->disc; k++) {
     const modal_model *blade = blade_of(r, k / s->modes)->model;
     s->omega[k]              = SHB_TWO_PI * blade->frequency[k % s->modes];

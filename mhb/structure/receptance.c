@@ -96,21 +96,24 @@ static double phase_step(const mhb_settings *s) {
   return SHB_TWO_PI / s->subharmonics * ((double)s->engine_order / s->blades + mhb_wave_shift(s));
 }
 
-/* The model of one harmonic: that of nodal diameter k (E + N l)/nu. */
-static shb_status find_wave(const mhb_settings *s, int k, modal_wave *wave) {
-  const modal_nodal_diameters *d   = s->nodal_diameters;
-  mhb_settings                 own = {.engine_order = s->engine_order};
-  own.blades                       = d->blades;
-  own.subharmonics                 = s->subharmonics;
-  const long shift                 = mhb_wave_shift(&own);
+/* The wave of the fundamental, (E + N l)/nu; l below 0: none that closes. */
+static long wave_of(const mhb_settings *s, int blades) {
+  const mhb_settings own = {
+      .engine_order = s->engine_order, .blades = blades, .subharmonics = s->subharmonics};
+  const long shift = mhb_wave_shift(&own);
+  return shift < 0 ? -1 : (s->engine_order + blades * shift) / s->subharmonics;
+}
+
+/* The model of one harmonic: that of nodal diameter k (E + N l)/nu of d. */
+static shb_status find_wave(const mhb_settings *s, const modal_nodal_diameters *d, int k,
+                            modal_wave *wave) {
+  const long fundamental = wave_of(s, d->blades);
   int        missing;
-  SHB_CHECK(shift >= 0, SHB_ERR_INPUT,
+  SHB_CHECK(fundamental >= 0, SHB_ERR_INPUT,
             "mhb.subharmonics is %d, but a wave of that many periods does not close around the %d "
             "sectors of the modal file at engine order %d; set it to 1",
             s->subharmonics, d->blades, s->engine_order);
-  SHB_CHECK(modal_nodal_diameters_wave(
-                d, k * ((s->engine_order + d->blades * shift) / s->subharmonics), wave, &missing),
-            SHB_ERR_INPUT,
+  SHB_CHECK(modal_nodal_diameters_wave(d, k * fundamental, wave, &missing), SHB_ERR_INPUT,
             "harmonic %d%s at engine order %d meets the disc at nodal diameter %d, which the modal "
             "file does not have; add it by `shroudhb modal --set modal.nodal_diameters=all "
             "CASE.yaml`",
@@ -129,8 +132,19 @@ shb_status mhb_receptance_check(const mhb_settings *s, int top) {
             "excitation.engine_order is %d; the nodal diameters of the modal file need one of 0 or "
             "more",
             s->engine_order);
-  for (int k = 0; k <= top; k++) SHB_TRY(find_wave(s, k, &wave));
+  for (int k = 0; k <= top; k++) SHB_TRY(find_wave(s, d, k, &wave));
   return SHB_OK;
+}
+
+/* The models of all harmonics of a disc, from d; to be freed in any case. */
+static shb_status find_waves(const mhb_receptance *r, const mhb_settings *settings,
+                             const modal_nodal_diameters *d, modal_wave **out) {
+  modal_wave *wave = *out = calloc((size_t)r->n_harmonics + 1, sizeof *wave);
+  SHB_CHECK(wave, SHB_ERR_IO, "out of memory for the receptance");
+  shb_status status = SHB_OK;
+  for (int k = 0; k <= r->n_harmonics && status == SHB_OK; k++)
+    status = find_wave(settings, d, k, &wave[k]);
+  return status;
 }
 
 static shb_status make_part(mhb_receptance *r, const mhb_settings *settings,
@@ -140,14 +154,35 @@ static shb_status make_part(mhb_receptance *r, const mhb_settings *settings,
            .nu = r->nu, .n_harmonics = r->n_harmonics, .phase = r->phase, .like = like};
   if (!settings->nodal_diameters)
     return mhb_modal_part_create(r->model, relative, &harmonics, &r->part);
-  modal_wave *wave = calloc((size_t)r->n_harmonics + 1, sizeof *wave);
-  SHB_CHECK(wave, SHB_ERR_IO, "out of memory for the receptance");
+  modal_wave *wave = NULL;
+  SHB_TRY(mhb_receptance_check(settings, r->n_harmonics));
+  shb_status status =
+      find_waves(r, settings, r->disc ? &r->disc->now : settings->nodal_diameters, &wave);
   harmonics.wave            = wave;
   harmonics.nodal_diameters = true;
-  shb_status status         = mhb_receptance_check(settings, r->n_harmonics);
-  for (int k = 0; k <= r->n_harmonics && status == SHB_OK; k++)
-    status = find_wave(settings, k, &wave[k]);
   if (status == SHB_OK) status = mhb_modal_part_create(r->model, relative, &harmonics, &r->part);
+  free(wave);
+  return status;
+}
+
+/* The speed model of each harmonic, at the lowest speed. */
+static shb_status make_speeds(mhb_receptance *r, const mhb_settings *s) {
+  r->speeds = shb_arena_take(&r->arena, (size_t)r->n_harmonics + 1, sizeof(mhb_speed_model *));
+  SHB_CHECK(r->speeds, SHB_ERR_IO, "out of memory for the receptance");
+  for (int k = 0; k <= r->n_harmonics; k++) {
+    r->speeds[k] =
+        r->disc ? mhb_disc_speeds_use(r->disc, k * wave_of(s, r->disc->table->blades)) : r->at;
+    SHB_CHECK(r->speeds[k], SHB_ERR_INPUT, "the modal file lacks the nodal diameter of harmonic %d",
+              k);
+  }
+  return SHB_OK;
+}
+
+static shb_status make_speed_derivative(mhb_receptance *r, const mhb_settings *settings) {
+  modal_wave *wave   = NULL;
+  shb_status  status = r->disc ? find_waves(r, settings, &r->disc->slope, &wave) : SHB_OK;
+  if (status == SHB_OK)
+    status = mhb_speed_derivative_create(r->speeds, r->disc, wave, r->part, &r->speed_derivative);
   free(wave);
   return status;
 }
@@ -185,16 +220,23 @@ static shb_status make(mhb_receptance *r, const modal_model *model, const mhb_se
   if (settings->ring) {
     SHB_TRY(mhb_ring_receptance_create(settings, r->n_harmonics, &r->ring));
     r->model = &settings->ring->whole;
+  } else if (settings->disc_run_up) {
+    SHB_TRY(mhb_disc_speeds_create(settings->disc_run_up, &r->disc));
+    r->at = r->disc->at[0];
   } else if (settings->run_up) {
     SHB_TRY(mhb_speed_model_create(settings->run_up, &r->at));
+  }
+  if (r->at) {
     mhb_speed_model_set(r->at, 0);
     r->model = &r->at->model;
   }
   r->n       = 3 * r->model->n_pairs;
   r->n_modes = r->model->n_modes;
   SHB_CHECK(allocate(r), SHB_ERR_IO, "out of memory for the receptance");
+  if (r->disc) SHB_TRY(mhb_receptance_check(settings, r->n_harmonics));
+  if (r->at) SHB_TRY(make_speeds(r, settings));
   SHB_TRY(set_blade(r, settings, like));
-  if (r->at) SHB_TRY(mhb_speed_derivative_create(r->at, r->part, &r->speed_derivative));
+  if (r->at) SHB_TRY(make_speed_derivative(r, settings));
   return SHB_OK;
 }
 
@@ -236,7 +278,10 @@ void mhb_receptance_destroy(mhb_receptance *r) {
   mhb_ring_receptance_destroy(r->ring);
   mhb_speed_derivative_destroy(r->speed_derivative);
   mhb_modal_part_destroy(r->part);
-  mhb_speed_model_destroy(r->at);
+  if (r->disc)
+    mhb_disc_speeds_destroy(r->disc);
+  else
+    mhb_speed_model_destroy(r->at);
   shb_arena_free(&r->arena);
   free(r->R);
   free(r);
@@ -348,7 +393,10 @@ void mhb_receptance_set_frequency(mhb_receptance *r, double omega) {
   r->omega = omega;
   if (r->ring) mhb_ring_receptance_set_frequency(r->ring, omega);
   if (!r->at || r->at->omega == omega) return;
-  mhb_speed_model_set(r->at, omega);
+  if (r->disc)
+    mhb_disc_speeds_set(r->disc, omega);
+  else
+    mhb_speed_model_set(r->at, omega);
   mhb_modal_part_update(r->part);
 }
 

@@ -23,14 +23,16 @@
 #include "mesh/base/arena.h"
 #include "mesh/base/status.h"
 #include "mhb/problem/settings.h"
+#include "mhb/run_up/disc_speeds.h"
 #include "mhb/structure/modal_part.h"
 #include "mhb/structure/ring_receptance.h"
 #include "mhb/structure/speed_derivative.h"
-#include "mhb/structure/speed_model.h"
 
 typedef struct mhb_receptance {
   const modal_model    *model;            /* in a run-up the one at omega; of a disc that of 0 */
   mhb_speed_model      *at;               /* run-up: whose model that is; else NULL */
+  mhb_disc_speeds      *disc;             /* run-up of a disc: owns at; else NULL */
+  mhb_speed_model     **speeds;           /* run-up: [k] that of each harmonic */
   mhb_speed_derivative *speed_derivative; /* run-up: d model/d omega; else NULL */
   mhb_ring_receptance  *ring; /* different blades: pairs, modes and probes are those of the whole
                                * ring; part, B, F, residual_terms, lambda and R are NULL */

@@ -1,4 +1,4 @@
-/* In a run-up the blade's model depends on the frequency: the part of d/d omega that this adds.
+/* In a run-up the modal model depends on the frequency: the part of d/d omega that this adds.
  *
  * With d = scale F - B^H p, a = L d and A = L^-1 (speed_model.h), at fixed p:
  *   d(B a) = dB a + B L (dd - dA a),   dA = dK + j w dN
@@ -6,17 +6,21 @@
 #ifndef MHB_STRUCTURE_SPEED_DERIVATIVE_H
 #define MHB_STRUCTURE_SPEED_DERIVATIVE_H
 
+#include "mhb/run_up/disc_speeds.h"
 #include "mhb/structure/modal_part.h"
-#include "mhb/structure/speed_model.h"
 
 typedef struct {
-  mhb_speed_model      *model; /* the caller's, as is part */
-  const mhb_modal_part *part;  /* of model->model */
-  mhb_modal_part       *slope; /* of model->slope, the derivative by omega */
+  mhb_speed_model     **model; /* [k] the caller's, as are disc and part */
+  mhb_disc_speeds      *disc;  /* NULL: a clamped blade, one model */
+  const mhb_modal_part *part;  /* of the models */
+  mhb_modal_part       *slope; /* of their slopes, the derivative by omega */
 } mhb_speed_derivative;
 
-/* The speed model is differentiated and must outlive the result. SHB_ERR_IO: no memory. */
-shb_status mhb_speed_derivative_create(mhb_speed_model *model, const mhb_modal_part *part,
+/* The models are differentiated and must outlive the result.
+ *   wave  in  [k] of the slopes of a disc; NULL: a clamped blade
+ * SHB_ERR_IO: no memory. */
+shb_status mhb_speed_derivative_create(mhb_speed_model **model, mhb_disc_speeds *disc,
+                                       const modal_wave *wave, const mhb_modal_part *part,
                                        mhb_speed_derivative **derivative);
 void       mhb_speed_derivative_destroy(mhb_speed_derivative *derivative);
 

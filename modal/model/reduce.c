@@ -266,6 +266,11 @@ shb_status modal_model_reduce(modal_model *model, int modes, bool residuals) {
   return reduce(&(parts){model, NULL, NULL}, modes, residuals);
 }
 
+shb_status modal_wave_reduce(modal_model *model, modal_model *imaginary, modal_model *backward,
+                             int modes, bool residuals) {
+  return reduce(&(parts){model, imaginary, backward}, modes, residuals);
+}
+
 shb_status modal_nodal_diameters_reduce(modal_nodal_diameters *d, int modes, bool residuals) {
   for (int i = 0; i < d->n; i++) {
     const parts p = {&d->model[i], d->imaginary[i].right ? &d->imaginary[i] : NULL,
@@ -287,12 +292,24 @@ static void extend_tail(const modal_model *model, const double complex *shape, d
   for (int j = 0; j < 2; j++) tail[j] = sum[j] + (model->tail_order == 3 ? tail[j] : 0);
 }
 
+static void free_imaginary(modal_model *imaginary) {
+  free(imaginary->residual_shape);
+  free(imaginary->residual_probe);
+  imaginary->residual_shape = imaginary->residual_probe = NULL;
+}
+
 void modal_model_drop_residual_modes(modal_model *model) {
-  const size_t r = (size_t)model->n_residual;
+  modal_wave_drop_residual_modes(model, NULL, NULL);
+}
+
+void modal_wave_drop_residual_modes(modal_model *model, modal_model *imaginary,
+                                    modal_model *backward) {
+  const size_t  r  = (size_t)model->n_residual;
+  const double *im = imaginary ? imaginary->residual_shape : NULL;
   if (r == 0) return;
   double complex row[r];
   for (int c = 0; model->contact_tail && c < modal_model_contact_dofs(model); c++) {
-    for (size_t i = 0; i < r; i++) row[i] = model->residual_shape[(size_t)c * r + i];
+    for (size_t i = 0; i < r; i++) row[i] = entry(model->residual_shape, im, (size_t)c * r + i);
     extend_tail(model, row, model->contact_tail + 2 * c);
   }
   for (int k = 0; model->load_tail && k <= model->n_load; k++)
@@ -305,4 +322,9 @@ void modal_model_drop_residual_modes(modal_model *model) {
   model->residual_force                                                     = NULL;
   model->n_residual                                                         = 0;
   model->tail_order                                                         = 3;
+  if (imaginary) free_imaginary(imaginary);
+  if (backward) {
+    free(backward->residual_force);
+    backward->residual_force = NULL;
+  }
 }

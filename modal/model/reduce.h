@@ -18,11 +18,18 @@
  * SHB_ERR_IO no memory (the model can then only be freed). */
 shb_status modal_model_reduce(modal_model *model, int modes, bool residuals);
 
-/* The same at every nodal diameter of a disc, with phi phi^H for phi phi^T. */
+/* The same of a travelling wave, with phi phi^H for phi phi^T; imaginary and backward of
+ * modal/model/nodal_diameters.h, both NULL of a real one. */
+shb_status modal_wave_reduce(modal_model *model, modal_model *imaginary, modal_model *backward,
+                             int modes, bool residuals);
+
+/* The same at every nodal diameter of a disc. */
 shb_status modal_nodal_diameters_reduce(modal_nodal_diameters *diameters, int modes,
                                         bool residuals);
 
 /* Drop the residual modes. Their contribution moves into the tail, which is then of third order. */
 void modal_model_drop_residual_modes(modal_model *model);
+void modal_wave_drop_residual_modes(modal_model *model, modal_model *imaginary,
+                                    modal_model *backward);
 
 #endif

@@ -112,6 +112,7 @@ shb_status modal_sector_write(hid_t file, const mesh_fe *mesh, const modal_resul
     H5Gclose(group);
     SHB_TRY(status);
   }
+  SHB_TRY(modal_sector_speeds_write(file, &sector->speeds));
   return modal_deflection_write(file, &first->deflection, mesh->n_nodes, mesh->n_elements,
                                 &first->model);
 }

@@ -23,6 +23,7 @@ typedef struct {
   const modal_result   *first;
   fem_sector            matrices;
   fem_hermitian_order  *order;
+  modal_sector_tracks  *tracks; /* NULL: one speed */
   modal_sector         *out;
   shb_status           *status; /* [n] */
   char (*message)[MESSAGE];     /* [n] */
@@ -35,9 +36,6 @@ shb_status modal_sector_check(MPI_Comm comm, const modal_settings *settings) {
             "a sector with cyclic sides runs on one rank, not %d; its nodal diameters run on "
             "threads (OMP_NUM_THREADS)",
             ranks);
-  SHB_CHECK(settings->n_speeds <= 1, SHB_ERR_INPUT,
-            "rotor.speed: a sector with cyclic sides takes one speed, not %d; give a case for each",
-            settings->n_speeds);
   SHB_CHECK(settings->modes > 0, SHB_ERR_INPUT,
             "modal.modes: auto is for a clamped blade; give the number of modes at each nodal "
             "diameter");
@@ -51,8 +49,7 @@ shb_status modal_sector_check(MPI_Comm comm, const modal_settings *settings) {
   return SHB_OK;
 }
 
-/* The nodal diameters wanted, ascending, with 0. */
-static shb_status list_diameters(const modal_settings *settings, modal_sector *out) {
+shb_status modal_sector_list(const modal_settings *settings, modal_nodal_diameters *out) {
   const int most = settings->blades / 2;
   int      *list = malloc(((size_t)most + 1) * sizeof *list), n = 0;
   SHB_CHECK(list, SHB_ERR_IO, "out of memory for the nodal diameters");
@@ -61,8 +58,8 @@ static shb_status list_diameters(const modal_settings *settings, modal_sector *o
     for (int i = 0; i < settings->n_diameters; i++) wanted = wanted || settings->diameter[i] == d;
     if (wanted) list[n++] = d;
   }
-  shb_status status = modal_nodal_diameters_create(settings->blades, n, &out->models);
-  if (status == SHB_OK) memcpy(out->models.diameter, list, (size_t)n * sizeof *list);
+  shb_status status = modal_nodal_diameters_create(settings->blades, n, out);
+  if (status == SHB_OK) memcpy(out->diameter, list, (size_t)n * sizeof *list);
   free(list);
   return status;
 }
@@ -77,16 +74,23 @@ static bool has_columns(const modal_result *first, int n) {
   return first->residual.n > 0 && n * each <= MOST_COLUMN_BYTES;
 }
 
+/* Of several speeds one is shown at every node. */
+static bool wants_fields(const work *w) {
+  return !w->tracks || w->tracks->main;
+}
+
 /* Modes and condensation with a factor. */
 static shb_status solve_with(const work *w, int i, wave_operator *op, wave_modes *modes) {
   const wave_settings    wanted = {.modes = w->settings->modes, .check = w->settings->check};
   modal_nodal_diameters *all    = &w->out->models;
   SHB_TRY(wave_modes_solve(op, &wanted, w->body, w->state, modes));
   w->out->check[i] = modes->check;
-  SHB_TRY(wave_fields_create(op, modes, &w->first->to, w->body, w->state,
-                             has_columns(w->first, all->n), &w->out->fields[i]));
+  if (wants_fields(w))
+    SHB_TRY(wave_fields_create(op, modes, &w->first->to, w->body, w->state,
+                               has_columns(w->first, all->n), &w->out->fields[i]));
   SHB_TRY(wave_condense(op, modes, &w->first->to, &all->model[i], &all->imaginary[i],
                         &all->backward[i]));
+  if (w->tracks) SHB_TRY(modal_sector_tracks_take(w->tracks, i, modes));
   return modal_label(w->settings, &w->first->patches, &all->model[i]);
 }
 
@@ -107,12 +111,14 @@ static double bytes_each(const work *w) {
   return fem_hermitian_bytes(w->order) + 16 * order * (5 * modes + 40 + 4 * 30);
 }
 
-/* Bytes of the fields of all nodal diameters, which stay until the file is written. */
+/* Bytes of all nodal diameters that stay: fields until the file is written, shapes of two speeds
+ * that tracks are continued from. */
 static double bytes_kept(const work *w) {
   const double nodes = w->body->mesh->n_nodes, modes = w->settings->modes;
-  return w->out->models.n * nodes *
-         (modes * (3. * sizeof(double complex) + 6. * sizeof(float complex)) +
-          w->first->residual.n * 9. * sizeof(float complex));
+  const double fields = modes * (3. * sizeof(double complex) + 6. * sizeof(float complex)) +
+                        w->first->residual.n * 9. * sizeof(float complex);
+  const double shapes = 2 * 3. * sizeof(double complex) * modes;
+  return w->out->models.n * nodes * (fields + (w->tracks ? shapes : 0));
 }
 
 /* Threads that the memory allows; SHB_ERR_INPUT: not even one. */
@@ -205,16 +211,18 @@ static shb_status solve(work *w, shb_progress *progress, modal_result *first) {
 }
 
 shb_status modal_sector_solve(const mesh_fe *mesh, const modal_settings *settings,
-                              shb_progress *progress, modal_result *first, modal_sector *sector) {
+                              shb_progress *progress, modal_result *first,
+                              modal_sector_tracks *tracks, modal_sector *sector) {
   modal_body *body = NULL;
   memset(sector, 0, sizeof *sector);
-  SHB_TRY(list_diameters(settings, sector));
+  SHB_TRY(modal_sector_list(settings, &sector->models));
   shb_status status = modal_body_create(mesh, settings, &body);
   if (status == SHB_OK) {
     work w = {.body     = &body->body,
               .state    = first->deflection.at.displacement,
               .settings = settings,
               .first    = first,
+              .tracks   = tracks,
               .out      = sector};
     status = solve(&w, progress, first);
     fem_hermitian_order_free(w.order);
@@ -226,7 +234,22 @@ shb_status modal_sector_solve(const mesh_fe *mesh, const modal_settings *setting
   return status;
 }
 
+/* Models of the main speed are those of the sector. */
+static void free_speeds(modal_sector *sector) {
+  modal_sector_speeds *speeds = &sector->speeds;
+  for (int i = 0; i < speeds->n && sector->models.model; i++) {
+    modal_speeds *at = &speeds->at[i];
+    for (int s = 0; s < at->n; s++) {
+      if (at->model[s].frequency != sector->models.model[i].frequency) continue;
+      at->model[s] = (modal_model){0};
+      if (at->imaginary) at->imaginary[s] = at->backward[s] = (modal_model){0};
+    }
+  }
+  modal_sector_speeds_free(speeds);
+}
+
 void modal_sector_free(modal_sector *sector, const modal_result *first) {
+  free_speeds(sector);
   if (sector->models.model && sector->models.model[0].frequency == first->model.frequency)
     memset(&sector->models.model[0], 0, sizeof sector->models.model[0]);
   for (int i = 0; sector->fields && i < sector->models.n; i++) wave_fields_free(&sector->fields[i]);

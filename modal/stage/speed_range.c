@@ -27,22 +27,6 @@ static PetscErrorCode project(Mat before, const modal_eigen *eigen, double *C) {
   PetscFunctionReturn(0);
 }
 
-/* Match rows and columns by decreasing |C|, each once. next[i]: column of row i. */
-static void match(int m, const double *C, int *next) {
-  for (int i = 0; i < m; i++) next[i] = -1;
-  for (int round = 0; round < m; round++) {
-    int best[2] = {-1, -1};
-    for (int j = 0; j < m; j++) {
-      bool taken = false;
-      for (int i = 0; i < m; i++) taken = taken || next[i] == j;
-      for (int i = 0; i < m && !taken; i++)
-        if (next[i] < 0 && (best[0] < 0 || fabs(C[i * m + j]) > fabs(C[best[0] * m + best[1]])))
-          best[0] = i, best[1] = j;
-    }
-    next[best[0]] = best[1];
-  }
-}
-
 static void negate(double *value, int rows, int m, int mode) {
   for (int r = 0; value && r < rows; r++) value[(size_t)r * (size_t)m + (size_t)mode] *= -1;
 }
@@ -79,30 +63,24 @@ static PetscErrorCode store_overlap(Mat first, int s, const modal_result *r, mod
 
 /* Continue the tracks to speed s. before: mode shapes of speed s - 1; NULL at the first speed. */
 static shb_status track(Mat before, int s, modal_result *r, modal_speeds *out) {
-  const int m   = out->n_modes;
-  int      *now = out->mode + (size_t)s * (size_t)m;
-  double   *mac = out->mac + (size_t)s * (size_t)m;
-  for (int t = 0; !before && t < m; t++) {
-    now[t] = t;
-    mac[t] = 1;
+  const int m = out->n_modes;
+  if (!before) {
+    modal_tracks_continue(NULL, s, NULL, out);
+    return SHB_OK;
   }
-  if (!before) return SHB_OK;
-  double *C    = malloc((size_t)m * (size_t)m * sizeof *C);
+  double *C    = malloc(2 * (size_t)m * (size_t)m * sizeof *C);
   int    *next = malloc((size_t)m * sizeof *next);
   if (!C || !next) {
     free(C);
     free(next);
     SHB_FAIL(SHB_ERR_IO, "out of memory to track %d modes", m);
   }
-  PetscErrorCode code = project(before, &r->eigen, C);
-  if (code == 0) match(m, C, next);
-  for (int t = 0; code == 0 && t < m; t++) {
-    int    i = now[t - m], j = next[i]; /* track's mode at the speed before, at this one */
-    double c = C[i * m + j];
-    now[t]   = j;
-    mac[t]   = PetscMin(1, c * c);
-    if (c < 0) code = change_sign(r, j);
-  }
+  double        *overlap = C + m * m;
+  PetscErrorCode code    = project(before, &r->eigen, C);
+  for (int i = 0; i < m * m && code == 0; i++) overlap[i] = fabs(C[i]);
+  if (code == 0) modal_tracks_continue(overlap, s, next, out);
+  for (int i = 0; i < m && code == 0; i++)
+    if (C[i * m + next[i]] < 0) code = change_sign(r, next[i]);
   free(C);
   free(next);
   return fem_petsc_status(code);
@@ -123,22 +101,60 @@ static PetscErrorCode drop_factor(modal_result *r) {
   PetscFunctionReturn(0);
 }
 
-/* Solve one speed. shapes: mode shapes of the first speed and of the speed before. */
-static shb_status solve_speed(MPI_Comm comm, const mesh_fe *mesh, const modal_settings *settings,
-                              int s, shb_progress *progress, modal_speeds *out, Mat shapes[2],
-                              modal_result *result) {
-  modal_settings settings_here = *settings;
+/* All that the speeds of a range share. */
+typedef struct {
+  MPI_Comm            comm;
+  const mesh_fe      *mesh;
+  modal_settings      settings;
+  shb_progress       *progress;
+  modal_speeds       *out;
+  Mat                 shapes[2]; /* mode shapes of the first speed and of the speed before */
+  modal_sector       *sector;    /* NULL: a clamped blade */
+  modal_sector_tracks tracks;    /* of the sector */
+} speed_work;
+
+/* The other nodal diameters of a sector at one speed. */
+static shb_status solve_sector(speed_work *r, const modal_settings *here, int s,
+                               modal_result *now) {
+  modal_sector_speeds *speeds = &r->sector->speeds;
+  modal_sector         found;
+  r->tracks.s       = s;
+  r->tracks.main    = here->speed == r->settings.speed;
+  shb_status status = modal_sector_solve(r->mesh, here, r->progress, now, &r->tracks, &found);
+  for (int i = 1; status == SHB_OK && i < speeds->n; i++) {
+    modal_speeds *at = &speeds->at[i];
+    at->model[s]     = found.models.model[i]; /* moved, or shared with the sector */
+    if (!at->imaginary) continue;
+    at->imaginary[s] = found.models.imaginary[i];
+    at->backward[s]  = found.models.backward[i];
+  }
+  if (status == SHB_OK && r->tracks.main) {
+    found.speeds = *speeds;
+    *r->sector   = found;
+    return SHB_OK;
+  }
+  for (int i = 1; status == SHB_OK && i < speeds->n; i++)
+    found.models.model[i] = found.models.imaginary[i] = found.models.backward[i] = (modal_model){0};
+  modal_sector_free(&found, now);
+  return status;
+}
+
+/* Solve one speed. */
+static shb_status solve_speed(speed_work *r, int s, modal_result *result) {
+  modal_settings here = r->settings;
+  modal_speeds  *out  = r->out;
   modal_result   now;
-  settings_here.speed = out->speed[s];
-  shb_progress_note(progress, "speed %d of %d: %.6g rad/s", s + 1, out->n, settings_here.speed);
-  shb_status status = modal_solve(comm, mesh, &settings_here, progress, &now);
-  if (status == SHB_OK) status = track(shapes[1], s, &now, out);
-  if (status == SHB_OK) status = fem_petsc_status(store_overlap(shapes[0], s, &now, out));
-  if (status == SHB_OK && s == 0) status = fem_petsc_status(copy_shapes(&now, &shapes[0]));
-  if (status == SHB_OK) status = fem_petsc_status(copy_shapes(&now, &shapes[1]));
+  here.speed = out->speed[s];
+  shb_progress_note(r->progress, "speed %d of %d: %.6g rad/s", s + 1, out->n, here.speed);
+  shb_status status = modal_solve(r->comm, r->mesh, &here, r->progress, &now);
+  if (status == SHB_OK) status = track(r->shapes[1], s, &now, out);
+  if (status == SHB_OK) status = fem_petsc_status(store_overlap(r->shapes[0], s, &now, out));
+  if (status == SHB_OK && s == 0) status = fem_petsc_status(copy_shapes(&now, &r->shapes[0]));
+  if (status == SHB_OK) status = fem_petsc_status(copy_shapes(&now, &r->shapes[1]));
   if (status == SHB_OK) status = fem_petsc_status(drop_factor(&now));
+  if (status == SHB_OK && r->sector) status = solve_sector(r, &here, s, &now);
   if (status == SHB_OK) out->model[s] = now.model; /* moved, or shared with result */
-  if (status == SHB_OK && settings_here.speed == settings->speed) {
+  if (status == SHB_OK && here.speed == r->settings.speed) {
     *result = now;
     return SHB_OK;
   }
@@ -169,25 +185,48 @@ static shb_status choose_modes(MPI_Comm comm, const mesh_fe *mesh, const modal_s
   return SHB_OK;
 }
 
+/* The tracks of all nodal diameters of a sector. */
+static shb_status begin_sector(speed_work *r) {
+  modal_nodal_diameters models;
+  SHB_TRY(modal_sector_list(&r->settings, &models));
+  shb_status status = modal_sector_tracks_create(&models, r->out->n, r->out->speed, r->out->n_modes,
+                                                 &r->sector->speeds, &r->tracks);
+  modal_nodal_diameters_free(&models);
+  return status;
+}
+
+static shb_status solve_all(speed_work *r, modal_result *result) {
+  shb_status status = r->sector ? begin_sector(r) : SHB_OK;
+  for (int s = 0; status == SHB_OK && s < r->out->n; s++) status = solve_speed(r, s, result);
+  if (status == SHB_OK && r->sector) {
+    r->sector->speeds.at[0] = *r->out;
+    *r->out                 = (modal_speeds){0};
+  }
+  if (r->sector) modal_sector_tracks_free(&r->tracks);
+  for (int i = 0; i < 2; i++) (void)MatDestroy(&r->shapes[i]);
+  return status;
+}
+
 shb_status modal_speed_range_solve(MPI_Comm comm, const mesh_fe *mesh,
                                    const modal_settings *settings, shb_progress *progress,
-                                   modal_speeds *speeds, modal_result *result) {
-  Mat            shapes[2] = {NULL, NULL};
-  modal_settings each      = *settings;
+                                   modal_speeds *speeds, modal_sector *sector,
+                                   modal_result *result) {
+  speed_work r = {.comm     = comm,
+                  .mesh     = mesh,
+                  .settings = *settings,
+                  .progress = progress,
+                  .out      = speeds,
+                  .sector   = sector};
   memset(result, 0, sizeof *result);
-  SHB_TRY(choose_modes(comm, mesh, settings, progress, &each.modes));
-  SHB_TRY(modal_speeds_create(settings->n_speeds, each.modes, speeds));
+  SHB_TRY(choose_modes(comm, mesh, settings, progress, &r.settings.modes));
+  SHB_TRY(modal_speeds_create(settings->n_speeds, r.settings.modes, speeds));
   const size_t m  = (size_t)speeds->n_modes;
   speeds->overlap = calloc((size_t)speeds->n * m * m, sizeof *speeds->overlap);
   SHB_CHECK(speeds->overlap, SHB_ERR_IO, "out of memory to compare the modes of %d speeds",
             speeds->n);
   memcpy(speeds->speed, settings->speeds, (size_t)speeds->n * sizeof *speeds->speed);
   qsort(speeds->speed, (size_t)speeds->n, sizeof *speeds->speed, ascending);
-  shb_status status = SHB_OK;
-  for (int s = 0; status == SHB_OK && s < speeds->n; s++)
-    status = solve_speed(comm, mesh, &each, s, progress, speeds, shapes, result);
-  for (int i = 0; i < 2; i++) (void)MatDestroy(&shapes[i]);
-  return status;
+  return solve_all(&r, result);
 }
 
 void modal_speed_range_free(modal_speeds *speeds, const modal_result *result) {

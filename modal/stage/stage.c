@@ -156,12 +156,13 @@ static shb_status run(MPI_Comm comm, int rank, const char *out_path, const mesh_
   shb_status   status;
   if (mesh->image) SHB_TRY(modal_sector_check(comm, settings));
   if (settings->n_speeds > 1)
-    status = modal_speed_range_solve(comm, mesh, settings, progress, &speeds, &result);
+    status = modal_speed_range_solve(comm, mesh, settings, progress, &speeds,
+                                     mesh->image ? &sector : NULL, &result);
   else
     status = modal_solve(comm, mesh, settings, progress, &result);
   if (status == SHB_OK) status = gather_shapes(&result, rank, &of.shape);
-  if (status == SHB_OK && mesh->image)
-    status = modal_sector_solve(mesh, settings, progress, &result, &sector);
+  if (status == SHB_OK && mesh->image && settings->n_speeds <= 1)
+    status = modal_sector_solve(mesh, settings, progress, &result, NULL, &sector);
   if (status == SHB_OK)
     status = modal_agree(comm, rank == 0 ? find_stresses(mesh, settings, &result, &of) : SHB_OK);
   if (status == SHB_OK)

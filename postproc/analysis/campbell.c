@@ -99,6 +99,7 @@ static double curve_at(const curve *k, double speed) {
 
 static bool is_excited(const post_campbell *c, int order) {
   int e = c->engine_order;
+  if (c->blades > 0 && modal_nodal_diameter(order, c->blades) != c->diameter) return false;
   return e > 0 && order > 0 && order % e == 0 &&
          modal_model_is_driven(&c->speeds->model[0], order / e);
 }
@@ -304,9 +305,21 @@ static void draw(const post_campbell *campbell, post_plot *plot) {
   curves_free(&c);
 }
 
+enum { ID = 32 };
+
+/* Name of a diagram in a page. */
+static const char *id_of(const post_campbell *campbell, char id[ID]) {
+  if (campbell->blades > 0)
+    snprintf(id, ID, "campbell-%d", campbell->diameter);
+  else
+    snprintf(id, ID, "campbell");
+  return id;
+}
+
 static void put_plot(const post_campbell *campbell, double top, post_buffer *out) {
+  char      id[ID];
   post_plot plot = {.out    = out,
-                    .id     = "campbell",
+                    .id     = id_of(campbell, id),
                     .left   = 66,
                     .top    = top,
                     .width  = WIDTH - 66 - 80,
@@ -322,8 +335,9 @@ static const char description[] =
     "the table.";
 
 void post_campbell_picture(const post_campbell *campbell, const char *case_name, post_buffer *out) {
-  char title[256];
-  snprintf(title, sizeof title, "Campbell diagram: %s", case_name);
+  char title[256], of[48] = "";
+  if (campbell->blades > 0) snprintf(of, sizeof of, ", nodal diameter %d", campbell->diameter);
+  snprintf(title, sizeof title, "Campbell diagram%s: %s", of, case_name);
   plot_picture_open(out, "campbell", WIDTH, HEIGHT, title, description, post_campbell_css);
   put_plot(campbell, 76, out);
   plot_svg_close(out);
@@ -357,22 +371,32 @@ static void put_crossings(const post_campbell *campbell, post_buffer *out) {
   free(all);
 }
 
-void post_campbell_section(const post_campbell *campbell, post_buffer *out) {
-  post_put(out,
-           "<section>\n<h2>Campbell diagram</h2>\n<p class=\"note\">Modes of the blade with free "
-           "contact faces at %d speeds (dots), followed by their shapes (MAC) and joined in "
-           "Ω².%s Straight lines: engine orders, the excited ones dashed; rings: where they meet a "
-           "mode.</p>\n<div class=\"card\"><figure><div class=\"chart\">\n",
-           campbell->speeds->n,
-           campbell->n_stuck > 0
-               ? " Dotted: the ring with stuck contacts, at the nodal diameter of "
-                 "the excitation."
-               : "");
-  plot_svg_open(out, "campbell", WIDTH, HEIGHT - 42, "Campbell diagram", description);
+/* One diagram with its crossings. */
+static void put_diagram(const post_campbell *campbell, post_buffer *out) {
+  char id[ID];
+  if (campbell->blades > 0) post_put(out, "<h3>Nodal diameter %d</h3>\n", campbell->diameter);
+  post_put(out, "<div class=\"card\"><figure><div class=\"chart\">\n");
+  plot_svg_open(out, id_of(campbell, id), WIDTH, HEIGHT - 42, "Campbell diagram", description);
   put_plot(campbell, 34, out);
   plot_svg_close(out);
   post_put(out, "</div></figure></div>\n");
   put_crossings(campbell, out);
+}
+
+void post_campbell_section(int n, const post_campbell *campbell, post_buffer *out) {
+  const bool disc = campbell->blades > 0;
+  post_put(out,
+           "<section>\n<h2>Campbell diagram</h2>\n<p class=\"note\">Modes of the %s with free "
+           "contact faces at %d speeds (dots), followed by their shapes (MAC) and joined in "
+           "Ω².%s Straight lines: engine orders, the excited ones dashed; rings: where they meet a "
+           "mode.%s</p>\n",
+           disc ? "sector" : "blade", campbell->speeds->n,
+           campbell->n_stuck == 0 ? ""
+           : disc                 ? " Dotted: the same with stuck contacts."
+                  : " Dotted: the ring with stuck contacts, at the nodal diameter of "
+                    "the excitation.",
+           disc ? " An excited order meets the modes of its own nodal diameter only." : "");
+  for (int i = 0; i < n; i++) put_diagram(&campbell[i], out);
   post_put(out, "</section>\n");
 }
 

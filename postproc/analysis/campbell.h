@@ -5,6 +5,7 @@
 
 #include <stdbool.h>
 
+#include "modal/model/nodal_diameters.h"
 #include "modal/model/speeds.h"
 #include "postproc/draw/text_buffer.h"
 
@@ -15,6 +16,7 @@ typedef struct {
    * not known */
   int     n_stuck;
   double *stuck;
+  int     blades, diameter; /* of a disc: N, and the nodal diameter of its modes; blades 0: none */
 } post_campbell;
 
 /* A resonance: the line of an engine order meets a mode. */
@@ -26,15 +28,17 @@ typedef struct {
 } post_crossing;
 
 /* Crossings of the excited orders E k (harmonics k of the load) within the speed range, by
- * ascending speed. Between the speeds of the file lambda is the spline in Omega^2
- * (modal/model/spline.h). crossing: malloc'ed. Errors: SHB_ERR_IO no memory. */
+ * ascending speed. Of a disc only the orders count that meet its nodal diameter. Between the speeds
+ * of the file lambda is the spline in Omega^2 (modal/model/spline.h). crossing: malloc'ed. Errors:
+ * SHB_ERR_IO no memory. */
 shb_status post_campbell_crossings(const post_campbell *campbell, int *n, post_crossing **crossing);
 
 /* A stand-alone picture, light or dark as the viewer prefers. */
 void post_campbell_picture(const post_campbell *campbell, const char *case_name, post_buffer *out);
 
-/* The section of the report: diagram and table of the crossings. */
-void post_campbell_section(const post_campbell *campbell, post_buffer *out);
+/* The section of the report: n diagrams, one a nodal diameter, each with a table of its
+ * crossings. */
+void post_campbell_section(int n, const post_campbell *campbell, post_buffer *out);
 
 /* Style rules that the page needs for it. */
 extern const char post_campbell_css[];

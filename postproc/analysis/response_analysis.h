@@ -84,7 +84,10 @@ typedef struct {
   const double       *area;
   const char         *stress;   /* section of the page on stress, HTML; NULL: none. Set likewise. */
   const struct post_safe *safe; /* frequencies over the nodal diameter; NULL: none. Set likewise. */
-  const post_campbell *campbell; /* modes over the speed, if there are several; set by the caller */
+  /* [n_campbells] modes over the speed, if there are several. Of a disc one a nodal diameter that
+   * its load meets, that of the engine order first. Set by the caller. */
+  const post_campbell *campbell;
+  int                  n_campbells;
 } post_analysis;
 
 /* The response must outlive the analysis. Errors: SHB_ERR_INPUT no branch with a point; SHB_ERR_IO

@@ -9,6 +9,7 @@
 #include "mhb/response/response.h"
 #include "modal/hdf5/h5.h"
 #include "modal/model/model.h"
+#include "modal/model/sector_speeds.h"
 #include "postproc/analysis/campbell.h"
 #include "postproc/analysis/file_origin.h"
 #include "postproc/analysis/findings.h"
@@ -65,6 +66,18 @@ static const char *inertia_of(const modal_model *m) {
   return load && probes ? "yes" : "of the contact alone: not of load and probes";
 }
 
+/* Frequencies over the speed at every nodal diameter of a disc. */
+static shb_status put_sector_speeds(const char *path, bool verbose, post_buffer *out) {
+  modal_sector_speeds all;
+  SHB_TRY(modal_sector_speeds_read(path, &all));
+  for (int i = 0; i < all.n; i++) {
+    post_put(out, "  nodal diameter %d:\n", all.diameter[i]);
+    post_campbell_table(&all.at[i], verbose, out);
+  }
+  modal_sector_speeds_free(&all);
+  return SHB_OK;
+}
+
 static shb_status sum_up_modal(hid_t file, const char *path, bool verbose, post_buffer *out) {
   modal_model m;
   SHB_TRY(modal_model_read(path, &m));
@@ -97,6 +110,7 @@ static shb_status sum_up_modal(hid_t file, const char *path, bool verbose, post_
   if (status == SHB_OK) status = modal_speeds_read(path, &speeds);
   if (speeds.n > 0) post_campbell_table(&speeds, verbose, out);
   modal_speeds_free(&speeds);
+  if (status == SHB_OK) status = put_sector_speeds(path, verbose, out);
   if (status == SHB_OK) status = post_phase_table(file, out);
   modal_model_free(&m);
   return status;

@@ -1,10 +1,10 @@
 #include "postproc/report/publish.h"
-#include "modal/model/nodal_diameters.h"
 
 #include <stdio.h>
 #include <stdlib.h>
 
 #include "mhb/continuation/linear_resonances.h"
+#include "modal/model/sector_speeds.h"
 #include "postproc/analysis/findings.h"
 #include "postproc/analysis/resonances.h"
 #include "postproc/report/csv.h"
@@ -13,16 +13,18 @@
 #include "postproc/report/safe_diagram.h"
 
 typedef struct {
-  mhb_response    *response;
-  post_origin      source;
-  post_analysis   *analysis;
-  post_convergence convergence;
-  modal_speeds     speeds;
-  modal_model      model;
-  post_blade_field field;
-  post_campbell    campbell;
-  post_safe        safe;
-  post_buffer      html, csv, svg, diagram;
+  mhb_response       *response;
+  post_origin         source;
+  post_analysis      *analysis;
+  post_convergence    convergence;
+  modal_speeds        speeds;
+  modal_sector_speeds sector;
+  modal_model         model;
+  post_blade_field    field;
+  post_campbell      *campbell;
+  int                 n_campbells;
+  post_safe           safe;
+  post_buffer         html, csv, svg, diagram;
 } work;
 
 /* Put the file's name before an error text of the analysis. */
@@ -76,30 +78,88 @@ static shb_status add_safe(const post_job *job, work *w) {
   return status;
 }
 
-/* Stuck frequencies at each speed, at the nodal diameter of the excitation. */
-static shb_status add_stuck(const mhb_settings *settings, work *w) {
+/* The models of a disc at one speed; only the lists are its own. */
+static shb_status at_speed(const modal_sector_speeds *all, int speed, modal_nodal_diameters *out) {
+  SHB_TRY(modal_nodal_diameters_create(all->blades, all->n, out));
+  for (int i = 0; i < all->n; i++) {
+    const modal_speeds *at = &all->at[i];
+    out->diameter[i]       = all->diameter[i];
+    out->model[i]          = at->model[speed];
+    if (!at->imaginary) continue;
+    out->imaginary[i] = at->imaginary[speed];
+    out->backward[i]  = at->backward[speed];
+  }
+  return SHB_OK;
+}
+
+static void release(modal_nodal_diameters *d) {
+  for (int i = 0; d->model && i < d->n; i++)
+    d->model[i] = d->imaginary[i] = d->backward[i] = (modal_model){0};
+  modal_nodal_diameters_free(d);
+}
+
+/* Stuck frequencies at one speed, at the nodal diameter of the diagram. */
+static shb_status find_stuck(const mhb_settings *settings, const work *w, int speed,
+                             const post_campbell *c) {
+  mhb_settings          here   = *settings;
+  modal_nodal_diameters models = {0};
+  const bool            disc   = c->blades > 0;
+  const modal_model    *model  = disc ? &w->sector.at[0].model[speed] : &c->speeds->model[speed];
+  shb_status            status = disc ? at_speed(&w->sector, speed, &models) : SHB_OK;
+  here.nodal_diameters         = disc ? &models : NULL;
+  if (status == SHB_OK)
+    status = mhb_stuck_frequencies(model, &here, disc ? c->diameter : settings->engine_order,
+                                   c->n_stuck, c->stuck + speed * c->n_stuck);
+  release(&models);
+  return status;
+}
+
+/* Stuck frequencies at each speed. */
+static shb_status add_stuck(const mhb_settings *settings, const work *w, post_campbell *c) {
   enum { MOST = 12 };
-  const modal_speeds *s = &w->speeds;
-  const int           n = s->n_modes < MOST ? s->n_modes : MOST;
+  const modal_speeds *s = c->speeds;
   if (!settings || s->model[0].n_pairs == 0) return SHB_OK;
   if (!settings->to_ground && !s->model[0].has_left) return SHB_OK;
-  w->campbell.stuck = calloc((size_t)n * (size_t)s->n, sizeof *w->campbell.stuck);
-  SHB_CHECK(w->campbell.stuck, SHB_ERR_IO, "not enough memory for the Campbell diagram");
-  for (int i = 0; i < s->n; i++)
-    SHB_TRY(mhb_stuck_frequencies(&s->model[i], settings, settings->engine_order, n,
-                                  w->campbell.stuck + i * n));
-  w->campbell.n_stuck = n;
+  c->n_stuck = s->n_modes < MOST ? s->n_modes : MOST;
+  c->stuck   = calloc((size_t)c->n_stuck * (size_t)s->n, sizeof *c->stuck);
+  SHB_CHECK(c->stuck, SHB_ERR_IO, "not enough memory for the Campbell diagram");
+  for (int i = 0; i < s->n; i++) SHB_TRY(find_stuck(settings, w, i, c));
   return SHB_OK;
+}
+
+/* The nodal diameters that the load meets, that of the engine order first. */
+static void list_diagrams(work *w) {
+  const modal_sector_speeds *all   = &w->sector;
+  const modal_model         *model = &all->at[0].model[0];
+  const int                  E     = w->response->engine_order;
+  for (int h = 1; h <= model->n_load; h++) {
+    const int n    = modal_nodal_diameter((long)h * E, all->blades);
+    bool      have = !modal_model_is_driven(model, h);
+    for (int i = 0; i < w->n_campbells; i++) have = have || w->campbell[i].diameter == n;
+    for (int i = 0; i < all->n && !have; i++)
+      if (all->diameter[i] == n)
+        w->campbell[w->n_campbells++] = (post_campbell){
+            .speeds = &all->at[i], .engine_order = E, .blades = all->blades, .diameter = n};
+  }
 }
 
 static shb_status add_campbell(const post_job *job, work *w) {
   if (!job->modal) return SHB_OK;
   SHB_TRY(modal_speeds_read(job->modal, &w->speeds));
-  if (w->speeds.n < 2) return SHB_OK;
-  w->campbell = (post_campbell){&w->speeds, w->response->engine_order, 0, NULL};
-  SHB_TRY(add_stuck(job->settings, w));
-  w->analysis->campbell = &w->campbell;
-  post_campbell_picture(&w->campbell, job->case_name, &w->diagram);
+  if (w->speeds.n == 0) SHB_TRY(modal_sector_speeds_read(job->modal, &w->sector));
+  if (w->speeds.n < 2 && w->sector.n == 0) return SHB_OK;
+  w->campbell = calloc((size_t)w->sector.n + 1, sizeof *w->campbell);
+  SHB_CHECK(w->campbell, SHB_ERR_IO, "not enough memory for the Campbell diagram");
+  if (w->sector.n > 0)
+    list_diagrams(w);
+  else
+    w->campbell[w->n_campbells++] =
+        (post_campbell){.speeds = &w->speeds, .engine_order = w->response->engine_order};
+  for (int i = 0; i < w->n_campbells; i++) SHB_TRY(add_stuck(job->settings, w, &w->campbell[i]));
+  if (w->n_campbells == 0) return SHB_OK;
+  w->analysis->campbell    = w->campbell;
+  w->analysis->n_campbells = w->n_campbells;
+  post_campbell_picture(w->campbell, job->case_name, &w->diagram);
   return SHB_OK;
 }
 
@@ -165,9 +225,11 @@ shb_status post_publish(const post_job *job, shb_progress *progress, char **summ
   post_buffer_free(&w.csv);
   post_buffer_free(&w.svg);
   post_buffer_free(&w.diagram);
-  free(w.campbell.stuck);
+  for (int i = 0; i < w.n_campbells; i++) free(w.campbell[i].stuck);
+  free(w.campbell);
   post_safe_free(&w.safe);
   modal_speeds_free(&w.speeds);
+  modal_sector_speeds_free(&w.sector);
   modal_model_free(&w.model);
   post_blade_field_free(&w.field);
   return status;

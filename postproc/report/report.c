@@ -326,7 +326,7 @@ shb_status post_report(const post_analysis *analysis, const post_origin *source,
   put_details(analysis, chosen, out);
   if (analysis->stress) post_put_bytes(out, analysis->stress, strlen(analysis->stress));
   put_axes(analysis, out);
-  if (analysis->campbell) post_campbell_section(analysis->campbell, out);
+  if (analysis->campbell) post_campbell_section(analysis->n_campbells, analysis->campbell, out);
   if (analysis->safe) post_safe_section(analysis->safe, out);
   if (analysis->convergence) post_convergence_section(analysis->convergence, out);
   put_tables(analysis, out);

@@ -40,9 +40,10 @@ shb_status z_notch_write(mesh_kind kind, const z_notch_sizes *sizes, const char 
   return mesh_blade_write(&blade, path, &provenance, NULL);
 }
 
-shb_status z_notch_disc_write(const z_notch_sizes *sizes, const char *path) {
+shb_status z_notch_disc_write(int blades, const z_notch_sizes *sizes, const char *path) {
   mesh_blade           blade      = make_blade(MESH_TET10, sizes);
   const shb_provenance provenance = {"", "", "", "bench"};
+  blade.blades                    = blades;
   blade.root_width                = .033; /* between the sides of the disc */
   blade.disc_bore                 = .15;
   blade.disc_web                  = .02;

@@ -176,6 +176,57 @@ static void set_load(const lumped_disc *d, const sector_modes *s, int m, bool ba
     }
 }
 
+lumped_disc lumped_disc_spinning(double speed) {
+  const double s = speed * speed;
+  lumped_disc  d = lumped_disc_of(0.8 + 0.2 * s, 1.7);
+  join(d.own, 3, -1, 0.5 * s);
+  join(d.own, DISC_RIGHT, -1, 0.3 * s + 0.1 * s * s);
+  return d;
+}
+
+/* overlap: phi_0^H M phi; imaginary: NULL of real shapes. */
+static void set_overlap(const lumped_disc *d, const sector_modes *first, const sector_modes *s,
+                        int modes, double *overlap, double *imaginary) {
+  for (int i = 0; i < modes * modes; i++) {
+    double complex sum = 0;
+    for (int a = 0; a < D; a++)
+      sum += conj(first->shape[a][i / modes]) * d->mass[a] * s->shape[a][i % modes];
+    overlap[i] = creal(sum);
+    if (imaginary) imaginary[i] = cimag(sum);
+  }
+}
+
+static void set_speed(const lumped_disc *d, int i, int k, sector_modes *first,
+                      modal_sector_speeds *out) {
+  modal_speeds *to = &out->at[k];
+  sector_modes  s;
+  const size_t  square = (size_t)(to->n_modes * to->n_modes), at = (size_t)i * square;
+  solve_sector(d, SHB_TWO_PI * k / N, &s);
+  if (i == 0) *first = s;
+  set_modes(&s, to->n_modes, &to->model[i], to->imaginary ? &to->imaginary[i] : NULL, d->damping);
+  set_load(d, &s, to->n_modes, false, &to->model[i]);
+  if (to->imaginary) set_load(d, &s, to->n_modes, true, &to->backward[i]);
+  set_overlap(d, first, &s, to->n_modes, to->overlap + at,
+              to->imaginary ? to->overlap_imaginary + at : NULL);
+  for (int t = 0; t < to->n_modes; t++) to->mode[i * to->n_modes + t] = t;
+}
+
+void lumped_disc_speeds(int n, int modes, modal_sector_speeds *out) {
+  static sector_modes first[N / 2 + 1];
+  assert_ok(modal_sector_speeds_create(N, N / 2 + 1, out));
+  for (int k = 0; k <= N / 2; k++) {
+    out->diameter[k] = k;
+    assert_ok(modal_speeds_create(n, modes, &out->at[k]));
+    out->at[k].overlap = take((size_t)(n * modes * modes));
+    if (k > 0 && 2 * k < N) assert_ok(modal_speeds_make_complex(&out->at[k]));
+    for (int i = 0; i < n; i++) {
+      out->at[k].speed[i] = i / (n - 1.);
+      const lumped_disc d = lumped_disc_spinning(out->at[k].speed[i]);
+      set_speed(&d, i, k, &first[k], out);
+    }
+  }
+}
+
 void lumped_disc_waves(const lumped_disc *d, int modes, modal_nodal_diameters *out) {
   assert_ok(modal_nodal_diameters_create(N, N / 2 + 1, out));
   for (int n = 0; n <= N / 2; n++) {

@@ -8,7 +8,7 @@
 #define TESTS_SUPPORT_LUMPED_DISC_H
 
 #include "mhb/problem/settings.h"
-#include "modal/model/nodal_diameters.h"
+#include "modal/model/sector_speeds.h"
 
 enum {
   DISC_SECTORS = 8,
@@ -31,6 +31,12 @@ typedef struct {
 /*   coupling  in  N/m, springs between the disc masses
  *   ground    in  N/m, springs from the disc mass to the axis */
 lumped_disc lumped_disc_of(double coupling, double ground);
+
+/* The same on a rotor: its blades and its coupling are stiffened by the speed, rad/s. */
+lumped_disc lumped_disc_spinning(double speed);
+
+/* n of them over 0 to 1 rad/s, with the lowest modes and overlaps. */
+void lumped_disc_speeds(int n, int modes, modal_sector_speeds *out);
 
 /* Nodal diameters 0..N/2 with the lowest modes, and residual terms of the others. */
 void lumped_disc_waves(const lumped_disc *disc, int modes, modal_nodal_diameters *out);

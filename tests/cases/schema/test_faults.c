@@ -541,10 +541,6 @@ static void a_disc_and_other_keys(void **state) {
   static const struct {
     const char *rest, *says;
   } rows[] = {
-      {"modal: {modes: 3}\nrotor: {blades: 4, speed: [0, 3]}\ncontact: {points: 1, mu: 1, ku: 1, "
-       "kv: "
-       "1, n0: 1}\n",
-       "error: rotor.speed: has 2 speeds; a sector with a disc takes one, so give a case for each"},
       {"modal: {modes: auto}\nrotor: {blades: 4}\ncontact: {points: 1, mu: 1, ku: 1, kv: 1, n0: "
        "1}\n",
        "error: modal.modes: is auto, which a disc does not know; give the number of modes at each "

@@ -85,12 +85,52 @@ static void on_disc(const mesh_fe *sector, double stiffer, double first, peaks *
   settings.n_regions = 2;
   settings.region    = region;
   assert_ok(modal_solve(PETSC_COMM_SELF, &mesh, &settings, NULL, &result));
-  assert_ok(modal_sector_solve(&mesh, &settings, NULL, &result, &all));
+  assert_ok(modal_sector_solve(&mesh, &settings, NULL, &result, NULL, &all));
   s.nodal_diameters = &all.models;
   sweep(&all.models.model[0], &s, out);
   modal_sector_free(&all, &result);
   modal_result_free(&result);
   free(mesh.region);
+}
+
+/* A disc of steel under two excitations of the same lag between the blades. */
+static void same_wave(int blades, int order, int beyond) {
+  modal_settings    settings = sector_case(blades, MODES);
+  mesh_cyclic_sides sides;
+  modal_result      result;
+  modal_sector      all;
+  peaks             at[2];
+  use_elements(MESH_HEX20);
+  mesh_fe mesh = make_bladed_sector(blades, blades == 2 ? 2 : 1);
+  assert_ok(mesh_cyclic_pair(&mesh, MESH_AXIS_X, blades, &sides));
+  assert_ok(mesh_fe_orient(&mesh, MESH_AXIS_X));
+  assert_ok(modal_solve(PETSC_COMM_SELF, &mesh, &settings, NULL, &result));
+  assert_ok(modal_sector_solve(&mesh, &settings, NULL, &result, NULL, &all));
+  const int    met  = modal_nodal_diameters_find(&all.models, modal_nodal_diameter(order, blades));
+  mhb_settings s    = balance_case(all.models.model[met].frequency[0]);
+  s.blades          = blades;
+  s.nodal_diameters = &all.models;
+  for (int i = 0; i < 2; i++) {
+    s.engine_order = i ? beyond : order;
+    sweep(&all.models.model[0], &s, &at[i]);
+  }
+  for (int i = 0; i < 3; i++) {
+    print_message("%d blades, engine orders %d and %d: %.6g m at %.6g Hz, %.6g at %.6g\n", blades,
+                  order, beyond, at[0].amplitude[i], at[0].at[i], at[1].amplitude[i], at[1].at[i]);
+    assert_true(at[0].amplitude[i] > 0);
+    assert_near(at[1].amplitude[i] / at[0].amplitude[i], 1, 1e-9);
+    assert_near(at[1].at[i] / at[0].at[i], 1, 1e-9);
+  }
+  modal_sector_free(&all, &result);
+  modal_result_free(&result);
+  mesh_fe_free(&mesh);
+}
+
+/* Engine orders above N/2, also with two blades. */
+static void an_order_above_half_the_blades_is_its_wave(void **state) {
+  (void)state;
+  same_wave(BLADES, ORDER, ORDER + BLADES);
+  same_wave(2, 1, 3);
 }
 
 /* Heights and frequencies: [6]. */
@@ -140,7 +180,8 @@ static void a_stiff_disc_is_a_clamp(void **state) {
 }
 
 int main(int argc, char **argv) {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(a_stiff_disc_is_a_clamp)};
+  const struct CMUnitTest tests[] = {cmocka_unit_test(a_stiff_disc_is_a_clamp),
+                                     cmocka_unit_test(an_order_above_half_the_blades_is_its_wave)};
   modal_session           session;
   if (modal_session_start(&argc, &argv, &session) != SHB_OK) return 1;
   int failures = cmocka_run_group_tests(tests, NULL, NULL);

@@ -14,6 +14,7 @@
 #include "mhb/structure/receptance.h"
 #include "modal/model/reduce.h"
 #include "tests/support/check.h"
+#include "tests/support/lumped_disc.h"
 #include "tests/support/random_model.h"
 #include "tests/support/spinning.h"
 
@@ -109,6 +110,74 @@ static void what_does_not_change_stays(void **state) {
       assert_below(error(SPINNING_STEADY, n, overlap), 1e-12);
 }
 
+/* ---- a disc ---- */
+
+static mhb_disc_table *make_disc_run_up(int n, mhb_settings *s, mhb_disc_speeds **top) {
+  modal_sector_speeds speeds;
+  mhb_disc_table     *run_up = NULL;
+  lumped_disc_speeds(n, 8, &speeds);
+  assert_ok(
+      mhb_disc_table_create(&speeds, "disc.modal.h5", s->engine_order, s->frequency, &run_up));
+  assert_ok(mhb_disc_table_check(run_up, "disc.modal.h5"));
+  modal_sector_speeds_free(&speeds);
+  assert_ok(mhb_disc_speeds_create(run_up, top));
+  mhb_disc_speeds_set_all(*top);
+  s->run_up          = run_up->table[0];
+  s->disc_run_up     = run_up;
+  s->nodal_diameters = &(*top)->now;
+  return run_up;
+}
+
+static mhb_settings disc_settings(int engine_order) {
+  mhb_settings s = lumped_disc_settings(engine_order, 3);
+  s.frequency[0] = spinning_settings().frequency[0];
+  s.frequency[1] = spinning_settings().frequency[1];
+  return s;
+}
+
+/* As error; some harmonics are backward waves, some those of nodal diameters 0 and N/2. */
+static double disc_error(int n, int engine_order) {
+  mhb_settings     s = disc_settings(engine_order), plain = s;
+  mhb_disc_speeds *top;
+  mhb_disc_table  *run_up = make_disc_run_up(n, &s, &top);
+  mhb_receptance  *r, *exact;
+  double           worst = 0;
+  assert_ok(mhb_receptance_create(&top->now.model[0], &s, K, &r));
+  for (int i = 0; i < PLACES; i++) {
+    double complex        a[VALUES], b[VALUES];
+    modal_nodal_diameters waves;
+    const lumped_disc     d = lumped_disc_spinning(place(i) / s.engine_order);
+    lumped_disc_waves(&d, 8, &waves);
+    assert_ok(modal_nodal_diameters_reduce(&waves, run_up->table[0]->n_modes, true));
+    for (int k = 0; k < waves.n; k++)
+      modal_wave_drop_residual_modes(&waves.model[k], &waves.imaginary[k], &waves.backward[k]);
+    plain.nodal_diameters = &waves;
+    assert_ok(mhb_receptance_create(&waves.model[0], &plain, K, &exact));
+    outputs(r, place(i), false, a);
+    outputs(exact, place(i), false, b);
+    worst = fmax(worst, distance(a, b));
+    mhb_receptance_destroy(exact);
+    modal_nodal_diameters_free(&waves);
+  }
+  mhb_receptance_destroy(r);
+  mhb_disc_speeds_destroy(top);
+  mhb_disc_table_destroy(run_up);
+  return worst;
+}
+
+static void order_of_a_disc_is_four(void **state) {
+  (void)state;
+  for (int engine_order = 2; engine_order <= 3; engine_order++) {
+    double e[3];
+    for (int i = 0; i < 3; i++) e[i] = disc_error(8 << i, engine_order);
+    print_message("disc, E = %d: %.2e with 8 speeds, %.2e with 16, %.2e with 32\n", engine_order,
+                  e[0], e[1], e[2]);
+    assert_below(e[1], e[0] / 12);
+    assert_below(e[2], e[1] / 12);
+    assert_below(e[2], 1e-7);
+  }
+}
+
 /* Straight lines in Omega^2, constant shapes: exact. */
 static void straight_lines_are_exact(void **state) {
   (void)state;
@@ -179,6 +248,29 @@ static void slopes_are_derivatives(void **state) {
 }
 
 /* Modes that change places with ones left out are left out too. */
+static void slopes_of_a_disc_are_derivatives(void **state) {
+  (void)state;
+  for (int engine_order = 2; engine_order <= 3; engine_order++) {
+    mhb_settings     s = disc_settings(engine_order);
+    mhb_disc_speeds *top;
+    mhb_disc_table  *run_up = make_disc_run_up(9, &s, &top);
+    mhb_receptance  *r;
+    double           worst = 0;
+    assert_ok(mhb_receptance_create(&top->now.model[0], &s, K, &r));
+    for (int i = 0; i < PLACES; i++) {
+      double complex exact[VALUES], wanted[VALUES];
+      difference(r, place(i), wanted);
+      outputs(r, place(i), true, exact);
+      worst = fmax(worst, distance(exact, wanted));
+    }
+    print_message("disc, E = %d: slopes differ by %.1e\n", engine_order, worst);
+    assert_below(worst, 1e-8);
+    mhb_receptance_destroy(r);
+    mhb_disc_speeds_destroy(top);
+    mhb_disc_table_destroy(run_up);
+  }
+}
+
 static void modes_that_leave_are_static(void **state) {
   (void)state;
   for (int overlap = 0; overlap < 2; overlap++) {
@@ -254,6 +346,8 @@ int main(void) {
                                      cmocka_unit_test(straight_lines_are_exact),
                                      cmocka_unit_test(order_is_four),
                                      cmocka_unit_test(slopes_are_derivatives),
+                                     cmocka_unit_test(order_of_a_disc_is_four),
+                                     cmocka_unit_test(slopes_of_a_disc_are_derivatives),
                                      cmocka_unit_test(modes_that_leave_are_static),
                                      cmocka_unit_test(speeds_far_away_do_not_count),
                                      cmocka_unit_test(what_cannot_be_is_refused)};

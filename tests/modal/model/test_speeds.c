@@ -129,7 +129,7 @@ static void crossing_modes_are_tracked(void **state) {
   mesh_fe        mesh     = make_beam();
   modal_speeds   s;
   modal_result   result;
-  assert_ok(modal_speed_range_solve(PETSC_COMM_SELF, &mesh, &settings, NULL, &s, &result));
+  assert_ok(modal_speed_range_solve(PETSC_COMM_SELF, &mesh, &settings, NULL, &s, NULL, &result));
   for (int i = 1; i < SPEEDS; i++) assert_true(s.speed[i] > s.speed[i - 1]);
   check_tracks(&s);
   check_overlaps(&s);
@@ -155,7 +155,7 @@ static void auto_modes_suit_every_speed(void **state) {
     modal_result result;
     int          single[2];
     settings.band = band[k];
-    assert_ok(modal_speed_range_solve(PETSC_COMM_SELF, &mesh, &settings, NULL, &s, &result));
+    assert_ok(modal_speed_range_solve(PETSC_COMM_SELF, &mesh, &settings, NULL, &s, NULL, &result));
     for (int i = 0; i < 2; i++) {
       modal_settings one = settings;
       modal_result   at;

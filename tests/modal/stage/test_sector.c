@@ -10,8 +10,8 @@
 #include "mesh/core/cyclic_sides.h"
 #include "mesh/io/inp_write.h"
 #include "modal/common/session.h"
-#include "modal/model/nodal_diameters.h"
 #include "modal/model/residual_series.h"
+#include "modal/model/sector_speeds.h"
 #include "modal/stage/stage.h"
 #include "tests/support/box.h"
 #include "tests/support/fem.h"
@@ -574,6 +574,57 @@ static void any_format_and_number_of_threads(void **state) {
   mesh_fe_free(&mesh);
 }
 
+/* Each of several speeds is that of a file of its own; the fields are those of the main one. */
+static void several_speeds(void **state) {
+  (void)state;
+  modal_settings        settings = default_settings();
+  const double          speed[3] = {1500, 0, 900}; /* the last is the main one */
+  const int             list[]   = {1, 3};
+  modal_sector_speeds   all;
+  modal_nodal_diameters one, main;
+  settings.modes       = 8;
+  settings.n_diameters = 2;
+  settings.diameter    = list;
+  settings.speed       = speed[2];
+  settings.n_speeds    = 3;
+  settings.speeds      = speed;
+  assert_ok(modal_stage(PETSC_COMM_WORLD, scratch("sector.msh"), scratch("speeds.modal.h5"),
+                        &settings, &provenance, NULL));
+  assert_ok(modal_sector_speeds_read(scratch("speeds.modal.h5"), &all));
+  assert_ok(modal_nodal_diameters_read(scratch("speeds.modal.h5"), &main));
+  assert_int_equal(all.n, 3);
+  settings.n_speeds = 0;
+  for (int s = 0; s < 3; s++) {
+    double worst   = 0;
+    settings.speed = all.at[0].speed[s];
+    assert_true(s == 0 || all.at[0].speed[s] > all.at[0].speed[s - 1]);
+    assert_ok(modal_stage(PETSC_COMM_WORLD, scratch("sector.msh"), scratch("one.modal.h5"),
+                          &settings, &provenance, NULL));
+    assert_ok(modal_nodal_diameters_read(scratch("one.modal.h5"), &one));
+    for (int n = 0; n < 3; n++) {
+      const modal_model *a = &all.at[n].model[s], *b = &one.model[n];
+      assert_int_equal(all.diameter[n], one.diameter[n]);
+      for (int i = 0; i < settings.modes; i++) {
+        assert_near(a->frequency[i] / b->frequency[i], 1, 1e-12);
+        worst = fmax(worst, fabs(cabs(a->modal_force[settings.modes + i]) /
+                                     cabs(b->modal_force[settings.modes + i]) -
+                                 1));
+        if (settings.speed == speed[2]) assert_true(main.model[n].frequency[i] == a->frequency[i]);
+      }
+      for (int i = 0; i < 36; i++)
+        assert_near(a->residual_flexibility[i] / b->residual_flexibility[0],
+                    b->residual_flexibility[i] / b->residual_flexibility[0], 1e-9);
+    }
+    print_message("%g rad/s: modal forces off by %.1e\n", settings.speed, worst);
+    assert_below(worst, 1e-7);
+    modal_nodal_diameters_free(&one);
+  }
+  for (int n = 0; n < 3; n++) /* eight modes of the first speed are nearly those of the last */
+    for (int t = 0; t < 6; t++) assert_true(all.at[n].mac[2 * settings.modes + t] > 0.5);
+  modal_nodal_diameters_free(&main);
+  modal_sector_speeds_free(&all);
+}
+
 /* A list of nodal diameters, with 0 added. */
 static void a_list_of_nodal_diameters(void **state) {
   scene                *s        = *state;
@@ -604,7 +655,6 @@ static void bad_input(void **state) {
   (void)state;
   modal_settings settings = default_settings();
   const int      above[]  = {1, 4};
-  const double   speed[2] = {0, 100};
   settings.blades         = 7;
   refused(
       &settings, "sector.msh",
@@ -619,10 +669,6 @@ static void bad_input(void **state) {
   settings       = default_settings();
   settings.modes = 0;
   refused(&settings, "sector.msh", "modal.modes: auto");
-  settings          = default_settings();
-  settings.n_speeds = 2;
-  settings.speeds   = speed;
-  refused(&settings, "sector.msh", "rotor.speed: a sector with cyclic sides takes one speed");
   settings       = default_settings();
   settings.check = MODAL_CHECK_INERTIA;
   refused(&settings, "sector.msh", "modal.check: inertia");
@@ -666,6 +712,7 @@ int main(int argc, char **argv) {
                                      cmocka_unit_test(columns_of_the_ring),
                                      cmocka_unit_test(content_of_the_file),
                                      cmocka_unit_test(at_speed),
+                                     cmocka_unit_test(several_speeds),
                                      cmocka_unit_test(a_list_of_nodal_diameters),
                                      cmocka_unit_test(any_format_and_number_of_threads),
                                      cmocka_unit_test(two_blades),

@@ -49,7 +49,7 @@ static void crossings_are_exact(void **state) {
   int            n, wanted = 0, seen = 0;
   make(&s);
   assert_int_equal(s.mode[3 * MODES + 1], 2); /* they do cross */
-  const post_campbell campbell = {&s, 2, 0, NULL};
+  const post_campbell campbell = {.speeds = &s, .engine_order = 2};
   assert_ok(post_campbell_crossings(&campbell, &n, &found));
   for (int k = 1; k <= 3; k += 2)
     for (int t = 0; t < MODES; t++) {
@@ -76,7 +76,7 @@ static void picture_and_section(void **state) {
   modal_speeds s;
   post_buffer  svg = {0}, html = {0}, text = {0};
   make(&s);
-  const post_campbell campbell = {&s, 2, 0, NULL};
+  const post_campbell campbell = {.speeds = &s, .engine_order = 2};
   post_campbell_picture(&campbell, "<x>", &svg);
   assert_has(svg.text, "Campbell diagram: &lt;x&gt;");
   assert_has(svg.text, "speed, rpm");
@@ -85,7 +85,7 @@ static void picture_and_section(void **state) {
   assert_has(svg.text, ">mode 3<");
   assert_has(svg.text, ">6E<");
   assert_has_not(svg.text, "nan");
-  post_campbell_section(&campbell, &html);
+  post_campbell_section(1, &campbell, &html);
   assert_has(html.text, "<td>6E</td><td>1</td>");
   post_campbell_table(&s, false, &text);
   assert_has(text.text, "4 speeds; frequencies of the tracked modes");
@@ -93,6 +93,37 @@ static void picture_and_section(void **state) {
   post_buffer_free(&svg);
   post_buffer_free(&html);
   post_buffer_free(&text);
+  release(&s);
+}
+
+/* Of 40 sectors nodal diameter 6 meets order 6, and not order 2. */
+static void orders_of_a_disc_meet_their_nodal_diameter(void **state) {
+  (void)state;
+  modal_speeds   s;
+  post_crossing *found, *all;
+  post_buffer    html = {0};
+  int            n, whole, seen = 0;
+  make(&s);
+  const post_campbell blade  = {.speeds = &s, .engine_order = 2};
+  const post_campbell disc[] = {{.speeds = &s, .engine_order = 2, .blades = 40, .diameter = 6},
+                                {.speeds = &s, .engine_order = 2, .blades = 40, .diameter = 4}};
+  assert_ok(post_campbell_crossings(&blade, &whole, &all));
+  for (int i = 0; i < whole; i++) seen += all[i].order == 6;
+  free(all);
+  assert_ok(post_campbell_crossings(&disc[0], &n, &found));
+  for (int i = 0; i < n; i++) assert_int_equal(found[i].order, 6);
+  free(found);
+  assert_true(n > 0);
+  assert_int_equal(n, seen);
+  assert_ok(post_campbell_crossings(&disc[1], &n, &found)); /* order 4 is not driven */
+  assert_int_equal(n, 0);
+  free(found);
+  post_campbell_section(2, disc, &html);
+  assert_has(html.text, "<h3>Nodal diameter 6</h3>");
+  assert_has(html.text, "<h3>Nodal diameter 4</h3>");
+  assert_has(html.text, "Modes of the sector");
+  assert_has_not(html.text, "<td>2E</td>");
+  post_buffer_free(&html);
   release(&s);
 }
 
@@ -105,7 +136,7 @@ static void lost_tracks_are_left_out(void **state) {
   int            n;
   make(&s);
   for (int i = 1; i < SPEEDS; i++) s.mac[i * MODES] = 0.3;
-  const post_campbell campbell = {&s, 2, 0, NULL};
+  const post_campbell campbell = {.speeds = &s, .engine_order = 2};
   assert_ok(post_campbell_crossings(&campbell, &n, &found));
   for (int i = 0; i < n; i++) assert_int_not_equal(found[i].track, 0);
   free(found);
@@ -129,7 +160,8 @@ static void stuck_frequencies_are_met(void **state) {
   for (int i = 0; i < SPEEDS; i++)
     for (int j = 0; j < STUCK; j++)
       stuck[i * STUCK + j] = sqrt(low[j] * low[j] + rate[j] * s.speed[i] * s.speed[i]);
-  const post_campbell campbell = {&s, 2, STUCK, stuck};
+  const post_campbell campbell = {
+      .speeds = &s, .engine_order = 2, .n_stuck = STUCK, .stuck = stuck};
   assert_ok(post_campbell_crossings(&campbell, &n, &found));
   for (int i = 0; i < n; i++) {
     if (!found[i].stuck) continue;
@@ -140,7 +172,7 @@ static void stuck_frequencies_are_met(void **state) {
     seen++;
   }
   assert_int_equal(seen, 1);
-  post_campbell_section(&campbell, &html);
+  post_campbell_section(1, &campbell, &html);
   assert_non_null(strstr(html.text, "<td>stuck 1</td>"));
   post_buffer_free(&html);
   free(found);
@@ -148,8 +180,10 @@ static void stuck_frequencies_are_met(void **state) {
 }
 
 int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(crossings_are_exact), cmocka_unit_test(stuck_frequencies_are_met),
-      cmocka_unit_test(picture_and_section), cmocka_unit_test(lost_tracks_are_left_out)};
+  const struct CMUnitTest tests[] = {cmocka_unit_test(crossings_are_exact),
+                                     cmocka_unit_test(stuck_frequencies_are_met),
+                                     cmocka_unit_test(picture_and_section),
+                                     cmocka_unit_test(orders_of_a_disc_meet_their_nodal_diameter),
+                                     cmocka_unit_test(lost_tracks_are_left_out)};
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

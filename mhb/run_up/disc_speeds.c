@@ -1,0 +1,115 @@
+#include "mhb/run_up/disc_speeds.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+#include "mesh/base/constants.h"
+
+shb_status mhb_disc_table_create(modal_sector_speeds *speeds, const char *path, int engine_order,
+                                 const double frequency[2], mhb_disc_table **out) {
+  mhb_disc_table *d = calloc(1, sizeof *d);
+  SHB_CHECK(d, SHB_ERR_IO, "out of memory");
+  d->blades        = speeds->blades;
+  d->n             = speeds->n;
+  d->diameter      = speeds->diameter;
+  speeds->diameter = NULL;
+  d->table         = calloc((size_t)d->n, sizeof *d->table);
+  shb_status status =
+      d->table ? mhb_speed_tables_create(d->n, speeds->at, path, engine_order, frequency, d->table)
+               : shb_fail(SHB_ERR_IO, __FILE__, __LINE__, "out of memory");
+  if (status != SHB_OK) {
+    mhb_disc_table_destroy(d);
+    return status;
+  }
+  *out = d;
+  return SHB_OK;
+}
+
+void mhb_disc_table_destroy(mhb_disc_table *d) {
+  if (!d) return;
+  for (int i = 0; d->table && i < d->n; i++) mhb_speed_table_destroy(d->table[i]);
+  free(d->table);
+  free(d->diameter);
+  free(d);
+}
+
+shb_status mhb_disc_table_check(const mhb_disc_table *d, const char *path) {
+  for (int i = 0; i < d->n; i++) SHB_TRY(mhb_speed_model_check(d->table[i], path));
+  return SHB_OK;
+}
+
+static shb_status make(mhb_disc_speeds *s) {
+  const mhb_disc_table *d = s->table;
+  const size_t          n = (size_t)d->n;
+  s->at                   = calloc(n, sizeof(mhb_speed_model *));
+  s->used                 = calloc(n, sizeof *s->used);
+  SHB_CHECK(s->at && s->used, SHB_ERR_IO, "out of memory for the disc");
+  SHB_TRY(modal_nodal_diameters_create(d->blades, d->n, &s->now));
+  SHB_TRY(modal_nodal_diameters_create(d->blades, d->n, &s->slope));
+  s->used[0] = true;
+  for (int i = 0; i < d->n; i++) {
+    s->now.diameter[i] = s->slope.diameter[i] = d->diameter[i];
+    SHB_TRY(mhb_speed_model_create(d->table[i], &s->at[i]));
+    const mhb_speed_model *at = s->at[i];
+    s->now.model[i]           = at->model;
+    s->now.imaginary[i]       = at->imaginary;
+    s->now.backward[i]        = at->backward;
+    s->slope.model[i]         = at->slope;
+    s->slope.imaginary[i]     = at->slope_imaginary;
+    s->slope.backward[i]      = at->slope_backward;
+  }
+  return SHB_OK;
+}
+
+shb_status mhb_disc_speeds_create(const mhb_disc_table *table, mhb_disc_speeds **out) {
+  mhb_disc_speeds *s = calloc(1, sizeof *s);
+  SHB_CHECK(s, SHB_ERR_IO, "out of memory");
+  s->table          = table;
+  shb_status status = make(s);
+  if (status != SHB_OK) {
+    mhb_disc_speeds_destroy(s);
+    return status;
+  }
+  *out = s;
+  return SHB_OK;
+}
+
+/* The arrays of the models belong to the speed models. */
+static void release(modal_nodal_diameters *d) {
+  for (int i = 0; d->model && i < d->n; i++)
+    d->model[i] = d->imaginary[i] = d->backward[i] = (modal_model){0};
+  modal_nodal_diameters_free(d);
+}
+
+void mhb_disc_speeds_destroy(mhb_disc_speeds *s) {
+  if (!s) return;
+  release(&s->now);
+  release(&s->slope);
+  for (int i = 0; s->at && i < s->table->n; i++) mhb_speed_model_destroy(s->at[i]);
+  free(s->at);
+  free(s->used);
+  free(s);
+}
+
+void mhb_disc_speeds_set(mhb_disc_speeds *s, double omega) {
+  for (int i = 0; i < s->table->n; i++)
+    if (s->used[i]) mhb_speed_model_set(s->at[i], omega);
+}
+
+void mhb_disc_speeds_set_all(mhb_disc_speeds *s) {
+  for (int i = 1; i < s->table->n; i++) mhb_speed_model_set(s->at[i], s->at[0]->omega);
+}
+
+void mhb_disc_speeds_differentiate(mhb_disc_speeds *s) {
+  for (int i = 0; i < s->table->n; i++)
+    if (s->used[i]) mhb_speed_model_differentiate(s->at[i]);
+}
+
+mhb_speed_model *mhb_disc_speeds_use(mhb_disc_speeds *s, long wave) {
+  const int i = modal_nodal_diameters_find(&s->now, modal_nodal_diameter(wave, s->table->blades));
+  if (i < 0) return NULL;
+  if (!s->used[i] && s->at[0]->omega == s->at[0]->omega)
+    mhb_speed_model_set(s->at[i], s->at[0]->omega);
+  s->used[i] = true;
+  return s->at[i];
+}
