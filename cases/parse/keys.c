@@ -3,7 +3,9 @@
 #include <limits.h>
 #include <stdarg.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
+#include <strings.h>
 
 const case_key *case_key_find(case_keys keys, const char *path) {
   for (int i = 0; i < keys.n; i++)
@@ -84,10 +86,11 @@ static void list_block(case_keys keys, const char *block, char *text, size_t siz
 
 bool case_key_nearest(case_keys keys, const char *block, const char *word, char *best) {
   char part[CASE_LONGEST_WORD];
-  int  least = strlen(word) < 6 ? 2 : 1 + (int)strlen(word) / 3;
-  best[0]    = '\0';
+  int  length = (int)strlen(word), least = length < 6 ? 2 : 1 + length / 3;
+  best[0] = '\0';
   for (int i = 0; i < keys.n; i++) {
     if (!case_key_part(keys.key[i].path, block, part)) continue;
+    if (abs(length - (int)strlen(part)) > least) continue; /* as many edits at least */
     int  distance = case_edit_distance(word, part);
     bool nearer = distance < least, alike = lower(part[0]) == lower(word[0]),
          tie = distance == least;
@@ -107,7 +110,7 @@ void case_key_suggest(case_keys keys, const char *block, const char *word, char 
   text[0]    = '\0';
   for (int i = 0; i < keys.n && !close; i++) {
     const char *path = keys.key[i].path;
-    if (case_edit_distance(case_key_leaf(path), word) != 0) continue;
+    if (strcasecmp(case_key_leaf(path), word) != 0) continue;
     case_append(text, size, "; did you mean '%s'?", path);
     return;
   }

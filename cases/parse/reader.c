@@ -8,9 +8,23 @@
 #include "cases/parse/value.h"
 #include "cases/parse/value_context.h"
 
+/* Open addressing: the slot of a path, or the empty one where it would be. */
+static int slot_of(const case_reader *r, const char *path) {
+  int at = (int)(case_hash(path) % CASE_KEY_SLOTS);
+  while (r->slot[at] && strcmp(r->keys.key[r->slot[at] - 1].path, path) != 0)
+    at = (at + 1) % CASE_KEY_SLOTS;
+  return at;
+}
+
+static void index_rows(case_reader *r) {
+  for (int i = 0; i < r->keys.n; i++) {
+    short *slot = &r->slot[slot_of(r, r->keys.key[i].path)];
+    if (!*slot) *slot = (short)(i + 1);
+  }
+}
+
 static int index_of(const case_reader *r, const char *path) {
-  const case_key *key = case_key_find(r->keys, path);
-  return key ? (int)(key - r->keys.key) : -1;
+  return r->slot[slot_of(r, path)] - 1;
 }
 
 const case_node *case_reader_given(const case_reader *r, const char *path) {
@@ -68,8 +82,11 @@ void case_reader_issue(const case_reader *r, const char *path, const char *forma
 /* A default is in order: without a value there is no memory. */
 static void read_default(case_reader *r, const case_key *key, char *base) {
   case_issues none = case_issues_start("default", key->fallback, strlen(key->fallback));
-  case_node  *node = case_document_parse(&none);
-  bool        good = node && case_value_read(&none, key, key->path, node, r->file, base + key->at);
+  case_node   plain;
+  bool        scalar = case_plain_value(key->fallback, &plain);
+  case_node  *node   = scalar ? NULL : case_document_parse(&none);
+  bool good = (scalar || node) && case_value_read(&none, key, key->path, scalar ? &plain : node,
+                                                  r->file, base + key->at);
   if (!good) case_issues_no_memory(r->issues);
   case_document_free(node);
   case_issues_free(&none);
@@ -118,7 +135,8 @@ static void read_members(case_reader *r, const char *prefix, const case_node *no
     char             row[CASE_PATH], full[CASE_PATH];
     case_path(row, "%s.%s", prefix, child->key);
     case_path(full, "%s.%s", path, child->key);
-    const case_key *key   = case_key_find(r->keys, row);
+    const int       index = index_of(r, row);
+    const case_key *key   = index >= 0 ? &r->keys.key[index] : NULL;
     bool            block = !key && case_key_is_block(r->keys, row);
     if (key) {
       case_value_read(r->issues, key, full, child, r->file, base + key->at);
@@ -266,6 +284,7 @@ static void walk(case_reader *r, const case_node *map, const char *path) {
 
 void case_reader_walk(case_reader *r, const case_node *root) {
   assert(r->keys.n <= CASE_MAX_KEYS);
+  index_rows(r);
   for (int i = 0; i < r->keys.n; i++) {
     const case_key *key = &r->keys.key[i];
     if (!key->fallback || is_section_row(key)) continue;

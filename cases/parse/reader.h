@@ -8,7 +8,7 @@
 #include "cases/parse/keys.h"
 #include "cases/parse/yaml.h"
 
-enum { CASE_MAX_KEYS = 192, CASE_MAX_BLOCKS = 32 };
+enum { CASE_MAX_KEYS = 192, CASE_MAX_BLOCKS = 32, CASE_KEY_SLOTS = 512 };
 
 /* A block of keys in the file. */
 typedef struct {
@@ -19,6 +19,7 @@ typedef struct {
 typedef struct {
   case_issues     *issues;
   case_keys        keys;
+  short            slot[CASE_KEY_SLOTS]; /* 1 + row by hash of its path, 0: empty; by walk */
   case_file       *file;                 /* holds the slots */
   const case_node *given[CASE_MAX_KEYS]; /* the node of a row in the file, or NULL */
   bool             good[CASE_MAX_KEYS];  /* read without an issue, or default */

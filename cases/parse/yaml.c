@@ -13,13 +13,31 @@ typedef struct {
   bool          indexed; /* indices are written <1> */
 } builder;
 
+/* Reads all bytes, at most CASE_MAX_BYTES + 1, and a NUL behind them. Returns 0, or an errno. Small
+ * files take little memory: thousands are read in a study. */
+static int read_bytes(FILE *file, char **bytes, size_t *n) {
+  size_t room = 0;
+  for (bool more = true; more;) {
+    room        = room ? 4 * room : 4096;
+    char *grown = realloc(*bytes, room);
+    if (!grown) return ENOMEM;
+    *bytes      = grown;
+    size_t most = room - 1 <= CASE_MAX_BYTES ? room - 1 : CASE_MAX_BYTES + 1;
+    *n += fread(*bytes + *n, 1, most - *n, file);
+    more = *n == most && *n <= CASE_MAX_BYTES;
+  }
+  if (ferror(file)) return errno;
+  (*bytes)[*n] = '\0';
+  return 0;
+}
+
 shb_status case_text_read(const char *path, char **text, size_t *length) {
   *text      = NULL;
   FILE *file = fopen(path, "rb");
   SHB_CHECK(file, SHB_ERR_IO, "%s: cannot be opened: %s", path, strerror(errno));
-  char  *bytes = malloc(CASE_MAX_BYTES + 2);
-  size_t n     = bytes ? fread(bytes, 1, CASE_MAX_BYTES + 1, file) : 0;
-  int    why   = bytes ? (ferror(file) ? errno : 0) : ENOMEM;
+  char  *bytes = NULL;
+  size_t n     = 0;
+  int    why   = read_bytes(file, &bytes, &n);
   fclose(file);
   shb_status status = SHB_OK;
   if (why) {
@@ -36,9 +54,8 @@ shb_status case_text_read(const char *path, char **text, size_t *length) {
     free(bytes);
     return status;
   }
-  bytes[n] = '\0';
-  *text    = bytes;
-  *length  = n;
+  *text   = bytes;
+  *length = n;
   return SHB_OK;
 }
 
@@ -189,13 +206,15 @@ static void settle_entry(builder *b, case_node *map, case_node *key, const char 
   child->key        = key->text;
   key->text         = NULL;
   bool keep         = child->key != NULL;
+  child->key_hash   = keep ? case_hash(child->key) : 0;
   if (!keep && key->kind != CASE_BROKEN)
     case_issue_add(b->issues, key->line, key->column, path, "a key must be a word, not %s",
                    case_kind_name(key->kind));
   for (int i = 0; keep && i < map->n - 1; i++) {
-    if (strcmp(map->child[i].key, child->key) != 0) continue;
+    const case_node *other = &map->child[i];
+    if (other->key_hash != child->key_hash || strcmp(other->key, child->key) != 0) continue;
     case_issue_add(b->issues, key->line, key->column, path, "given twice; first on line %d",
-                   map->child[i].key_line);
+                   other->key_line);
     keep = false;
   }
   if (!keep) {
@@ -347,10 +366,25 @@ case_node *case_document_parse(case_issues *issues) {
   return root;
 }
 
+bool case_plain_value(const char *text, case_node *out) {
+  static const char plain[] =
+      "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_./%+ ";
+  *out = (case_node){.kind = CASE_SCALAR, .line = 1, .column = 1, .text = (char *)text};
+  return isalnum((unsigned char)text[0]) && text[strspn(text, plain)] == '\0' &&
+         strcmp(text, "null") != 0;
+}
+
 void case_document_free(case_node *root) {
   if (!root) return;
   node_clear(root);
   free(root);
+}
+
+uint64_t case_hash(const char *text) {
+  uint64_t hash = 14695981039346656037u;
+  for (const unsigned char *at = (const unsigned char *)text; *at; at++)
+    hash = (hash ^ *at) * 1099511628211u;
+  return hash;
 }
 
 const char *case_kind_name(case_kind kind) {

@@ -5,6 +5,7 @@
 
 #include <stdbool.h>
 #include <stddef.h>
+#include <stdint.h>
 
 #include "cases/parse/diagnostics.h"
 #include "mesh/base/status.h"
@@ -24,6 +25,7 @@ struct case_node {
   case_kind  kind;
   int        line, column; /* of the value's first character, from 1; columns count characters */
   char      *key;          /* in a mapping; else NULL */
+  uint64_t   key_hash;     /* of a key that the file holds: case_hash */
   int        key_line, key_column; /* of the key */
   char      *text;                 /* scalar */
   int        n;                    /* entries of a sequence or mapping */
@@ -38,6 +40,13 @@ shb_status case_text_read(const char *path, char **text, size_t *length);
  * A key given twice is recorded, and its first value is used. */
 case_node *case_document_parse(case_issues *issues);
 void       case_document_free(case_node *root);
+
+/* A text of letters, digits, spaces and _ . / % + as the node that YAML makes of it. The node
+ * borrows the text. False for any other text. */
+bool case_plain_value(const char *text, case_node *out);
+
+/* FNV-1a of a string (Fowler, Noll, Vo). */
+uint64_t case_hash(const char *text);
 
 /* "a mapping", "a list", ... for messages */
 const char *case_kind_name(case_kind kind);

@@ -1,13 +1,21 @@
 #include "tests/fuzz/fuzz_file.h"
 
 #include <dirent.h>
+#include <fcntl.h>
 #include <stdlib.h>
 #include <string.h>
 #include <unistd.h>
 
 #include "mesh/base/status.h"
 
-enum { PATH_ROOM = 512 };
+enum { PATH_ROOM = 512, MOST_FILES = 4 };
+
+/* For the address sanitizer: freed memory is kept for the inputs of some milliseconds, not
+ * seconds, and stays in the cache. */
+const char *__asan_default_options(void);
+const char *__asan_default_options(void) {
+  return "quarantine_size_mb=4:thread_local_quarantine_size_kb=256:max_malloc_fill_size=256";
+}
 
 static char folder[PATH_ROOM / 2];
 
@@ -29,14 +37,31 @@ static void make_folder(void) {
   atexit(remove_folder);
 }
 
-const char *fuzz_file(const char *name, const void *data, size_t size) {
-  static char path[PATH_ROOM];
+/* A file of the folder, kept open: a target writes one or two. */
+static struct {
+  const char *name;
+  int         file;
+  char        path[PATH_ROOM];
+} kept[MOST_FILES];
+
+static int place_of(const char *name) {
+  int i = 0;
+  while (i < MOST_FILES && kept[i].name && strcmp(kept[i].name, name) != 0) i++;
+  fuzz_assert(i < MOST_FILES, "too many files");
+  if (kept[i].name) return i;
   if (!folder[0]) make_folder();
-  snprintf(path, sizeof path, "%s/%s", folder, name);
-  FILE *file = fopen(path, "wb");
-  fuzz_assert(file && fwrite(data, 1, size, file) == size && fclose(file) == 0,
+  kept[i].name = name;
+  snprintf(kept[i].path, sizeof kept[i].path, "%s/%s", folder, name);
+  kept[i].file = open(kept[i].path, O_RDWR | O_CREAT | O_TRUNC, 0600);
+  return i;
+}
+
+const char *fuzz_file(const char *name, const void *data, size_t size) {
+  int i = place_of(name);
+  fuzz_assert(kept[i].file >= 0 && ftruncate(kept[i].file, (off_t)size) == 0 &&
+                  pwrite(kept[i].file, data, size, 0) == (ssize_t)size,
               "the input cannot be written");
-  return path;
+  return kept[i].path;
 }
 
 static FILE  *messages;

@@ -13,7 +13,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size);
 enum { FUZZ_MOST = 1 << 16 };
 
 /* Write the bytes to the file of that name in a folder of this process, and return its path. The
- * text lives until the next call. The folder is removed at the end of the process. */
+ * name is a literal. The folder is removed at the end of the process. */
 const char *fuzz_file(const char *name, const void *data, size_t size);
 
 /* Begin a stream for messages. */
