@@ -24,7 +24,8 @@ set(INTEGRATION_TESTS cases.study.study cases.study.samples cases.study.eval
   cases.study.ring_samples
   mhb.integration.integrator
   mhb.integration.integration_sweep mhb.integration.mistuned_ring
-  mhb.amplification.ring_response bench.mistuning mhb.ring.lasting mhb.branches.lasting_motion
+  mhb.amplification.ring_response bench.mistuning mhb.ring.lasting mhb.ring.mistuned_lasting
+  mhb.branches.lasting_motion
   mhb.continuation.arclength mhb.continuation.linear_resonances
   mhb.branches.harmonic_selection mhb.branches.branch_stability mhb.branches.secondary_branches
   mhb.branches.unfinished_curve

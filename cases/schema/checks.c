@@ -330,10 +330,6 @@ static void check_mistuning(case_reader *r, int stages) {
     case_reader_issue(r, path, "does not go with mhb.track");
   if (file->points < 0)
     case_reader_issue(r, path, "does not go with contact.points: auto; give the number of points");
-  if (case_reader_given(r, "mhb.lasting") && file->mhb.lasting != MHB_LASTING_NEVER)
-    case_reader_issue(r, "mhb.lasting",
-                      "does not go with rings of different blades (rotor.mistuning); leave it out "
-                      "and use shroudhb integrate");
 }
 
 /* What a disc in the mesh does not go with, as far as the case file shows that there is one. Groups

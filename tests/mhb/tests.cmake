@@ -57,7 +57,7 @@ foreach(noun ring_statistics side_waves slip_flow)
 endforeach()
 shb_test(mhb/ring neimark_sacker tests_models)
 shb_test(mhb/ring ring_neimark_sacker tests_models)
-foreach(noun lasting ring_step slow_sweep)
+foreach(noun lasting mistuned_lasting ring_step slow_sweep)
   shb_test(mhb/ring ${noun} tests_models)
 endforeach()
 foreach(noun arclength arclength_scalar balance_curve closed_curve corrector curve event_location
