@@ -70,15 +70,18 @@ void post_safe_free(post_safe *s) {
 /* ---------------------------------------------------------------- diagram */
 
 static void draw_family(const post_safe *s, const post_plot *plot, int family, bool stuck) {
-  const int n = s->blades / 2 + 1;
-  double    x[n], y[n];
-  for (int d = 0; d < n; d++) {
-    x[d] = d;
-    y[d] = (stuck ? s->stuck : s->open)[d * s->n_families + family];
+  const int most = s->blades / 2 + 1;
+  double    x[most], y[most];
+  int       n = 0;
+  for (int d = 0; d < most; d++) {
+    const double f = (stuck ? s->stuck : s->open)[d * s->n_families + family];
+    if (!(f == f)) continue; /* a diameter that the file of a disc lacks */
+    x[n]   = d;
+    y[n++] = f;
   }
   plot_line(plot, stuck ? "line limit stuck" : "line limit open", n, x, y, NULL);
-  for (int d = 0; d < n; d++)
-    if (y[d] <= plot->y.hi) plot_dot(plot, "dot family", d, y[d], 2.2);
+  for (int i = 0; i < n; i++)
+    if (y[i] <= plot->y.hi) plot_dot(plot, "dot family", x[i], y[i], 2.2);
 }
 
 /* The range of the curves at the diameter of each driven harmonic; rings where it holds a
@@ -156,7 +159,7 @@ void post_safe_section(const post_safe *s, post_buffer *out) {
            "the excitation drives; "
            "rings: its resonances there.%s</p>\n"
            "<div class=\"card\"><figure><div class=\"chart\">\n",
-           s->disc ? "The blades share a flexible disc; gaps are diameters that the file lacks."
+           s->disc ? "The blades share a flexible disc; dots: the nodal diameters of the file."
                    : "The root is clamped, so that open blades do not know each other.",
            s->speed > 0 ? " Thin zigzag: every engine order at the speed of the rotor." : "");
   plot_svg_open(out, "safe", WIDTH, HEIGHT, "SAFE diagram",
