@@ -15,7 +15,8 @@ set(INTEGRATION_TESTS cases.study.study cases.study.samples cases.study.eval
   modal.stage.coriolis mhb.floquet.disc_stability mhb.balance.coriolis
   modal.common.completeness modal.eigen.eigen modal.condense.condense modal.stage.ranks_1
   modal.stage.ranks_2 modal.stage.ranks_3 modal.cyclic.calculix modal.stage.sector
-  mesh.blade.disc modal.cyclic.wave_modes
+  mesh.blade.disc modal.cyclic.wave_modes modal.cyclic.blade_on_disc mhb.branches.disc_run_up
+  mhb.branches.stiff_disc
   modal.stage.calculix mhb.contact.contact
   mhb.contact.reference_law mhb.contact.accuracy mhb.contact.continuity mhb.contact.random
   mhb.problem.interfaces mhb.problem.parameter
