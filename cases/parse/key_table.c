@@ -374,10 +374,11 @@ static const case_key table[] = {
      .when = CASE_IF_VARIED,
      .help = "of several interfaces the one whose n0, mu, ku or kv that is, the others keep theirs "
              "(default: the first); all: in proportion"},
-    {"mhb.track", CASE_CHOICE, "", .words = "nothing peak fold", .fallback = "nothing",
-     AT(mhb.track), .stages = CASE_MHB, .when = CASE_IF_TRACKED,
-     .help = "with mhb.vary: follow the resonance peaks, or the folds, along the parameter; their "
-             "frequency, within mhb.frequency, is unknown too"},
+    {"mhb.track", CASE_CHOICE, "", .words = "nothing peak fold flip neimark-sacker",
+     .fallback = "nothing", AT(mhb.track), .stages = CASE_MHB, .when = CASE_IF_TRACKED,
+     .help = "with mhb.vary: follow the resonance peaks, the folds, or where the motion doubles "
+             "its period (flip) or begins to be modulated (neimark-sacker), along the parameter; "
+             "their frequency, within mhb.frequency, is unknown too"},
     {"mhb.output", CASE_LABEL, "", AT(mhb.output), .stages = CASE_MHB, .when = CASE_IF_TRACKED,
      .help = "whose peak: a probe, or contact for the first contact point; default: the first "
              "probe"},

@@ -144,6 +144,12 @@ static void check_followed(case_reader *r) {
   if (tracked && given > 0 && single)
     case_reader_issue(r, "mhb.frequency",
                       "is one number; with mhb.track give [from, to], where peaks are looked for");
+  if (mhb_track_by_multiplier(mhb_track_word(mhb->track)) && mhb->stability == MHB_STABILITY_NEVER)
+    case_reader_issue(
+        r, "mhb.stability",
+        "is never, but mhb.track: %s needs the multipliers of sweeps; leave it out, or "
+        "give always",
+        mhb_track_word(mhb->track));
   if (tracked && r->file->run_up) case_reader_issue(r, "mhb.track", "does not go with mhb.run_up");
   if (tracked && r->file->points < 0)
     case_reader_issue(r, "mhb.track",

@@ -17,6 +17,9 @@
  * interpolated between its points. */
 static const double ON_CURVE = 5e-4;
 
+/* Relative rounding of a value. */
+static const double ROUNDED = 1e-12;
+
 /* Peaks below this share of the highest at the same value of the parameter are not followed. */
 static const double MINOR = 0.4;
 
@@ -81,8 +84,14 @@ static const char *output_name(const tracking_run *run) {
 }
 
 static mhb_tracking tracking_of(const mhb_settings *settings, int output) {
+  static const mhb_tracked_point kind[MHB_N_TRACKS] = {
+      [MHB_TRACK_NOTHING]         = MHB_TRACK_PEAK,
+      [MHB_TRACK_PEAKS]           = MHB_TRACK_PEAK,
+      [MHB_TRACK_FOLDS]           = MHB_TRACK_FOLD,
+      [MHB_TRACK_FLIPS]           = MHB_TRACK_FLIP,
+      [MHB_TRACK_NEIMARK_SACKERS] = MHB_TRACK_NEIMARK_SACKER};
   return (mhb_tracking){
-      .kind       = settings->track == MHB_TRACK_FOLDS ? MHB_TRACK_FOLD : MHB_TRACK_PEAK,
+      .kind       = kind[settings->track],
       .output     = output,
       .parameter  = settings->parameter,
       .low        = settings->range[0],
@@ -120,10 +129,11 @@ static mhb_settings settings_at(const mhb_settings *settings, mhb_parameter para
  *   coarse  in  with the fewest harmonics, where the case leaves their number to the program */
 static shb_status sweep_at(const tracking_run *run, double value, bool coarse,
                            mhb_response **response) {
-  mhb_settings s  = settings_at(run->asked, run->tracking.parameter, value);
-  s.parameter     = MHB_IN_FREQUENCY;
-  s.track         = MHB_TRACK_NOTHING;
-  s.stability     = MHB_STABILITY_NEVER;
+  mhb_settings s = settings_at(run->asked, run->tracking.parameter, value);
+  s.parameter    = MHB_IN_FREQUENCY;
+  s.track        = MHB_TRACK_NOTHING;
+  if (!mhb_track_by_multiplier(mhb_track_word(run->asked->track)))
+    s.stability = MHB_STABILITY_NEVER;
   s.lasting       = MHB_LASTING_NEVER;
   s.search.starts = 0;
   s.resume        = false;
@@ -151,24 +161,50 @@ static double highest(const tracking_run *run, const mhb_response *r) {
 /* Whether a point is to be followed; most: the highest amplitude of its sweep. */
 static bool is_seed(const tracking_run *run, const mhb_response *r, const mhb_branch *branch, int i,
                     double most) {
-  const int output = run->tracking.output;
-  if (run->tracking.kind == MHB_TRACK_FOLD) return branch->special[i] == MHB_FOLD;
+  const int        output    = run->tracking.output;
+  static const int special[] = {[MHB_TRACK_PEAK]           = MHB_PEAK,
+                                [MHB_TRACK_FOLD]           = MHB_FOLD,
+                                [MHB_TRACK_FLIP]           = MHB_FLIP,
+                                [MHB_TRACK_NEIMARK_SACKER] = MHB_NEIMARK_SACKER};
+  if (run->tracking.kind != MHB_TRACK_PEAK)
+    return branch->special[i] == special[run->tracking.kind];
   if (branch->special[i] != MHB_PEAK || i == 0 || i == branch->n_points - 1) return false;
   double a = mhb_response_amplitude(r, branch, i, output);
   return a >= MINOR * most && a >= mhb_response_amplitude(r, branch, i - 1, output) &&
          a >= mhb_response_amplitude(r, branch, i + 1, output);
 }
 
-/* Frequency of a tracked branch at a value of the parameter, linear between its points; NAN beyond
- * its ends. At a place that a fold's curve passes twice, the one nearest to a frequency. */
+/* Frequency between points i and i + 1 of a branch, by the cubic through them and those beside.
+ * Linear, if the parameter does not run one way there. */
+static double between(const mhb_branch *branch, int i, double value, bool cubic) {
+  const int    from = cubic && i > 0 ? i - 1 : i, most = branch->n_points - 1;
+  const int    to  = cubic && i + 2 <= most ? i + 2 : i + 1;
+  const double way = branch->value[i + 1] - branch->value[i];
+  double       sum = 0;
+  for (int j = from; j < to; j++)
+    if ((branch->value[j + 1] - branch->value[j]) * way <= 0)
+      return between(branch, i, value, false);
+  for (int j = from; j <= to; j++) {
+    double weight = 1;
+    for (int k = from; k <= to; k++)
+      if (k != j) weight *= (value - branch->value[k]) / (branch->value[j] - branch->value[k]);
+    sum += weight * branch->frequency[j];
+  }
+  return sum;
+}
+
+/* Frequency of a tracked branch at a value of the parameter; NAN beyond its ends. At a place that
+ * the curve passes twice, the one nearest to a frequency. */
 static double frequency_at(const mhb_branch *branch, double value, double near) {
   double best = NAN;
   for (int i = 0; i + 1 < branch->n_points; i++) {
     double from = branch->value[i], to = branch->value[i + 1];
-    if (from == to || (value - from) * (value - to) > 0) continue;
-    double part = (value - from) / (to - from);
-    double f    = branch->frequency[i] + part * (branch->frequency[i + 1] - branch->frequency[i]);
-    if (isnan(best) || fabs(f - near) < fabs(best - near)) best = f;
+    double slack = ROUNDED * fmax(fabs(from), fabs(to)); /* an end of the range is rounded */
+    if (from == to || value < fmin(from, to) - slack || value > fmax(from, to) + slack) continue;
+    for (int cubic = 0; cubic < 2; cubic++) { /* the line is better at a kink */
+      double f = between(branch, i, value, cubic);
+      if (isnan(best) || fabs(f - near) < fabs(best - near)) best = f;
+    }
   }
   return best;
 }
@@ -185,6 +221,11 @@ static void drop_last(mhb_response *response) {
   bool drop[response->n_branches];
   for (int b = 0; b < response->n_branches; b++) drop[b] = b == response->n_branches - 1;
   mhb_response_drop(response, drop);
+}
+
+/* Both ends of the range are ends of a tracked curve. */
+static const char *end_text(mhb_end end) {
+  return mhb_end_text(end == MHB_END_LOW ? MHB_END_HIGH : end);
 }
 
 /* Follow a point of a sweep with m harmonics, into a new branch.
@@ -216,7 +257,7 @@ static shb_status follow_with(tracking_run *run, const mhb_branch *from, int poi
   if (status != SHB_OK) return status;
   mhb_branch *branch = &run->response->branch[index];
   char        reason[200];
-  snprintf(reason, sizeof reason, "%s; %s", mhb_end_text(end.low), mhb_end_text(end.high));
+  snprintf(reason, sizeof reason, "%s; %s", end_text(end.low), end_text(end.high));
   branch->reason   = strdup(reason);
   branch->searched = branch->complete = true;
   *good                               = *found;
@@ -250,7 +291,8 @@ static shb_status follow_all(tracking_run *run, const mhb_response *sweep, doubl
     for (int i = 0; i < branch->n_points && branch->kind == MHB_BRANCH_NONLINEAR; i++) {
       if (!is_seed(run, sweep, branch, i, most) || is_known(run, value, branch->frequency[i]))
         continue;
-      bool high = mhb_response_amplitude(sweep, branch, i, run->tracking.output) >= HIGHEST * most;
+      bool high = mhb_track_by_multiplier(run->response->track) ||
+                  mhb_response_amplitude(sweep, branch, i, run->tracking.output) >= HIGHEST * most;
       SHB_TRY(follow(run, branch, i, value, high));
       if (shb_interrupted()) return SHB_OK;
     }
@@ -270,11 +312,12 @@ static shb_status make_response(tracking_run *run, mhb_response *const sweep[N_S
       mhb_response_create(run->model->n_pairs, run->model->n_probes, run->settings.harmonics);
   SHB_CHECK(run->response, SHB_ERR_IO, "out of memory");
   run->response->unfinished = true;
-  run->response->track      = strdup(run->tracking.kind == MHB_TRACK_FOLD ? "fold" : "peak");
+  run->response->track      = strdup(mhb_track_word(run->asked->track));
   run->response->output     = strdup(output_name(run));
   SHB_CHECK(run->response->track && run->response->output, SHB_ERR_IO, "out of memory");
-  run->response->psi = sweep[0]->psi;
-  run->response->phi = sweep[0]->phi;
+  run->response->tracks_multiplier = mhb_track_by_multiplier(run->response->track);
+  run->response->psi               = sweep[0]->psi;
+  run->response->phi               = sweep[0]->phi;
   return mhb_response_describe(run->response, run->model, &run->settings);
 }
 
@@ -381,6 +424,12 @@ shb_status mhb_tracked_response(const modal_model *model, const mhb_settings *se
   mhb_response *sweep[N_SWEEPS] = {NULL};
   *out                          = NULL;
   SHB_TRY(mhb_output_named(model, settings->output, &output));
+  SHB_CHECK(
+      !mhb_track_by_multiplier(mhb_track_word(settings->track)) || mhb_judges_stability(settings),
+      SHB_ERR_INPUT,
+      "mhb.track: %s needs multipliers; that takes a modal file with the modes of all nodal "
+      "diameters (modal.nodal_diameters: all) and mhb.stability not never",
+      mhb_track_word(settings->track));
   tracking_run run = {.model    = model,
                       .asked    = settings,
                       .settings = *settings,
@@ -398,6 +447,11 @@ shb_status mhb_tracked_response(const modal_model *model, const mhb_settings *se
   if (shb_interrupted())
     return shb_fail(SHB_INTERRUPTED, __FILE__, __LINE__,
                     "interrupted; the curves so far are saved");
+  SHB_CHECK(run.n_lost == 0 || run.tracking.kind < MHB_TRACK_FLIP, SHB_NOT_CONVERGED,
+            "%d %s point%s of sweeps could not be followed, the first at %s %g %s", run.n_lost,
+            run.response->track, run.n_lost == 1 ? "" : "s",
+            mhb_parameter_name(run.tracking.parameter), run.lost_at,
+            mhb_parameter_unit(run.tracking.parameter));
   SHB_CHECK(run.n_lost == 0, SHB_NOT_CONVERGED,
             "the highest peak of %d sweep%s could not be followed, the first at %s %g %s",
             run.n_lost, run.n_lost == 1 ? "" : "s", mhb_parameter_name(run.tracking.parameter),

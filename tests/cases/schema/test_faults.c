@@ -78,6 +78,10 @@ static void keys_and_kinds(void **state) {
        "c.yaml:36:20: error: mhb.output_harmonic: is 9, but the balance has 3 harmonics of the "
        "excitation; raise mhb.harmonics, best to twice that and one, or give auto",
        1},
+      {"  stability: always", "  stability: never\n  track: flip\n  vary: {kv: [1 MN/m, 2 MN/m]}",
+       "c.yaml:36:14: error: mhb.stability: is never, but mhb.track: flip needs the multipliers of "
+       "sweeps; leave it out, or give always",
+       1},
       {"  scale: 1.3", "  output_harmonic: 2",
        "c.yaml:34:20: error: mhb.output_harmonic: only says something with mhb.track: peak", 1},
       {"  scale: 1.3", "  zzzzzz: 1.3",
