@@ -12,6 +12,7 @@ set(INTEGRATION_TESTS cases.study.study cases.study.samples cases.study.eval
   cases.peaks.design_run cases.field.field cases.commands.json cases.commands.revision
   cases.scenes.read_results
   mesh.io.source mesh.blade.hex_sweep mesh.blade.command fem.solver.factor modal.hdf5.h5
+  modal.stage.coriolis mhb.floquet.disc_stability mhb.balance.coriolis
   modal.common.completeness modal.eigen.eigen modal.condense.condense modal.stage.ranks_1
   modal.stage.ranks_2 modal.stage.ranks_3 modal.cyclic.calculix modal.stage.sector
   mesh.blade.disc modal.cyclic.wave_modes

@@ -175,6 +175,10 @@ static const case_key table[] = {
      .help = "rotation speed: modes about the static equilibrium under the centrifugal load; 0: at "
              "rest; a list or {from, to, points}: a Campbell diagram, the response at the last of "
              "them, or along them with mhb.run_up"},
+    {"rotor.coriolis", CASE_CHOICE, "", .words = "no left right", .fallback = "no", AT(coriolis),
+     .stages = CASE_MODAL, .when = CASE_IF_OWN_MODES,
+     .help = "with Coriolis terms at rotor.speed, of a rotor that turns towards -tangential (left) "
+             "or +tangential (right)"},
     {"rotor.pressure", CASE_NUMBER, "Pa", -1e12, 1e12, .fallback = "0 Pa", AT(pressure),
      .stages = CASE_MODAL, .when = CASE_IF_OWN_MODES,
      .help = "steady gas pressure on the group load, into the deformed surface: part of the static "

@@ -191,6 +191,20 @@ static void check_speeds(case_reader *r) {
       }
 }
 
+/* Coriolis terms belong to one speed. */
+static void check_coriolis(case_reader *r, int stages) {
+  static const char path[] = "rotor.coriolis";
+  const case_file  *file   = r->file;
+  if (file->coriolis == FEM_TURNS_UNSAID || !case_reader_good(r, path)) return;
+  if (file->n_speeds > 1)
+    case_reader_issue(r, path, "takes one rotor.speed, not %d; give a case for each",
+                      file->n_speeds);
+  else if (case_reader_good(r, "rotor.speed") && file->speed[0] == 0)
+    case_reader_issue(r, path, "needs rotor.speed; at rest there are no Coriolis forces");
+  if (stages & CASE_MHB && file->mistuning.kind != CASE_TUNED)
+    case_reader_issue(r, path, "does not go with rotor.mistuning; leave one of them out");
+}
+
 /* In a run-up the range of the sweep must lie within the listed speeds, along the engine order. */
 static void check_run_up_speeds(case_reader *r) {
   static const double hair = 1e-9;
@@ -370,6 +384,7 @@ bool case_check_values(case_reader *r, int stages) {
   check_tolerance(r);
   case_check_materials(r);
   check_speeds(r);
+  check_coriolis(r, stages);
   check_band(r);
   if (stages & CASE_MHB) check_followed(r);
   if (stages & CASE_MHB) check_output_harmonic(r);

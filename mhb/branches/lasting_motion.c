@@ -64,8 +64,9 @@ static bool is_modulated(const mhb_response *r, const mhb_branch *b, int point) 
 }
 
 /* Why nothing is computed for the whole case; NULL: it is. */
-static const char *refusal(const mhb_settings *s) {
+static const char *refusal(const modal_model *model, const mhb_settings *s) {
   if (s->lasting == MHB_LASTING_NEVER) return "not computed: mhb.lasting is never";
+  if (model->coriolis) return "not computed: the fast integration knows no Coriolis terms";
   if (s->nodal_diameters)
     return "not computed: the fast integration knows no blades that a disc couples";
   if (s->run_up) return "not computed: in a run-up each frequency has a structure of its own";
@@ -79,7 +80,7 @@ static const char *refusal(const mhb_settings *s) {
 static shb_status choose(const lasting *l, work *w) {
   const mhb_branch *b    = w->branch;
   double            peak = 0;
-  w->refused             = refusal(l->settings);
+  w->refused             = refusal(l->model, l->settings);
   if (w->refused) return SHB_OK;
   w->size      = calloc((size_t)b->n_points + 1, sizeof *w->size);
   w->asked     = calloc((size_t)b->n_points + 1, sizeof *w->asked);
