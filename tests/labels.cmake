@@ -39,7 +39,7 @@ set(INTEGRATION_TESTS cases.study.study cases.study.samples cases.study.eval
   mhb.tracking.corner mhb.tracking.tracked_curve bench.tracking
   robust.same_bits robust.fail_nth_mesh mesh.blade.shroud_angle cases.converge.points_ladder
   robust.memory
-  cases.commands.contact_points)
+  cases.commands.contact_points modal.hdf5.stamp)
 if(SHROUDHB_CHROMIUM AND SHROUDHB_PYTHON)
   list(APPEND INTEGRATION_TESTS postproc.study.page_script postproc.report.page_script)
 endif()
@@ -47,9 +47,9 @@ set(SLOW_TESTS
   cases.scenes.mistuned_ring cases.scenes.bladed_disc
   mesh.blade.blade mhb.floquet.monodromy mhb.branches.verdicts cases.converge.converge hard.gaps
   bench.elements cases.scenes.optimum_preload fuzz.libfuzzer mhb.tracking.tracked_response
-  robust.fail_nth robust.kills)
+  robust.fail_nth robust.kills robust.damaged)
 
-set(NIGHTLY_TESTS robust.fail_nth_all robust.kills_many)
+set(NIGHTLY_TESTS robust.fail_nth_all robust.kills_many robust.damaged_many)
 
 set(TIMEOUT_nightly 86400)
 set(TIMEOUT_unit 100)
