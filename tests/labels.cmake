@@ -54,6 +54,11 @@ set(SLOW_TESTS
 
 set(NIGHTLY_TESTS robust.fail_nth_all robust.kills_many robust.damaged_many)
 
+if(TARGET repeated_sweep)
+  list(APPEND INTEGRATION_TESTS robust.repeated)
+  list(APPEND NIGHTLY_TESTS robust.repeated_many)
+endif()
+
 set(TIMEOUT_nightly 86400)
 set(TIMEOUT_unit 100)
 set(TIMEOUT_integration 600)

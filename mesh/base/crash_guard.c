@@ -26,8 +26,8 @@ static struct {
 /* A signal stack of its own: the crash may be an overflow of the usual one. */
 static char stack[STACK];
 
-/* What the program itself says goes to a descriptor of its own while that of the libraries, and of
- * the C library that aborts, leads nowhere. Once made, the stream stays: threads may use it. */
+/* What the program itself says goes to a descriptor of its own. That of the libraries leads nowhere
+ * meanwhile. Once made, the stream stays: threads may use it. */
 static struct {
   FILE *stream, *before;
   int   file; /* of the stream */

@@ -320,7 +320,7 @@ static void read_texts(const char *path) {
   h5_close(file);
 }
 
-/* Let a child process read the texts of a file whose checksum says nothing: over a damaged one HDF5
+/* Let a child process read the texts of a file whose checksum says nothing. Over a damaged one HDF5
  * may crash, or go round for ever. */
 static shb_status try_texts(const char *path, rlim_t seconds) {
   fflush(NULL);
