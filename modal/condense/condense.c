@@ -11,7 +11,7 @@
 #include "modal/common/phases.h"
 #include "modal/condense/residual_modes.h"
 
-/* Most of each. BATCH: right-hand sides per solve. BATCH_NUMBERS: numbers in one matrix of them. More
+/* Most of each. BATCH: right-hand sides per solve. BATCH_NUMBERS: numbers in a matrix of them. More
  * save no time but need memory. MAX_COLUMNS: columns of which residual modes are made, all at once.
  * MAX_NUMBERS: numbers in their vectors. */
 enum {
