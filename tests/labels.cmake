@@ -12,9 +12,11 @@ set(INTEGRATION_TESTS cases.study.study cases.study.samples cases.study.eval
   cases.peaks.design_run cases.field.field cases.commands.json cases.commands.revision
   cases.scenes.read_results
   mesh.io.source mesh.blade.hex_sweep mesh.blade.command fem.solver.factor modal.hdf5.h5
+  modal.stage.coriolis mhb.floquet.disc_stability mhb.balance.coriolis
   modal.common.completeness modal.eigen.eigen modal.condense.condense modal.stage.ranks_1
   modal.stage.ranks_2 modal.stage.ranks_3 modal.cyclic.calculix modal.stage.sector
-  mesh.blade.disc modal.cyclic.wave_modes
+  mesh.blade.disc modal.cyclic.wave_modes modal.cyclic.blade_on_disc mhb.branches.disc_run_up
+  mhb.branches.stiff_disc
   modal.stage.calculix mhb.contact.contact
   mhb.contact.reference_law mhb.contact.accuracy mhb.contact.continuity mhb.contact.random
   mhb.problem.interfaces mhb.problem.parameter
@@ -24,7 +26,8 @@ set(INTEGRATION_TESTS cases.study.study cases.study.samples cases.study.eval
   cases.study.ring_samples
   mhb.integration.integrator
   mhb.integration.integration_sweep mhb.integration.mistuned_ring
-  mhb.amplification.ring_response bench.mistuning mhb.ring.lasting mhb.branches.lasting_motion
+  mhb.amplification.ring_response bench.mistuning mhb.ring.lasting mhb.ring.mistuned_lasting
+  mhb.branches.lasting_motion
   mhb.continuation.arclength mhb.continuation.linear_resonances
   mhb.branches.harmonic_selection mhb.branches.branch_stability mhb.branches.secondary_branches
   mhb.branches.unfinished_curve
@@ -36,10 +39,10 @@ set(INTEGRATION_TESTS cases.study.study cases.study.samples cases.study.eval
   hard.peaks hard.isolas hard.parameters bench.stability bench.modal bench.contact
   bench.integrate bench.lasting bench.study mhb.floquet.friction_limit docs.first_case
   mhb.ring.ring_step mhb.ring.neimark_sacker cases.install.install
-  mhb.tracking.corner mhb.tracking.tracked_curve bench.tracking
+  mhb.tracking.corner mhb.tracking.tracked_curve mhb.tracking.tracked_multiplier bench.tracking
   robust.same_bits robust.fail_nth_mesh mesh.blade.shroud_angle cases.converge.points_ladder
   robust.memory
-  cases.commands.contact_points)
+  cases.commands.contact_points modal.hdf5.stamp)
 if(SHROUDHB_CHROMIUM AND SHROUDHB_PYTHON)
   list(APPEND INTEGRATION_TESTS postproc.study.page_script postproc.report.page_script)
 endif()
@@ -47,9 +50,14 @@ set(SLOW_TESTS
   cases.scenes.mistuned_ring cases.scenes.bladed_disc
   mesh.blade.blade mhb.floquet.monodromy mhb.branches.verdicts cases.converge.converge hard.gaps
   bench.elements cases.scenes.optimum_preload fuzz.libfuzzer mhb.tracking.tracked_response
-  robust.fail_nth robust.kills)
+  robust.fail_nth robust.kills robust.damaged)
 
-set(NIGHTLY_TESTS robust.fail_nth_all robust.kills_many)
+set(NIGHTLY_TESTS robust.fail_nth_all robust.kills_many robust.damaged_many)
+
+if(TARGET repeated_sweep)
+  list(APPEND INTEGRATION_TESTS robust.repeated)
+  list(APPEND NIGHTLY_TESTS robust.repeated_many)
+endif()
 
 set(TIMEOUT_nightly 86400)
 set(TIMEOUT_unit 100)

@@ -104,10 +104,9 @@ static shb_status make_ring(const case_file *file, case_model *m) {
     status = mhb_mistuned_ring_create(&m->tuned, &m->settings, value, columns, &m->ring);
   free(value);
   SHB_TRY(status);
-  m->model            = m->ring->whole;
-  m->settings.ring    = m->ring;
-  m->settings.lasting = MHB_LASTING_NEVER;
-  m->settings.flips   = false;
+  m->model          = m->ring->whole;
+  m->settings.ring  = m->ring;
+  m->settings.flips = false;
   if (m->settings.search.starts == MHB_SEARCH_PEAKS) m->settings.search.starts = 0;
   return SHB_OK;
 }

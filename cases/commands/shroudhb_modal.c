@@ -128,6 +128,7 @@ static modal_settings stage_settings(const case_file *file, modal_probe probe[CA
       .speed            = file->speed[file->n_speeds - 1],
       .n_speeds         = file->n_speeds,
       .speeds           = file->speed,
+      .coriolis         = file->coriolis,
       .pressure         = file->pressure,
       .full_integration = file->full_integration,
       .modes            = file->modes,

@@ -4,6 +4,7 @@
 
 #include <stdbool.h>
 
+#include "fem/body/rotation.h"
 #include "fem/element/load.h"
 #include "fem/element/material.h"
 #include "mesh/blade/blade.h"
@@ -108,6 +109,7 @@ typedef struct {
   int             n_speeds;
   double          speed[MHB_MAX_PRELOADS]; /* [n_speeds] rad/s, the last that of the response */
   bool            run_up;                  /* the speed follows the frequency */
+  fem_turning     coriolis;                /* of the rotor; unsaid: without Coriolis terms */
   double          pressure;                /* Pa, steady */
   mesh_axis       axis;
 

@@ -175,6 +175,10 @@ static const case_key table[] = {
      .help = "rotation speed: modes about the static equilibrium under the centrifugal load; 0: at "
              "rest; a list or {from, to, points}: a Campbell diagram, the response at the last of "
              "them, or along them with mhb.run_up"},
+    {"rotor.coriolis", CASE_CHOICE, "", .words = "no left right", .fallback = "no", AT(coriolis),
+     .stages = CASE_MODAL, .when = CASE_IF_OWN_MODES,
+     .help = "with Coriolis terms at rotor.speed, of a rotor that turns towards -tangential (left) "
+             "or +tangential (right)"},
     {"rotor.pressure", CASE_NUMBER, "Pa", -1e12, 1e12, .fallback = "0 Pa", AT(pressure),
      .stages = CASE_MODAL, .when = CASE_IF_OWN_MODES,
      .help = "steady gas pressure on the group load, into the deformed surface: part of the static "
@@ -370,10 +374,11 @@ static const case_key table[] = {
      .when = CASE_IF_VARIED,
      .help = "of several interfaces the one whose n0, mu, ku or kv that is, the others keep theirs "
              "(default: the first); all: in proportion"},
-    {"mhb.track", CASE_CHOICE, "", .words = "nothing peak fold", .fallback = "nothing",
-     AT(mhb.track), .stages = CASE_MHB, .when = CASE_IF_TRACKED,
-     .help = "with mhb.vary: follow the resonance peaks, or the folds, along the parameter; their "
-             "frequency, within mhb.frequency, is unknown too"},
+    {"mhb.track", CASE_CHOICE, "", .words = "nothing peak fold flip neimark-sacker",
+     .fallback = "nothing", AT(mhb.track), .stages = CASE_MHB, .when = CASE_IF_TRACKED,
+     .help = "with mhb.vary: follow the resonance peaks, the folds, or where the motion doubles "
+             "its period (flip) or begins to be modulated (neimark-sacker), along the parameter; "
+             "their frequency, within mhb.frequency, is unknown too"},
     {"mhb.output", CASE_LABEL, "", AT(mhb.output), .stages = CASE_MHB, .when = CASE_IF_TRACKED,
      .help = "whose peak: a probe, or contact for the first contact point; default: the first "
              "probe"},

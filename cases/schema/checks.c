@@ -144,6 +144,12 @@ static void check_followed(case_reader *r) {
   if (tracked && given > 0 && single)
     case_reader_issue(r, "mhb.frequency",
                       "is one number; with mhb.track give [from, to], where peaks are looked for");
+  if (mhb_track_by_multiplier(mhb_track_word(mhb->track)) && mhb->stability == MHB_STABILITY_NEVER)
+    case_reader_issue(
+        r, "mhb.stability",
+        "is never, but mhb.track: %s needs the multipliers of sweeps; leave it out, or "
+        "give always",
+        mhb_track_word(mhb->track));
   if (tracked && r->file->run_up) case_reader_issue(r, "mhb.track", "does not go with mhb.run_up");
   if (tracked && r->file->points < 0)
     case_reader_issue(r, "mhb.track",
@@ -189,6 +195,20 @@ static void check_speeds(case_reader *r) {
         case_reader_issue(r, "rotor.speed", "holds %g rad/s twice", file->speed[i]);
         return;
       }
+}
+
+/* Coriolis terms belong to one speed. */
+static void check_coriolis(case_reader *r, int stages) {
+  static const char path[] = "rotor.coriolis";
+  const case_file  *file   = r->file;
+  if (file->coriolis == FEM_TURNS_UNSAID || !case_reader_good(r, path)) return;
+  if (file->n_speeds > 1)
+    case_reader_issue(r, path, "takes one rotor.speed, not %d; give a case for each",
+                      file->n_speeds);
+  else if (case_reader_good(r, "rotor.speed") && file->speed[0] == 0)
+    case_reader_issue(r, path, "needs rotor.speed; at rest there are no Coriolis forces");
+  if (stages & CASE_MHB && file->mistuning.kind != CASE_TUNED)
+    case_reader_issue(r, path, "does not go with rotor.mistuning; leave one of them out");
 }
 
 /* In a run-up the range of the sweep must lie within the listed speeds, along the engine order. */
@@ -330,10 +350,6 @@ static void check_mistuning(case_reader *r, int stages) {
     case_reader_issue(r, path, "does not go with mhb.track");
   if (file->points < 0)
     case_reader_issue(r, path, "does not go with contact.points: auto; give the number of points");
-  if (case_reader_given(r, "mhb.lasting") && file->mhb.lasting != MHB_LASTING_NEVER)
-    case_reader_issue(r, "mhb.lasting",
-                      "does not go with rings of different blades (rotor.mistuning); leave it out "
-                      "and use shroudhb integrate");
 }
 
 /* What a disc in the mesh does not go with, as far as the case file shows that there is one. Groups
@@ -370,6 +386,7 @@ bool case_check_values(case_reader *r, int stages) {
   check_tolerance(r);
   case_check_materials(r);
   check_speeds(r);
+  check_coriolis(r, stages);
   check_band(r);
   if (stages & CASE_MHB) check_followed(r);
   if (stages & CASE_MHB) check_output_harmonic(r);

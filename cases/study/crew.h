@@ -1,5 +1,5 @@
-/* Workers over MPI, of a study or of the samples of a ring: rank 0 manages, the others compute. With one rank it computes
- * itself. Who waits sleeps: a core is not kept busy by waiting. */
+/* Workers over MPI, of a study or of samples of a ring: rank 0 manages, the others compute. With
+ * one rank it computes itself. Who waits sleeps: a core is not kept busy by waiting. */
 #ifndef CASES_STUDY_CREW_H
 #define CASES_STUDY_CREW_H
 

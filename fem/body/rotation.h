@@ -1,6 +1,5 @@
-/* Rotation about the engine axis at constant speed, in the rotating frame: centrifugal load on the
- * deformed position and its derivative, the spin softening. Gyroscopic (Coriolis) terms are
- * neglected. */
+/* Rotation about the engine axis at constant speed, in the rotating frame. Centrifugal load on the
+ * deformed position and its derivative, the spin softening; Coriolis force of a motion. */
 #ifndef FEM_BODY_ROTATION_H
 #define FEM_BODY_ROTATION_H
 
@@ -22,5 +21,14 @@ void fem_rotation_load(const fem_rotation *rotation, int n, const double *m, con
 
 /* K -= Omega^2 m_ij P, [3n][3n]: the load increases as the body moves outward. */
 void fem_rotation_soften(const fem_rotation *rotation, int n, const double *m, double *K);
+
+/* Towards which side the rotor turns, seen from a blade: left is -tangential. None: Coriolis forces
+ * are left out. */
+typedef enum { FEM_TURNS_UNSAID, FEM_TURNS_LEFT, FEM_TURNS_RIGHT } fem_turning;
+
+/* force = 2 Omega x mv, N, of the momentum mv (kg m/s) in the rotating frame. It stands on the left
+ * side of the equation of motion. */
+void fem_rotation_coriolis(const fem_rotation *rotation, fem_turning turning, const double mv[3],
+                           double force[3]);
 
 #endif

@@ -1,12 +1,16 @@
 #include "fem/solver/cholesky.h"
 
+#include <omp.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/mman.h>
 
 #include "fem/solver/block_order.h"
+#include "fem/solver/supernodal_factor.h"
 #include "fem/solver/supernodal_solve.h"
 
-enum { MANY = 12 }; /* number of right-hand sides from which calls to BLAS are faster */
+/* MANY: right-hand sides from which BLAS is faster. BLOCK: columns that a thread solves at once. */
+enum { MANY = 12, BLOCK = 40, PAGE = 1 << 21 };
 
 /* Upper triangle of a symmetric matrix (sequential SBAIJ, block size 3) by block rows. */
 typedef struct {
@@ -20,14 +24,14 @@ static fem_blocks pattern_of(const block_rows *b) {
 }
 
 struct fem_cholesky {
-  int             n;     /* block rows */
-  int            *place; /* [n] index of a block row in the factor */
-  cholmod_factor *L;
-  fem_lanes      *few;      /* [3 n] right-hand sides in the factor's order */
-  fem_lanes      *few_work; /* [largest supernode] */
-  cholmod_dense  *x;        /* [3 n][columns] many right-hand sides */
-  cholmod_dense  *work;     /* workspace of CHOLMOD */
-  cholmod_common  common;
+  int            n;       /* block rows */
+  int           *place;   /* [n] index of a block row in the factor */
+  int            threads; /* for which few_work has room */
+  fem_supernodes panels;
+  double        *value;    /* [n_values] the factor */
+  fem_lanes     *few;      /* [n_extended] right-hand sides in the factor's order */
+  fem_lanes     *few_work; /* [threads][most_rows] */
+  cholmod_common common;
 };
 
 /* Access the blocks of A in place. A must not change until give_back_blocks. */
@@ -51,47 +55,27 @@ static PetscErrorCode give_back_blocks(Mat A, block_rows *b) {
   PetscFunctionReturn(0);
 }
 
-static void put_diagonal(const double *B, int c, const int *start, int *row, double *value) {
-  for (int d = 0; d < 3; d++)
-    for (int e = d; e < 3; e++) {
-      row[start[3 * c + d] + e - d]   = 3 * c + e;
-      value[start[3 * c + d] + e - d] = B[d + 3 * e];
-    }
-}
+/* ------------------------------------------------------------------ analysis */
 
-/* Put a block of rows low and columns high, or its transpose, as the slot-th block below the
- * diagonal of column low. */
-static void put_block(const double *B, bool turned, int low, int high, int slot, const int *start,
-                      int *row, double *value) {
-  for (int d = 0; d < 3; d++) {
-    int at = start[3 * low + d] + 3 - d + 3 * slot;
-    for (int e = 0; e < 3; e++) {
-      row[at + e]   = 3 * high + e;
-      value[at + e] = turned ? B[e + 3 * d] : B[d + 3 * e];
-    }
-  }
-}
-
-/* The permuted lower triangle; NULL when out of memory. */
-static cholmod_sparse *permute(const block_rows *b, const int *place, cholmod_common *common) {
+/* Pattern of the permuted lower triangle of the dofs; NULL when out of memory. */
+static cholmod_sparse *permuted_pattern(const fem_blocks *b, const int *place,
+                                        cholmod_common *common) {
   const size_t    n = (size_t)b->n, entries = 9 * (size_t)b->start[n] - 3 * n;
   cholmod_sparse *A =
-      cholmod_allocate_sparse(3 * n, 3 * n, entries, 0, 1, -1, CHOLMOD_REAL, common);
+      cholmod_allocate_sparse(3 * n, 3 * n, entries, 0, 1, -1, CHOLMOD_PATTERN, common);
   int *next = calloc(n + 1, sizeof *next);
   if (A && next) {
-    const fem_blocks pattern = pattern_of(b);
-    int             *start   = A->p;
-    fem_block_starts(&pattern, place, next, start);
-    for (PetscInt r = 0; r < b->n; r++)
-      for (PetscInt q = b->start[r]; q < b->start[r + 1]; q++) {
-        int           here = place[r], there = place[b->column[q]];
-        const double *block = b->value + 9 * (size_t)q;
-        if (here == there)
-          put_diagonal(block, here, start, A->i, A->x);
-        else if (here < there)
-          put_block(block, false, here, there, next[here]++, start, A->i, A->x);
-        else
-          put_block(block, true, there, here, next[there]++, start, A->i, A->x);
+    int *start = A->p, *row = A->i;
+    fem_block_starts(b, place, next, start);
+    for (int r = 0; r < b->n; r++)
+      for (int q = b->start[r]; q < b->start[r + 1]; q++) {
+        const int here = place[r], there = place[b->column[q]];
+        const int low = here < there ? here : there, high = here < there ? there : here;
+        const int slot = low == high ? 0 : next[low]++;
+        for (int d = 0; d < 3; d++) {
+          int *at = row + start[3 * low + d] + (low == high ? 0 : 3 - d + 3 * slot);
+          for (int e = low == high ? d : 0; e < 3; e++) *at++ = 3 * high + e;
+        }
       }
   } else
     cholmod_free_sparse(&A, common);
@@ -99,21 +83,24 @@ static cholmod_sparse *permute(const block_rows *b, const int *place, cholmod_co
   return A;
 }
 
-/* Symbolic factorisation of the permuted matrix. */
-static void analyse(const block_rows *b, fem_cholesky *factor) {
-  cholmod_common  *common = &factor->common;
-  cholmod_sparse  *A;
+/* Order, and symbolic factorisation of the permuted matrix. */
+static bool analyse(const block_rows *b, fem_cholesky *factor) {
+  cholmod_common  *common  = &factor->common;
   const fem_blocks pattern = pattern_of(b);
-  if (!fem_block_order(&pattern, common, factor->place)) return;
-  A = permute(b, factor->place, common);
-  if (!A) return;
-  factor->L = fem_cholmod_analyse(A, common);
+  if (!fem_block_order(&pattern, common, factor->place)) return false;
+  cholmod_sparse *A = permuted_pattern(&pattern, factor->place, common);
+  if (!A) return false;
+  cholmod_factor *L = fem_cholmod_analyse(A, common);
   cholmod_free_sparse(&A, common);
+  const bool good = L && fem_supernodes_create(L, &factor->panels);
+  cholmod_free_factor(&L, common);
+  return good;
 }
 
 PetscErrorCode fem_cholesky_create(Mat A, bool *fits, fem_cholesky **out) {
   block_rows    b;
   fem_cholesky *factor = calloc(1, sizeof *factor);
+  bool          good   = false;
 
   PetscFunctionBeginUser;
   *out = NULL;
@@ -122,10 +109,10 @@ PetscErrorCode fem_cholesky_create(Mat A, bool *fits, fem_cholesky **out) {
   PetscCall(borrow_blocks(A, &b));
   factor->n     = (int)b.n;
   factor->place = malloc((size_t)b.n * sizeof *factor->place);
-  if (factor->place) analyse(&b, factor);
+  if (factor->place) good = analyse(&b, factor);
   PetscCall(give_back_blocks(A, &b));
   *fits = factor->common.status != CHOLMOD_TOO_LARGE;
-  if (factor->L) {
+  if (good) {
     *out = factor;
     PetscFunctionReturn(0);
   }
@@ -135,66 +122,118 @@ PetscErrorCode fem_cholesky_create(Mat A, bool *fits, fem_cholesky **out) {
 }
 
 void fem_cholesky_bytes(const fem_cholesky *factor, double *factor_bytes, double *workspace) {
-  const cholmod_factor *L = factor->L;
-  *factor_bytes           = 8. * (double)L->xsize + 4. * (double)L->ssize;
-  *workspace              = 8. * (double)L->maxcsize + 12. * factor->common.anz;
+  const fem_supernodes *s = &factor->panels;
+  *factor_bytes           = 8. * (double)s->n_values + 4. * (double)s->n_rows;
+  *workspace              = fem_supernodal_workspace(s, omp_get_max_threads()) +
+               8. / 9 * factor->common.anz; /* two indices a block */
+}
+
+/* ------------------------------------------------------------------ numbers */
+
+static void free_lower(fem_lower_blocks *A) {
+  free((void *)A->start);
+  free((void *)A->row);
+  free((void *)A->block);
+}
+
+/* The permuted lower triangle by block columns; false when out of memory. */
+static bool create_lower(const block_rows *b, const int *place, fem_lower_blocks *A) {
+  const size_t n = (size_t)b->n, count = (size_t)b->start[n];
+  int         *start = calloc(n + 2, sizeof *start), *row = malloc((count + 1) * sizeof *row),
+      *block = malloc((count + 1) * sizeof *block);
+  *A         = (fem_lower_blocks){b->n, start, row, block, b->value};
+  if (!start || !row || !block) return false;
+  for (int pass = 0; pass < 2; pass++) { /* counts two places on, then start one place on */
+    for (int r = 0; r < b->n; r++)
+      for (int q = b->start[r]; q < b->start[r + 1]; q++) {
+        const int here = place[r], there = place[b->column[q]];
+        const int low = here < there ? here : there;
+        if (pass == 0) {
+          if (low + 2 <= b->n) start[low + 2]++;
+          continue;
+        }
+        const int at = start[low + 1]++;
+        row[at]      = here < there ? there : here;
+        block[at]    = here < there ? ~q : q;
+      }
+    for (size_t c = 2; pass == 0 && c <= n; c++) start[c] += start[c - 1];
+  }
+  return true;
+}
+
+/* Memory in large pages: a solve reads all of it. */
+static double *allocate_values(size_t count) {
+  const size_t bytes = (count * sizeof(double) + PAGE) / PAGE * PAGE;
+  double      *value = aligned_alloc(PAGE, bytes);
+  if (value) madvise(value, bytes, MADV_HUGEPAGE);
+  return value;
 }
 
 PetscErrorCode fem_cholesky_update(fem_cholesky *factor, Mat A, bool *definite) {
-  cholmod_common *common = &factor->common;
-  block_rows      b;
+  block_rows       b;
+  fem_lower_blocks lower;
+  fem_factorised   end = FEM_NO_MEMORY;
 
   PetscFunctionBeginUser;
+  if (!factor->value) factor->value = allocate_values(factor->panels.n_values);
   PetscCall(borrow_blocks(A, &b));
-  cholmod_sparse *permuted = permute(&b, factor->place, common);
+  const bool listed = create_lower(&b, factor->place, &lower);
+  if (listed && factor->value)
+    end = fem_supernodal_factorise(&factor->panels, &lower, factor->value);
+  free_lower(&lower);
   PetscCall(give_back_blocks(A, &b));
-  PetscCheck(permuted, PETSC_COMM_SELF, PETSC_ERR_MEM, "CHOLMOD");
-  fem_cholmod_factorise(permuted, factor->L, common);
-  cholmod_free_sparse(&permuted, common);
-  PetscCheck(common->status >= CHOLMOD_OK, PETSC_COMM_SELF, PETSC_ERR_MEM, "CHOLMOD");
-  *definite = common->status != CHOLMOD_NOT_POSDEF;
+  PetscCheck(end != FEM_NO_MEMORY, PETSC_COMM_SELF, PETSC_ERR_MEM, "factor");
+  *definite = end == FEM_FACTORISED;
   PetscFunctionReturn(0);
 }
 
-/* Workspace for count right-hand sides, kept between solves. */
-static PetscErrorCode make_room(fem_cholesky *factor, size_t count) {
-  cholmod_common *common = &factor->common;
+/* ------------------------------------------------------------------ solves */
+
+/* Solve for one block of columns by BLAS. false: no memory. */
+static bool solve_block(const fem_cholesky *factor, size_t count, const double *b, size_t ldb,
+                        double *x, size_t ldx) {
+  const size_t n = 3 * (size_t)factor->n, rows = (size_t)factor->panels.most_rows;
+  double      *own = malloc((n + rows) * count * sizeof *own);
+  if (!own) return false;
+  for (size_t i = 0; i < n; i++) {
+    double *at = own + (3 * (size_t)factor->place[i / 3] + i % 3) * count;
+    for (size_t c = 0; c < count; c++) at[c] = b[c * ldb + i];
+  }
+  fem_supernodal_solve_block(&factor->panels, factor->value, (int)count, own, own + n * count);
+  for (size_t i = 0; i < n; i++) {
+    const double *at = own + (3 * (size_t)factor->place[i / 3] + i % 3) * count;
+    for (size_t c = 0; c < count; c++) x[c * ldx + i] = at[c];
+  }
+  free(own);
+  return true;
+}
+
+static PetscErrorCode solve_many(const fem_cholesky *factor, size_t count, const double *b,
+                                 size_t ldb, double *x, size_t ldx) {
+  bool good = true;
   PetscFunctionBeginUser;
-  if (factor->x && factor->x->ncol == count) PetscFunctionReturn(0);
-  cholmod_free_dense(&factor->x, common);
-  cholmod_free_dense(&factor->work, common);
-  const size_t n = 3 * (size_t)factor->n;
-  factor->x      = cholmod_allocate_dense(n, count, n, CHOLMOD_REAL, common);
-  factor->work =
-      cholmod_allocate_dense(factor->L->maxesize, count, factor->L->maxesize, CHOLMOD_REAL, common);
-  PetscCheck(factor->x && factor->work, PETSC_COMM_SELF, PETSC_ERR_MEM, "CHOLMOD");
+#pragma omp parallel for schedule(dynamic, 1) reduction(&& : good)
+  for (size_t c = 0; c < count; c += BLOCK) {
+    const size_t here = count - c < BLOCK ? count - c : BLOCK;
+    good              = solve_block(factor, here, b + c * ldb, ldb, x + c * ldx, ldx) && good;
+  }
+  PetscCheck(good, PETSC_COMM_SELF, PETSC_ERR_MEM, "no memory for %d solutions", (int)count);
   PetscFunctionReturn(0);
 }
 
-static PetscErrorCode solve_many(fem_cholesky *factor, size_t count, const double *b, size_t ldb,
-                                 double *x, size_t ldx) {
-  const size_t n = (size_t)factor->n;
+/* Workspace for few right-hand sides, kept between solves. */
+static PetscErrorCode make_room(fem_cholesky *factor) {
+  const size_t alignment = 64;
+  const int    threads   = omp_get_max_threads();
   PetscFunctionBeginUser;
-  PetscCall(make_room(factor, count));
-  double *own = factor->x->x;
-  for (size_t c = 0; c < count; c++)
-    for (size_t i = 0; i < n; i++)
-      memcpy(own + 3 * (c * n + (size_t)factor->place[i]), b + c * ldb + 3 * i, 3 * sizeof *x);
-  const bool good = cholmod_super_lsolve(factor->L, factor->x, factor->work, &factor->common) &&
-                    cholmod_super_ltsolve(factor->L, factor->x, factor->work, &factor->common);
-  PetscCheck(good, PETSC_COMM_SELF, PETSC_ERR_LIB, "CHOLMOD: no solution");
-  for (size_t c = 0; c < count; c++)
-    for (size_t i = 0; i < n; i++)
-      memcpy(x + c * ldx + 3 * i, own + 3 * (c * n + (size_t)factor->place[i]), 3 * sizeof *x);
-  PetscFunctionReturn(0);
-}
-
-static PetscErrorCode make_room_for_few(fem_cholesky *factor) {
-  const size_t alignment = sizeof(fem_lanes);
-  PetscFunctionBeginUser;
-  if (factor->few) PetscFunctionReturn(0);
-  factor->few      = aligned_alloc(alignment, 3 * (size_t)factor->n * sizeof(fem_lanes));
-  factor->few_work = aligned_alloc(alignment, fem_supernodal_rows(factor->L) * sizeof(fem_lanes));
+  if (factor->few && factor->threads == threads) PetscFunctionReturn(0);
+  const fem_supernodes *s    = &factor->panels;
+  const size_t          rows = (size_t)s->most_rows * (size_t)threads;
+  free(factor->few);
+  free(factor->few_work);
+  factor->threads = threads;
+  factor->few = aligned_alloc(alignment, ((size_t)s->n_extended + 1) / 2 * 2 * sizeof(fem_lanes));
+  factor->few_work = aligned_alloc(alignment, (rows + 1) / 2 * 2 * sizeof(fem_lanes));
   PetscCheck(factor->few && factor->few_work, PETSC_COMM_SELF, PETSC_ERR_MEM, "no memory");
   PetscFunctionReturn(0);
 }
@@ -204,13 +243,16 @@ static PetscErrorCode solve_few(fem_cholesky *factor, size_t count, const double
                                 double *x, size_t ldx) {
   const size_t n = (size_t)factor->n;
   PetscFunctionBeginUser;
-  PetscCall(make_room_for_few(factor));
+  PetscCall(make_room(factor));
+#pragma omp parallel for schedule(static)
   for (size_t i = 0; i < n; i++)
     for (size_t d = 0; d < 3; d++) {
       fem_lanes *at = factor->few + 3 * (size_t)factor->place[i] + d;
       for (size_t c = 0; c < FEM_LANES; c++) (*at)[c] = c < count ? b[c * ldb + 3 * i + d] : 0;
     }
-  fem_supernodal_solve(factor->L, factor->few, factor->few_work);
+  fem_supernodal_solve(&factor->panels, factor->value, factor->threads, factor->few,
+                       factor->few_work);
+#pragma omp parallel for schedule(static)
   for (size_t i = 0; i < n; i++)
     for (size_t d = 0; d < 3; d++) {
       const fem_lanes *at = factor->few + 3 * (size_t)factor->place[i] + d;
@@ -223,7 +265,7 @@ PetscErrorCode fem_cholesky_solve(fem_cholesky *factor, int count, const double 
                                   double *x, size_t ldx) {
   const size_t all = (size_t)count;
   PetscFunctionBeginUser;
-  if (all == 1 || all >= MANY) {
+  if (all >= MANY) {
     PetscCall(solve_many(factor, all, b, ldb, x, ldx));
     PetscFunctionReturn(0);
   }
@@ -236,10 +278,9 @@ PetscErrorCode fem_cholesky_solve(fem_cholesky *factor, int count, const double 
 
 void fem_cholesky_destroy(fem_cholesky *factor) {
   if (!factor) return;
-  cholmod_free_factor(&factor->L, &factor->common);
-  cholmod_free_dense(&factor->x, &factor->common);
-  cholmod_free_dense(&factor->work, &factor->common);
+  fem_supernodes_free(&factor->panels);
   cholmod_finish(&factor->common);
+  free(factor->value);
   free(factor->few);
   free(factor->few_work);
   free(factor->place);

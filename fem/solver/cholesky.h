@@ -1,7 +1,8 @@
-/* Sparse supernodal Cholesky factor on one rank by CHOLMOD, ordered by nested dissection.
+/* Sparse supernodal Cholesky factor on one rank, on all threads. CHOLMOD orders by nested dissection
+ * and analyses; numbers and solves are those of supernodal_factor and supernodal_solve.
  *
- * A permuted copy of the matrix exists only during factorisation; it replaces CHOLMOD's own copy. A
- * solve takes several right-hand sides: eight cost twice as much as one. */
+ * The matrix is not copied. The numbers do not depend on the number of threads. A solve takes
+ * several right-hand sides: eight cost twice as much as one. */
 #ifndef FEM_SOLVER_CHOLESKY_H
 #define FEM_SOLVER_CHOLESKY_H
 

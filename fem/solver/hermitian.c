@@ -145,7 +145,8 @@ shb_status fem_hermitian_create(const fem_hermitian_order *order, const double c
 /* Workspace for four right-hand sides, kept between solves. */
 static bool make_room(fem_hermitian *factor) {
   const size_t alignment = sizeof(fem_lanes), each = sizeof(fem_complex_lanes);
-  const size_t n = 3 * (size_t)factor->order->pattern.n, rows = fem_supernodal_rows(factor->L);
+  const size_t n    = 3 * (size_t)factor->order->pattern.n,
+               rows = fem_supernodal_hermitian_rows(factor->L);
   if (factor->x && factor->work) return true;
   factor->x    = aligned_alloc(alignment, n * each);
   factor->work = aligned_alloc(alignment, rows * each);

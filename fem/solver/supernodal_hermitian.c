@@ -1,6 +1,6 @@
 #include "fem/solver/supernodal_hermitian.h"
 
-#include "fem/solver/supernodal_solve_internal.h"
+#include "fem/solver/hot.h"
 
 enum { GROUP = 4 }; /* columns that are processed together */
 
@@ -16,6 +16,15 @@ FEM_KERNEL supernode get(const cholmod_factor *L, size_t s) {
   const int *super = L->super, *pi = L->pi, *px = L->px;
   return (supernode){super[s + 1] - super[s], pi[s + 1] - pi[s], (const int *)L->s + pi[s],
                      (const double *)L->x + 2 * (size_t)px[s]};
+}
+
+size_t fem_supernodal_hermitian_rows(const cholmod_factor *L) {
+  size_t most = 1;
+  for (size_t s = 0; s < L->nsuper; s++) {
+    size_t rows = (size_t)get(L, s).rows;
+    if (rows > most) most = rows;
+  }
+  return most;
 }
 
 /* w -= l v */

@@ -11,10 +11,13 @@ typedef struct {
   fem_lanes re, im;
 } fem_complex_lanes;
 
+/* Rows of the largest supernode. */
+size_t fem_supernodal_hermitian_rows(const cholmod_factor *L);
+
 /* Solve L L^H x = b in place, in the order of the factor.
  *   L     in       supernodal, numeric, int, complex
  *   x     in/out   [n]
- *   work  scratch  [fem_supernodal_rows] */
+ *   work  scratch  [fem_supernodal_hermitian_rows] */
 void fem_supernodal_solve_hermitian(const cholmod_factor *L, fem_complex_lanes *x,
                                     fem_complex_lanes *work);
 

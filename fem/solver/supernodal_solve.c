@@ -1,30 +1,12 @@
 #include "fem/solver/supernodal_solve.h"
 
-#include "fem/solver/supernodal_solve_internal.h"
+#include <cblas.h>
+#include <omp.h>
+#include <string.h>
+
+#include "fem/solver/hot.h"
 
 enum { GROUP = 8 }; /* columns that are processed together */
-
-/* A supernode: columns first .. first + columns - 1, dense from the diagonal down. */
-typedef struct {
-  int           columns, rows;
-  const int    *row;   /* [rows]; the first ones are the columns themselves */
-  const double *value; /* [columns][rows] */
-} supernode;
-
-FEM_KERNEL supernode get(const cholmod_factor *L, size_t s) {
-  const int *super = L->super, *pi = L->pi, *px = L->px;
-  return (supernode){super[s + 1] - super[s], pi[s + 1] - pi[s], (const int *)L->s + pi[s],
-                     (const double *)L->x + px[s]};
-}
-
-size_t fem_supernodal_rows(const cholmod_factor *L) {
-  size_t most = 1;
-  for (size_t s = 0; s < L->nsuper; s++) {
-    size_t rows = (size_t)get(L, s).rows;
-    if (rows > most) most = rows;
-  }
-  return most;
-}
 
 /* w_i -= L_ij w_j for the eight columns from j and all rows i below them. */
 FEM_KERNEL void take_eight(const double *l, size_t rows, size_t j, fem_lanes *w) {
@@ -38,10 +20,10 @@ FEM_KERNEL void take_eight(const double *l, size_t rows, size_t j, fem_lanes *w)
 }
 
 /* Solve L w = w. */
-FEM_KERNEL void forward(const supernode *s, fem_lanes *w) {
+FEM_KERNEL void forward(const fem_panel *s, const double *value, fem_lanes *w) {
   const size_t rows = (size_t)s->rows, columns = (size_t)s->columns;
   for (size_t j = 0; j < columns; j += GROUP) {
-    const double *l     = s->value + j * rows;
+    const double *l     = value + j * rows;
     const size_t  group = columns - j < GROUP ? columns - j : GROUP;
     const size_t  end   = group == GROUP ? j + group : rows;
     for (size_t a = 0; a < group; a++) {
@@ -68,11 +50,11 @@ FEM_KERNEL void sum_eight(const double *l, size_t rows, size_t j, const fem_lane
 }
 
 /* Solve L^T w = w. */
-FEM_KERNEL void backward(const supernode *s, fem_lanes *w) {
+FEM_KERNEL void backward(const fem_panel *s, const double *value, fem_lanes *w) {
   const size_t rows = (size_t)s->rows, columns = (size_t)s->columns;
   for (size_t left = columns; left > 0;) {
     const size_t  group = left % GROUP ? left % GROUP : GROUP, j = left - group;
-    const double *l          = s->value + j * rows;
+    const double *l          = value + j * rows;
     fem_lanes     sum[GROUP] = {{0}};
     const size_t  end        = group == GROUP ? j + group : rows;
     if (group == GROUP) sum_eight(l, rows, j, w, sum);
@@ -85,17 +67,117 @@ FEM_KERNEL void backward(const supernode *s, fem_lanes *w) {
   }
 }
 
-FEM_HOT void fem_supernodal_solve(const cholmod_factor *L, fem_lanes *x, fem_lanes *work) {
-  for (size_t k = 0; k < L->nsuper; k++) {
-    const supernode s = get(L, k);
-    for (int i = 0; i < s.rows; i++) work[i] = x[s.row[i]];
-    forward(&s, work);
-    for (int i = 0; i < s.rows; i++) x[s.row[i]] = work[i];
+FEM_HOT static void forward_panels(const fem_supernodes *s, const double *value, int first,
+                                   int last, fem_lanes *x, fem_lanes *work) {
+  for (int k = first; k < last; k++) {
+    const fem_panel *p   = &s->panel[k];
+    const int       *row = s->row + p->row;
+    for (int i = 0; i < p->rows; i++) work[i] = x[row[i]];
+    forward(p, value + p->value, work);
+    for (int i = 0; i < p->rows; i++) x[row[i]] = work[i];
   }
-  for (size_t k = L->nsuper; k-- > 0;) {
-    const supernode s = get(L, k);
-    for (int i = 0; i < s.rows; i++) work[i] = x[s.row[i]];
-    backward(&s, work);
-    for (int i = 0; i < s.columns; i++) x[s.row[i]] = work[i];
+}
+
+FEM_HOT static void backward_panels(const fem_supernodes *s, const double *value, int first,
+                                    int last, fem_lanes *x, fem_lanes *work) {
+  for (int k = last; k-- > first;) {
+    const fem_panel *p   = &s->panel[k];
+    const int       *row = s->row + p->row;
+    for (int i = 0; i < p->rows; i++) work[i] = x[row[i]];
+    backward(p, value + p->value, work);
+    memcpy(x + p->first, work, (size_t)p->columns * sizeof *x);
   }
+}
+
+static void forward_subtree(const fem_supernodes *s, const double *value, int i, fem_lanes *x,
+                            fem_lanes *work) {
+  const fem_subtree *t = &s->subtree[i];
+  memset(x + t->copy, 0, (size_t)t->n_copies * sizeof *x);
+  forward_panels(s, value, t->first, t->last, x, work);
+}
+
+static void backward_subtree(const fem_supernodes *s, const double *value, int i, fem_lanes *x,
+                             fem_lanes *work) {
+  const fem_subtree *t        = &s->subtree[i];
+  const int         *original = s->original + (t->copy - s->n);
+  for (int c = 0; c < t->n_copies; c++) x[t->copy + c] = x[original[c]];
+  backward_panels(s, value, t->first, t->last, x, work);
+}
+
+static void solve_top(const fem_supernodes *s, const double *value, fem_lanes *x, fem_lanes *work) {
+  for (int c = s->n; c < s->n_extended; c++) x[s->original[c - s->n]] += x[c];
+  for (int k = 0; k < s->n_panels; k++)
+    if (s->is_top[k]) forward_panels(s, value, k, k + 1, x, work);
+  for (int k = s->n_panels; k-- > 0;)
+    if (s->is_top[k]) backward_panels(s, value, k, k + 1, x, work);
+}
+
+void fem_supernodal_solve(const fem_supernodes *s, const double *value, int threads, fem_lanes *x,
+                          fem_lanes *work) {
+#pragma omp parallel num_threads(threads)
+  {
+    fem_lanes *own = work + (size_t)omp_get_thread_num() * (size_t)s->most_rows;
+#pragma omp for schedule(dynamic, 1)
+    for (int i = 0; i < s->n_subtrees; i++) forward_subtree(s, value, i, x, own);
+#pragma omp single
+    solve_top(s, value, x, own);
+#pragma omp for schedule(dynamic, 1)
+    for (int i = 0; i < s->n_subtrees; i++) backward_subtree(s, value, i, x, own);
+  }
+}
+
+/* ------------------------------------------------------------------ many columns */
+
+static void gather(const fem_supernodes *s, const fem_panel *p, int first, size_t count,
+                   const double *x, double *work) {
+  for (int i = first; i < p->rows; i++)
+    memcpy(work + (size_t)i * count, x + (size_t)fem_supernodes_row(s, p->row + (size_t)i) * count,
+           count * sizeof *x);
+}
+
+static bool is_zero(const double *x, size_t count) {
+  for (size_t i = 0; i < count; i++)
+    if (x[i] != 0) return false;
+  return true;
+}
+
+/* Right-hand sides of a few dofs touch only the panels above them in the elimination tree. */
+static void forward_block(const fem_supernodes *s, const double *value, const fem_panel *p,
+                          int count, double *x, double *work) {
+  const double *L     = value + p->value;
+  const size_t  n     = (size_t)count;
+  double       *own   = x + (size_t)p->first * n;
+  const int     below = p->rows - p->columns;
+  if (is_zero(own, (size_t)p->columns * n)) return;
+  cblas_dtrsm(CblasColMajor, CblasRight, CblasLower, CblasTrans, CblasNonUnit, count, p->columns, 1,
+              L, p->rows, own, count);
+  if (below == 0) return;
+  cblas_dgemm(CblasColMajor, CblasNoTrans, CblasTrans, count, below, p->columns, 1, own, count,
+              L + p->columns, p->rows, 0, work, count);
+  for (int i = 0; i < below; i++) {
+    const size_t at = p->row + (size_t)(p->columns + i);
+    double      *to = x + (size_t)fem_supernodes_row(s, at) * n;
+    for (size_t c = 0; c < n; c++) to[c] -= work[(size_t)i * n + c];
+  }
+}
+
+static void backward_block(const fem_supernodes *s, const double *value, const fem_panel *p,
+                           int count, double *x, double *work) {
+  const double *L     = value + p->value;
+  double       *own   = x + (size_t)p->first * (size_t)count;
+  const int     below = p->rows - p->columns;
+  if (below > 0) {
+    gather(s, p, p->columns, (size_t)count, x, work);
+    cblas_dgemm(CblasColMajor, CblasNoTrans, CblasNoTrans, count, p->columns, below, -1,
+                work + (size_t)p->columns * (size_t)count, count, L + p->columns, p->rows, 1, own,
+                count);
+  }
+  cblas_dtrsm(CblasColMajor, CblasRight, CblasLower, CblasNoTrans, CblasNonUnit, count, p->columns,
+              1, L, p->rows, own, count);
+}
+
+void fem_supernodal_solve_block(const fem_supernodes *s, const double *value, int count, double *x,
+                                double *work) {
+  for (int k = 0; k < s->n_panels; k++) forward_block(s, value, &s->panel[k], count, x, work);
+  for (int k = s->n_panels; k-- > 0;) backward_block(s, value, &s->panel[k], count, x, work);
 }

@@ -1,25 +1,29 @@
-/* Solves with CHOLMOD's supernodal factor for four right-hand sides at once.
+/* Solves L L^T x = b by panels, on all threads.
  *
- * A solve costs as much as reading the factor. Four columns take as long as one. CHOLMOD's own
- * solve calls BLAS on a few columns and takes twice as long; from twelve columns it is faster. */
+ * A few right-hand sides: as costly as reading the factor, so four take as long as one. Subtrees
+ * of the elimination tree are solved at the same time. Many: blocks of columns by BLAS, a block a
+ * thread. The numbers do not depend on the number of threads. Free of PETSc. */
 #ifndef FEM_SOLVER_SUPERNODAL_SOLVE_H
 #define FEM_SOLVER_SUPERNODAL_SOLVE_H
 
-#include <stddef.h>
-#include <suitesparse/cholmod.h>
+#include "fem/solver/supernodes.h"
 
 enum { FEM_LANES = 4 };
 
 /* One number of each right-hand side. */
 typedef double fem_lanes __attribute__((vector_size(8 * FEM_LANES)));
 
-/* Rows of the largest supernode. */
-size_t fem_supernodal_rows(const cholmod_factor *L);
+/* Solve in place, in the order of the factor.
+ *   value  in       [n_values]
+ *   x      in/out   [n_extended]; only the first n numbers matter
+ *   work   scratch  [threads][most_rows] */
+void fem_supernodal_solve(const fem_supernodes *s, const double *value, int threads, fem_lanes *x,
+                          fem_lanes *work);
 
-/* Solve L L^T x = b in place, in the order of the factor.
- *   L     in       supernodal, numeric, int
- *   x     in/out   [n]
- *   work  scratch  [fem_supernodal_rows] */
-void fem_supernodal_solve(const cholmod_factor *L, fem_lanes *x, fem_lanes *work);
+/* The same for count columns by BLAS, on the calling thread.
+ *   x     in/out   [n][count]
+ *   work  scratch  [most_rows][count] */
+void fem_supernodal_solve_block(const fem_supernodes *s, const double *value, int count, double *x,
+                                double *work);
 
 #endif

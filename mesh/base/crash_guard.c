@@ -1,7 +1,9 @@
+#define _GNU_SOURCE /* dup3 */
 #include "mesh/base/crash_guard.h"
 
 #include <fcntl.h>
 #include <signal.h>
+#include <stdbool.h>
 #include <stdio.h>
 #include <string.h>
 #include <unistd.h>
@@ -15,30 +17,48 @@ enum { SIGNALS = sizeof fatal / sizeof *fatal, STACK = 1 << 16 };
 
 /* Signal handlers have no arguments. */
 static struct {
-  bool             active;
-  int              stderr_kept; /* -1: not muted */
+  bool             active, muted;
   char             line[1400];
   struct sigaction before[SIGNALS];
   stack_t          stack_before;
-} guard = {.stderr_kept = -1};
+} guard;
 
 /* A signal stack of its own: the crash may be an overflow of the usual one. */
 static char stack[STACK];
 
+/* What the program itself says goes to a descriptor of its own. That of the libraries leads nowhere
+ * meanwhile. Once made, the stream stays: threads may use it. */
+static struct {
+  FILE *stream, *before;
+  int   file; /* of the stream */
+} speech;
+
 static void end_program(int number) {
   (void)number;
-  const int where = guard.stderr_kept >= 0 ? guard.stderr_kept : STDERR_FILENO;
+  const int where = guard.muted ? speech.file : STDERR_FILENO;
   ssize_t   done  = write(where, guard.line, strlen(guard.line));
   (void)done;
   shb_publish_abandon();
   _exit(SHB_ERR_INPUT);
 }
 
-static void mute_stderr(void) {
+static bool make_own_stream(void) {
+  speech.file   = fcntl(STDERR_FILENO, F_DUPFD_CLOEXEC, 3);
+  speech.stream = speech.file >= 0 ? fdopen(speech.file, "w") : NULL;
+  if (!speech.stream && speech.file >= 0) close(speech.file);
+  if (speech.stream) setvbuf(speech.stream, NULL, _IONBF, 0);
+  return speech.stream != NULL;
+}
+
+static void mute_stderr(bool stream) {
   const int null = open("/dev/null", O_WRONLY | O_CLOEXEC);
   fflush(stderr);
-  guard.stderr_kept = null >= 0 ? fcntl(STDERR_FILENO, F_DUPFD_CLOEXEC, 3) : -1;
-  if (guard.stderr_kept >= 0) dup2(null, STDERR_FILENO);
+  if (null >= 0 && (speech.stream || make_own_stream()) &&
+      dup3(STDERR_FILENO, speech.file, O_CLOEXEC) >= 0 && dup2(null, STDERR_FILENO) >= 0) {
+    guard.muted   = true;
+    speech.before = stderr;
+    if (!stream) stderr = speech.stream;
+  }
   if (null >= 0) close(null);
 }
 
@@ -57,17 +77,17 @@ void shb_guard_begin(const char *path, const char *why, bool mute) {
   sigemptyset(&action.sa_mask);
   sigaltstack(&own, &guard.stack_before);
   for (int i = 0; i < SIGNALS; i++) sigaction(fatal[i], &action, &guard.before[i]);
-  if (mute) mute_stderr();
+  mute_stderr(mute);
   guard.active = true;
 }
 
 void shb_guard_end(void) {
   if (!guard.active) return;
-  if (guard.stderr_kept >= 0) {
-    fflush(stderr);
-    dup2(guard.stderr_kept, STDERR_FILENO);
-    close(guard.stderr_kept);
-    guard.stderr_kept = -1;
+  if (guard.muted) {
+    fflush(speech.before);
+    dup2(speech.file, STDERR_FILENO);
+    stderr      = speech.before;
+    guard.muted = false;
   }
   for (int i = 0; i < SIGNALS; i++) sigaction(fatal[i], &guard.before[i], NULL);
   sigaltstack(&guard.stack_before, NULL);

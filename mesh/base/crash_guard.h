@@ -6,9 +6,9 @@
 #include <stdbool.h>
 
 /* From here to the end of the guard a fatal signal prints "shroudhb: error: PATH: WHY" and ends the
- * process. Temporary files of results are removed. Guards do not nest: a second one replaces the
- * text of the first.
- *   mute  in  standard error is closed meanwhile, as libraries print there before they abort */
+ * process. Temporary files of results are removed. What the C library prints before it aborts leads
+ * nowhere. Guards do not nest: a second one replaces the text of the first.
+ *   mute  in  so does the stream stderr, where other libraries print before they abort */
 void shb_guard_begin(const char *path, const char *why, bool mute);
 void shb_guard_end(void);
 

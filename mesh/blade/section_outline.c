@@ -78,7 +78,7 @@ static shb_status add_line(int from, int to, int parts, int *line) {
   return SHB_OK;
 }
 
-static shb_status add_curve_loop(int n, const int *line, int *loop) {
+static shb_status add_curve_loop(int n, int *line, int *loop) {
   GMSH_TRY("mesh.blade.size", *loop = gmshModelGeoAddCurveLoop(line, (size_t)n, -1, 0, &ierr));
   return SHB_OK;
 }

@@ -15,14 +15,16 @@ static int most(int a, int b) {
 
 static int allocate(mhb_higher_harmonics *h, int product, size_t change) {
   size_t K = (size_t)h->last - (size_t)h->first + 1, n = (size_t)h->n, m = (size_t)h->n_modes;
-  size_t row  = 3 * (size_t)mhb_real_size(h->last);
-  h->x        = shb_arena_take(&h->arena, row, sizeof(double));
-  h->p        = shb_arena_take(&h->arena, row, sizeof(double));
-  h->force    = shb_arena_take(&h->arena, K * n, sizeof(double complex));
-  h->u        = shb_arena_take(&h->arena, K * n, sizeof(double complex));
-  h->D        = shb_arena_take(&h->arena, 3 * n, sizeof(double complex));
-  h->W        = shb_arena_take(&h->arena, 3 * n, sizeof(double complex));
-  h->c        = shb_arena_take(&h->arena, n, sizeof(double complex));
+  size_t row = 3 * (size_t)mhb_real_size(h->last);
+  h->x       = shb_arena_take(&h->arena, row, sizeof(double));
+  h->p       = shb_arena_take(&h->arena, row, sizeof(double));
+  h->force   = shb_arena_take(&h->arena, K * n, sizeof(double complex));
+  h->u       = shb_arena_take(&h->arena, K * n, sizeof(double complex));
+  h->D       = shb_arena_take(&h->arena, 3 * n, sizeof(double complex));
+  h->W       = shb_arena_take(&h->arena, 3 * n, sizeof(double complex));
+  h->c       = shb_arena_take(&h->arena, n, sizeof(double complex));
+  if (h->by_modes && h->receptance->part && h->receptance->part->G)
+    h->stiffness = shb_arena_take(&h->arena, m * m, sizeof(double complex));
   h->A        = shb_arena_take(&h->arena, h->by_modes ? m * m : n * n, sizeof(double complex));
   h->y        = shb_arena_take(&h->arena, m, sizeof(double complex));
   h->V        = shb_arena_take(&h->arena, n * m, sizeof(double complex));
@@ -199,7 +201,13 @@ static int solve_modes(mhb_higher_harmonics *h, int k, double complex *u) {
   cblas_zgemv(CblasRowMajor, CblasConjTrans, n, m, &one, B, m, h->f, 1, &none, h->y, 1);
   cblas_zgemm(CblasRowMajor, CblasConjTrans, CblasNoTrans, m, m, n, &one, B, m, h->V, m, &none,
               h->C, m);
-  for (int i = 0; i < m; i++) {
+  if (h->stiffness) { /* Coriolis terms: L is no diagonal, its inverse is known */
+    const mhb_receptance *r = h->receptance;
+    mhb_receptance_dynamic_stiffness(r, k, k * r->omega / r->nu, h->stiffness);
+    for (int i = 0; i < m; i++)
+      for (int j = 0; j < m; j++) h->A[j * m + i] = h->C[i * m + j] + h->stiffness[j * m + i];
+  }
+  for (int i = 0; i < m && !h->stiffness; i++) {
     double complex L = modal_receptance(h->receptance, k, i);
     h->y[i] *= L;
     for (int j = 0; j < m; j++) h->A[j * m + i] = L * h->C[i * m + j] + (i == j);

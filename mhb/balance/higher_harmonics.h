@@ -30,6 +30,7 @@ typedef struct {
   mhb_receptance_product *product; /* of many pairs: harmonics first..last */
   double                 *change;  /* [columns of the product or of the balance] in real form */
   double                 *motion;  /* [columns of the product] R p_k */
+  double complex         *stiffness; /* [modes][modes] L^-1 with Coriolis terms, else NULL */
   shb_arena               arena;
 } mhb_higher_harmonics;
 

@@ -43,7 +43,7 @@ void mhb_ring_system_destroy(mhb_ring_system *s) {
   free(s);
 }
 
-/* ---- vectors: real form [3 pairs][nb], harmonics [k][3 pairs], unknowns of the contacts left ---- */
+/* ---- vectors: real form [3 pairs][nb] and harmonics [k][3 pairs] ---- */
 
 static int n_axes(const mhb_ring_system *s) {
   return 3 * s->balance->n_pairs;

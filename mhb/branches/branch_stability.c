@@ -71,6 +71,11 @@ static int count_states(const mhb_balance *b) {
   return 2 * blades * (b->receptance->n_modes + b->n_pairs);
 }
 
+shb_status mhb_branch_floquet_create(mhb_balance *b, mhb_floquet **floquet) {
+  return mhb_floquet_create(b->receptance, b->settings,
+                            count_states(b) > DEAR ? SUBSTEPS_DEAR : SUBSTEPS, MAX_STATES, floquet);
+}
+
 shb_status mhb_branch_stability_create(mhb_balance *b, mhb_branch_stability **out) {
   mhb_branch_stability *w = calloc(1, sizeof *w);
   SHB_CHECK(w, SHB_ERR_IO, "out of memory");
@@ -80,10 +85,7 @@ shb_status mhb_branch_stability_create(mhb_balance *b, mhb_branch_stability **ou
   w->r       = calloc((size_t)b->n, sizeof(double));
   shb_status status =
       w->x && w->r ? SHB_OK : shb_fail(SHB_ERR_IO, __FILE__, __LINE__, "out of memory");
-  if (status == SHB_OK)
-    status =
-        mhb_floquet_create(b->receptance, b->settings, w->states > DEAR ? SUBSTEPS_DEAR : SUBSTEPS,
-                           MAX_STATES, &w->floquet);
+  if (status == SHB_OK) status = mhb_branch_floquet_create(b, &w->floquet);
   if (status != SHB_OK) {
     mhb_branch_stability_destroy(w);
     return status;

@@ -23,7 +23,12 @@
 #define MHB_BRANCHES_BRANCH_STABILITY_H
 
 #include "mhb/branches/tracer.h"
+#include "mhb/floquet/floquet.h"
 #include "mhb/response/response.h"
+
+/* A workspace for multipliers with the sub-steps and dynamic modes that points of a branch get.
+ * SHB_ERR_IO: no memory. */
+shb_status mhb_branch_floquet_create(mhb_balance *balance, mhb_floquet **floquet);
 
 typedef struct mhb_branch_stability mhb_branch_stability; /* workspace; one a thread */
 

@@ -63,9 +63,20 @@ static bool is_modulated(const mhb_response *r, const mhb_branch *b, int point) 
   return b->stable[point] == 0 && pair && !mhb_response_is_linear(r, b, point);
 }
 
+/* Amplitude of the output; of a mistuned ring that of the blade that swings highest, m. */
+static double size_of(const mhb_response *r, const mhb_branch *b, int point) {
+  const int blades = r->ring > 0 ? r->ring : 1;
+  const int each   = (r->n_probes > 0 ? r->n_probes : r->n_pairs) / blades;
+  double    most   = 0;
+  for (int blade = 0; blade < blades; blade++)
+    most = fmax(most, mhb_response_amplitude(r, b, point, blade * each));
+  return most;
+}
+
 /* Why nothing is computed for the whole case; NULL: it is. */
-static const char *refusal(const mhb_settings *s) {
+static const char *refusal(const modal_model *model, const mhb_settings *s) {
   if (s->lasting == MHB_LASTING_NEVER) return "not computed: mhb.lasting is never";
+  if (model->coriolis) return "not computed: the fast integration knows no Coriolis terms";
   if (s->nodal_diameters)
     return "not computed: the fast integration knows no blades that a disc couples";
   if (s->run_up) return "not computed: in a run-up each frequency has a structure of its own";
@@ -79,14 +90,14 @@ static const char *refusal(const mhb_settings *s) {
 static shb_status choose(const lasting *l, work *w) {
   const mhb_branch *b    = w->branch;
   double            peak = 0;
-  w->refused             = refusal(l->settings);
+  w->refused             = refusal(l->model, l->settings);
   if (w->refused) return SHB_OK;
   w->size      = calloc((size_t)b->n_points + 1, sizeof *w->size);
   w->asked     = calloc((size_t)b->n_points + 1, sizeof *w->asked);
   w->modulated = calloc((size_t)b->n_points + 1, sizeof *w->modulated);
   SHB_CHECK(w->size && w->asked && w->modulated, SHB_ERR_IO, "out of memory");
   for (int i = 0; i < b->n_points; i++) {
-    w->size[i] = mhb_response_output(w->curves, b, i);
+    w->size[i] = size_of(w->curves, b, i);
     peak       = fmax(peak, w->size[i]);
   }
   for (int i = 0; i < b->n_points; i++) {

@@ -4,7 +4,7 @@
 #include <string.h>
 
 /* Chord steps: from this residual on, and only as long as each gains a decade. */
-static const double CHORD_FROM = 1e-2, CHORD_GAIN = 0.1;
+static const double CHORD_FROM = 1e-2, CHORD_GAIN = 0.1, PROMISE = 3;
 /* Of a costly system three corrections gain this at least, or the step is given up. */
 static const double LEAST_GAIN = 0.1;
 enum { MAX_CORRECTIONS = 12, MAX_HALVINGS = 3, MAX_CHORD_STEPS = 4 };
@@ -67,9 +67,10 @@ static int measure_damped(mhb_arclength *curve, double before, double cut, doubl
   }
 }
 
-/* Chord steps: near convergence the factors are reused, since a Jacobian costs ten residuals. */
+/* Chord steps: near convergence the factors are reused, since a Jacobian costs ten residuals. Where
+ * the gain of the last one promises convergence the residual is left to the linearisation. */
 static void chord_steps(mhb_arclength *curve, double unit, mhb_curve_point *point) {
-  double before = CHORD_FROM;
+  double before = CHORD_FROM, last = 0;
   if (!curve->system->smooth) return;
   for (int i = 0; i < MAX_CHORD_STEPS && point->value >= curve->system->least; i++) {
     curve->system->evaluate(curve->system, point);
@@ -77,7 +78,9 @@ static void chord_steps(mhb_arclength *curve, double unit, mhb_curve_point *poin
     if (!(residual <= before) || residual <= curve->tolerance) return;
     if (!solve_for_correction(curve, unit, point)) return;
     move(curve, 1, unit, point);
+    if (PROMISE * residual * residual <= curve->tolerance * last) return;
     before = CHORD_GAIN * residual;
+    last   = residual;
   }
 }
 

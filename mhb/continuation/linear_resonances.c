@@ -50,6 +50,10 @@ static shb_status add_inside(const stuck_modes *w, mhb_resonances *s, mhb_resona
 static mhb_resonance free_one(const mhb_receptance *r, int k, int i) {
   const modal_model *model = mhb_receptance_model(r, k);
   double             omega = SHB_TWO_PI * model->frequency[i], turns = (double)r->nu / k;
+  if (r->part && r->part->gyroscopic) { /* no single mode: always significant */
+    const mhb_gyroscopic *g = &r->part->gyroscopic[k];
+    return (mhb_resonance){turns * g->omega[g->n + i], turns * g->decay[g->n + i], k, -1, false};
+  }
   return (mhb_resonance){turns * omega, turns * omega * model->damping_ratio[i], k, i, false};
 }
 
@@ -87,6 +91,28 @@ static int stiffen(const stuck_modes *w, int k) {
   return LAPACKE_zgesv(LAPACK_COL_MAJOR, n, m, w->A, n, w->pivot, w->X, n) == 0;
 }
 
+/* The same with Coriolis terms, from the stiffness in M: the modes of positive frequency, whose
+ * vectors get the length 1. */
+static int couple(const stuck_modes *w, int k) {
+  const mhb_receptance *r = w->b->receptance;
+  const size_t          m = (size_t)r->n_modes;
+  const double complex *G = r->part->G + (size_t)k * m * m;
+  double                loss[m];
+  mhb_gyroscopic      g;
+  memset(loss, 0, sizeof loss);
+  for (size_t i = 0; i < m * m; i++) w->M[i] = conj(w->M[i]); /* by rows */
+  const int found = mhb_gyroscopic_solve(r->n_modes, w->M, G, loss, &g) == SHB_OK;
+  for (size_t j = 0; j < m && found; j++) {
+    const double complex *x    = g.shape + (m + j) * m;
+    double                size = 0;
+    for (size_t i = 0; i < m; i++) size += pow(cabs(x[i]), 2);
+    for (size_t i = 0; i < m; i++) w->M[j * m + i] = x[i] / sqrt(size);
+    w->square[j] = pow(g.omega[m + j], 2);
+  }
+  mhb_gyroscopic_free(&g);
+  return found;
+}
+
 /* Eigenvalues into square, vectors into M, column-major. 0: not found. */
 static int solve(const stuck_modes *w, int k) {
   const mhb_receptance *r = w->b->receptance;
@@ -103,6 +129,7 @@ static int solve(const stuck_modes *w, int k) {
       w->M[(size_t)j * (size_t)m + (size_t)i] = sum;
     }
   }
+  if (r->part->G) return couple(w, k);
   return LAPACKE_zheev(LAPACK_COL_MAJOR, 'V', 'L', m, w->M, m, w->square) == 0;
 }
 

@@ -90,7 +90,8 @@ static shb_status step_with_events(mhb_segment_host *host, mhb_end *end) {
       continue;
     }
     SHB_TRY(mhb_events_locate(host->curve, host->n_tests, host->test, host->events, end));
-    if (*end == MHB_END_CLOSED) host->estimate_event(host, &host->curve->next); /* it has moved */
+    if (*end != MHB_END_NONE && *end != MHB_END_HIGH && *end != MHB_END_LOW)
+      host->estimate_event(host, &host->curve->next); /* it has moved */
     if (*end != MHB_END_NONE || !mhb_events_miss_fold(host->curve, host->events)) return SHB_OK;
     if (shorter == 0) whole = part = step_length(host->curve);
   }

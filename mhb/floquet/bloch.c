@@ -91,28 +91,44 @@ static void note_aligned(mhb_bloch *b, int n, const double complex *lambda, int 
       b->aligned[b->n_aligned++] = pow(creal(lambda[i]), n_segments);
 }
 
+int mhb_bloch_waves(const mhb_bloch *b) {
+  return b->cells / 2 + 1;
+}
+
+bool mhb_bloch_is_real(const mhb_bloch *b, int l) {
+  return l == 0 || 2 * l == b->cells;
+}
+
+int mhb_bloch_eigenvalues(mhb_bloch *b, int n, const double *S, int l, double complex *lambda) {
+  if (mhb_bloch_is_real(b, l)) return real_problem(b, n, S, l > 0, lambda);
+  set_matrix(b, n, S, SHB_TWO_PI * l / b->cells);
+  return mhb_hessenberg_qr_eigenvalues(&b->qr, n, b->matrix, lambda);
+}
+
+double complex mhb_bloch_multiplier(const mhb_bloch *b, int l, int n_segments, int cell_shift,
+                                    double complex lambda) {
+  double complex turn = mhb_bloch_is_real(b, l)
+                            ? (l > 0 && cell_shift % 2 ? -1 : 1)
+                            : cexp(-I * (SHB_TWO_PI * l / b->cells) * cell_shift);
+  return turn * power(lambda, n_segments);
+}
+
 int mhb_bloch_multipliers(mhb_bloch *b, int n, const double *S, int n_segments, int cell_shift,
                           double complex *multiplier) {
-  int g = b->cells, done = 0;
+  int done     = 0;
   b->wave      = 0;
   b->largest   = 0;
   b->n_aligned = 0;
-  for (int l = 0; 2 * l <= g && n > 0; l++) {
-    double          kappa  = SHB_TWO_PI * l / g;
-    int             own    = l == 0 || 2 * l == g; /* its own conjugate */
-    double complex *lambda = own ? multiplier + done : b->value;
-    if (!own) set_matrix(b, n, S, kappa);
-    if (!(own ? real_problem(b, n, S, l > 0, lambda)
-              : mhb_hessenberg_qr_eigenvalues(&b->qr, n, b->matrix, lambda)))
-      return 0;
+  for (int l = 0; l < mhb_bloch_waves(b) && n > 0; l++) {
+    double complex *lambda = b->value;
+    if (!mhb_bloch_eigenvalues(b, n, S, l, lambda)) return 0;
     note_largest(b, n, l, lambda);
     if (l == 0) note_aligned(b, n, lambda, n_segments);
-    double complex turn = own ? (l > 0 && cell_shift % 2 ? -1 : 1) : cexp(-I * kappa * cell_shift);
-    for (int i = 0; i < n && own; i++, done++)
-      multiplier[done] = turn * power(multiplier[done], n_segments);
-    for (int i = 0; i < n && !own; i++, done += 2) {
-      multiplier[done]     = turn * power(b->value[i], n_segments);
-      multiplier[done + 1] = conj(multiplier[done]);
+    for (int i = 0; i < n; i++) {
+      multiplier[done++] = mhb_bloch_multiplier(b, l, n_segments, cell_shift, lambda[i]);
+      if (mhb_bloch_is_real(b, l)) continue;
+      multiplier[done] = conj(multiplier[done - 1]);
+      done++;
     }
   }
   return 1;

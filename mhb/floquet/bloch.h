@@ -13,6 +13,7 @@
 #define MHB_FLOQUET_BLOCH_H
 
 #include <complex.h>
+#include <stdbool.h>
 
 #include "mesh/base/arena.h"
 #include "mesh/base/status.h"
@@ -38,6 +39,21 @@ typedef struct {
 /* For up to capacity states a cell. SHB_ERR_IO: no memory. */
 shb_status mhb_bloch_create(int cells, int capacity, mhb_bloch *bloch);
 void       mhb_bloch_destroy(mhb_bloch *bloch);
+
+/* Number of Bloch problems that are solved: kappa of l = 0 to cells/2. The others are their
+ * conjugates. */
+int mhb_bloch_waves(const mhb_bloch *bloch);
+
+/* Whether S(kappa) of wave l is real: with an eigenvalue it has the conjugate. */
+bool mhb_bloch_is_real(const mhb_bloch *bloch, int l);
+
+/* lambda[n] <- the eigenvalues of S(kappa) of wave l, S as below. Conjugates of a real S(kappa) are
+ * side by side. Returns 0 if the eigensolver failed. */
+int mhb_bloch_eigenvalues(mhb_bloch *bloch, int n, const double *S, int l, double complex *lambda);
+
+/* The multiplier of an eigenvalue of wave l; cell_shift: k. */
+double complex mhb_bloch_multiplier(const mhb_bloch *bloch, int l, int n_segments, int cell_shift,
+                                    double complex lambda);
 
 /* Multipliers of S [cells][n][n], column-major. Those of kappa = 0 with a positive lambda are
  * aligned. Their disturbance repeats from segment to segment as the wave does, without change of

@@ -4,7 +4,9 @@
  * place of y: [coordinate][mode]. The mean force P of the contacts is transformed in the same way.
  * A nodal diameter then meets its own part alone:
  *   p^ = F P,   z <- propagated under -Phi^H p^,   W += F^T Phi (change of z)
- * That costs 2 N^2 n + 8 N n modes products a column, N sectors with n = 3 pairs. */
+ * With Coriolis terms the rows hold the amplitudes of the coupled modes, the first half in q and
+ * the second in v. Of real shapes q holds the real part and v the imaginary part. It costs 2 N^2 n
+ * + 8 N n modes products a column, N sectors with n = 3 pairs. */
 #ifndef MHB_FLOQUET_DISC_PROPAGATION_H
 #define MHB_FLOQUET_DISC_PROPAGATION_H
 
@@ -15,6 +17,9 @@
 typedef struct {
   const mhb_disc_modes *modes;
   double               *propagator;           /* [diameter][mode][PROPAGATOR] */
+  double complex       *growth, *gain;        /* [diameter][2][mode] of coupled modes, else NULL:
+                                               * e^(p h) - 1 and that over p */
+  mhb_columns          *state;                /* [4 modes] of one nodal diameter */
   double complex       *block;                /* [diameter][n][n] of the compliance */
   mhb_columns          *force, *motion, *row; /* [N][n], [N][n], [N]: of one block of columns */
   shb_arena             arena;

@@ -31,10 +31,11 @@ struct mhb_floquet {
   mhb_monodromy          *monodromy; /* NULL: too many states even with one mode */
   mhb_bloch               bloch;
   double                 *coarse; /* the matrix of twice the sub-step */
-  int                     nu, max_states;
-  int                    *state;      /* [pair] */
-  double complex         *multiplier; /* [states] */
-  shb_arena               arena; /* of coarse too, which changes places with the monodromy's M */
+  int             refinement;     /* of the finer one in the last evaluation; 0: none was used */
+  int             nu, max_states;
+  int            *state;      /* [pair] */
+  double complex *multiplier; /* [states] */
+  shb_arena       arena;      /* of coarse too, which changes places with the monodromy's M */
 };
 
 /* Number of modes a blade within max_states. */
@@ -176,12 +177,12 @@ static const char *multipliers_of(mhb_floquet *s, const double *S, mhb_multiplie
 
 /* M of a refinement; the last one goes to coarse. Returns NULL, or the reason of a failure. */
 static const char *refine(mhb_floquet *s, const mhb_solution *solution, double omega,
-                          int refinement) {
+                          int refinement, bool keep) {
   mhb_monodromy *d    = s->monodromy;
   double        *swap = d->M;
   d->M                = s->coarse;
   s->coarse           = swap;
-  const char *why     = mhb_monodromy_set(d, solution, omega, refinement);
+  const char *why     = mhb_monodromy_set(d, solution, omega, refinement, keep);
   if (why) return why;
   for (int i = 0; i < s->bloch.cells * d->n * d->n; i++)
     if (!isfinite(d->M[i])) return "the disturbances overflow";
@@ -266,16 +267,17 @@ static const char *nonlinear(mhb_floquet *s, const mhb_solution *solution, doubl
                              mhb_multipliers *out) {
   if (!s->monodromy) return "more states than max_states";
   int         first = first_refinement(s, solution->law, omega);
-  const char *why   = refine(s, solution, omega, first);
-  if (!why) why = refine(s, solution, omega, 2 * first);
+  const char *why   = refine(s, solution, omega, first, false);
+  if (!why) why = refine(s, solution, omega, 2 * first, false);
   for (int refinement = 2 * first; !why; refinement *= 2) {
     double before = out->largest;
+    s->refinement = refinement;
     why           = multipliers_of(s, extrapolated(s), out);
     if (!why && refinement == 2 * first) before = second_order(s);
     out->change = fabs(out->largest - before);
     if (why || is_accurate(out, refinement == 2 * first ? ROUGH : FINE)) return why;
     if (refinement == FINEST) break;
-    why = refine(s, solution, omega, 2 * refinement);
+    why = refine(s, solution, omega, 2 * refinement, false);
   }
   if (!why && out->change > MARGIN && fabs(out->largest - 1) <= out->change)
     why = "the sub-steps do not settle it";
@@ -310,8 +312,9 @@ static void set_verdict(mhb_multipliers *out) {
 }
 
 void mhb_floquet_evaluate(mhb_floquet *s, const mhb_solution *solution, mhb_multipliers *out) {
-  double omega = solution->omega / s->nu;
-  *out         = (mhb_multipliers){.change = -1};
+  double omega  = solution->omega / s->nu;
+  *out          = (mhb_multipliers){.change = -1};
+  s->refinement = 0;
   if (!mhb_transition_schedule_set(&s->schedule, solution->info)) {
     out->reason = "the contact law lost its way, or has too many transitions";
   } else if (is_linear(s, solution)) {
@@ -323,4 +326,45 @@ void mhb_floquet_evaluate(mhb_floquet *s, const mhb_solution *solution, mhb_mult
   set_verdict(out);
   for (int i = 0; out->verdict == MHB_UNSTABLE && i < s->bloch.n_aligned; i++)
     out->n_fold += s->bloch.aligned[i] > 1 + fmax(MARGIN, out->change);
+}
+
+int mhb_floquet_refinement(const mhb_floquet *s) {
+  return s->refinement;
+}
+
+const char *mhb_floquet_set_map(mhb_floquet *s, const mhb_solution *solution, int refinement,
+                                bool keep) {
+  double omega = solution->omega / s->nu;
+  if (!s->monodromy) return "more states than max_states";
+  if (!mhb_transition_schedule_set(&s->schedule, solution->info))
+    return "the contact law lost its way, or has too many transitions";
+  if (is_linear(s, solution)) return "no contact slips, opens or closes";
+  const char *why = refine(s, solution, omega, refinement / 2, keep);
+  if (!why) why = refine(s, solution, omega, refinement, true);
+  if (!why) extrapolated(s);
+  return why;
+}
+
+int mhb_floquet_waves(const mhb_floquet *s) {
+  return mhb_bloch_waves(&s->bloch);
+}
+
+bool mhb_floquet_is_real(const mhb_floquet *s, int wave) {
+  return mhb_bloch_is_real(&s->bloch, wave);
+}
+
+int mhb_floquet_segments(const mhb_floquet *s) {
+  return s->schedule.n_segments;
+}
+
+const double complex *mhb_floquet_eigenvalues(mhb_floquet *s, int wave, int *n) {
+  *n = s->monodromy->n;
+  return mhb_bloch_eigenvalues(&s->bloch, *n, s->coarse, wave, s->multiplier) ? s->multiplier
+                                                                              : NULL;
+}
+
+double complex mhb_floquet_multiplier(const mhb_floquet *s, int wave, double complex lambda) {
+  const mhb_transition_schedule *t = &s->schedule;
+  return mhb_bloch_multiplier(&s->bloch, wave, t->n_segments, t->blade_shift % s->bloch.cells,
+                              lambda);
 }

@@ -18,6 +18,7 @@
 #define MHB_FLOQUET_FLOQUET_H
 
 #include <complex.h>
+#include <stdbool.h>
 
 #include "mhb/floquet/monodromy.h"
 
@@ -67,5 +68,30 @@ int mhb_floquet_cells(const mhb_floquet *floquet);
  *                  max_states is too small for one mode a blade */
 void mhb_floquet_evaluate(mhb_floquet *floquet, const mhb_solution *solution,
                           mhb_multipliers *multipliers);
+
+/* The same multipliers at fixed sub-steps, one Bloch problem at a time (followed_multiplier.h). */
+
+/* How often the last evaluation refined the sub-steps; 0: no contact slips, opens or closes. */
+int mhb_floquet_refinement(const mhb_floquet *floquet);
+
+/* Set the map of disturbances, of fourth order, for a solution and a refinement.
+ *   keep  in  the number of sub-steps between transitions is that of the last call, where there are
+ *             as many transitions: the map is then a smooth function of a solution nearby
+ * Returns NULL, or the reason of a failure. */
+const char *mhb_floquet_set_map(mhb_floquet *floquet, const mhb_solution *solution, int refinement,
+                                bool keep);
+
+/* Bloch problems of a ring; 1 for a blade on the ground. Whether that of a wave is real. */
+int  mhb_floquet_waves(const mhb_floquet *floquet);
+bool mhb_floquet_is_real(const mhb_floquet *floquet, int wave);
+
+/* Segments of a period: the multiplier's modulus is the eigenvalue's to this power. */
+int mhb_floquet_segments(const mhb_floquet *floquet);
+
+/* [n] eigenvalues of the map for a wave, valid until the next call; NULL: the solver failed. */
+const double complex *mhb_floquet_eigenvalues(mhb_floquet *floquet, int wave, int *n);
+
+/* The multiplier that belongs to an eigenvalue. */
+double complex mhb_floquet_multiplier(const mhb_floquet *floquet, int wave, double complex lambda);
 
 #endif

@@ -105,9 +105,10 @@ static int contact_stiffness(mhb_linear_exponents *x) {
 static int nodal_diameter(mhb_linear_exponents *x, int d) {
   const mhb_modal_structure *s  = x->structure;
   int                        n3 = 3 * s->pairs, m = s->modes, n = 2 * m;
-  double complex             step  = cexp(-I * SHB_TWO_PI * d / s->blades);
-  const double              *omega = s->disc ? s->disc->omega + d * m : s->omega;
-  const double              *zeta  = s->disc ? s->disc->zeta + d * m : s->zeta;
+  double complex             step    = cexp(-I * SHB_TWO_PI * d / s->blades);
+  const double              *omega   = s->disc ? s->disc->omega + d * m : s->omega;
+  const double              *zeta    = s->disc ? s->disc->zeta + d * m : s->zeta;
+  const mhb_coupled_modes   *coupled = s->disc ? s->disc->coupled : NULL;
   relative_shapes(x, d, step);
   relative_flexibility(x, d, step);
   if (!contact_stiffness(x)) return 0;
@@ -120,6 +121,7 @@ static int nodal_diameter(mhb_linear_exponents *x, int d) {
       double complex sum = i == k ? omega[i] * omega[i] : 0;
       for (int r = 0; r < n3; r++) sum += conj(x->left[r * m + i]) * SB[k * n3 + r];
       x->A[k * n + m + i] = -sum;
+      if (coupled) x->A[(m + k) * n + m + i] -= coupled->G[(d * m + i) * m + k];
     }
   }
   return LAPACKE_zgeev_work(LAPACK_COL_MAJOR, 'N', 'N', n, x->A, n,

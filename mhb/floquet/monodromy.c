@@ -27,8 +27,10 @@ shb_status mhb_monodromy_create(const mhb_modal_structure     *s,
   d->u          = shb_arena_take(&d->arena, 3 * (size_t)s->contacts, sizeof *d->u);
   d->matrix =
       shb_arena_take(&d->arena, 9 * (size_t)s->contacts * (size_t)s->contacts, sizeof *d->matrix);
-  d->pivot = shb_arena_take(&d->arena, 3 * (size_t)s->contacts, sizeof *d->pivot);
-  d->M     = shb_arena_take(&d->arena, cells * (size_t)capacity * (size_t)capacity, sizeof *d->M);
+  d->pivot    = shb_arena_take(&d->arena, 3 * (size_t)s->contacts, sizeof *d->pivot);
+  d->steps    = shb_arena_take(&d->arena, (size_t)pieces, sizeof *d->steps);
+  d->n_events = -1;
+  d->M = shb_arena_take(&d->arena, cells * (size_t)capacity * (size_t)capacity, sizeof *d->M);
   shb_status status = SHB_OK;
   if (d->arena.failed)
     status = shb_fail(SHB_ERR_IO, __FILE__, __LINE__,
@@ -201,12 +203,12 @@ static void set_matrix(mhb_monodromy *d) {
 
 /* ---- integration ---- */
 
-/* The interval between two events. Returns 0 if a system was singular. */
-static int integrate_interval(mhb_monodromy *d, double from, double to, int refinement) {
+/* The interval before event `piece`. Returns 0 if a system was singular. */
+static int integrate_interval(mhb_monodromy *d, int piece, double from, double to, int refinement) {
   double length = to - from, period = SHB_TWO_PI / d->orbit->omega;
   if (length < SHORT) return 1;
   int    first_pass = d->orbit->first_pass, slip = mhb_orbit_contacts_any_slips(d->orbit);
-  int    steps = refinement * (int)ceil(d->substeps * length - 1e-9);
+  int    steps = refinement * d->steps[piece];
   double h     = length / steps;
   if (!first_pass) mhb_variational_set_step(d->variational, h * period);
   for (int i = 0; i < steps; i++) {
@@ -229,17 +231,30 @@ static int run_pass(mhb_monodromy *d, int first_pass, int refinement) {
   if (!first_pass && !start_columns(d)) return 0;
   double now = 0;
   for (int i = 0; i < t->n_events; i++) {
-    if (!integrate_interval(d, now, t->event[i].at, refinement)) return 0;
+    if (!integrate_interval(d, i, now, t->event[i].at, refinement)) return 0;
     if (!mhb_orbit_contacts_event(d->orbit, &t->event[i], d->variational)) return 0;
     now = t->event[i].at;
   }
-  if (!integrate_interval(d, now, t->span, refinement)) return 0;
+  if (!integrate_interval(d, t->n_events, now, t->span, refinement)) return 0;
   if (!first_pass) mhb_variational_finish(d->variational);
   return 1;
 }
 
+/* Sub-steps of each interval between events, at least one. */
+static void set_steps(mhb_monodromy *d) {
+  const mhb_transition_schedule *t   = d->schedule;
+  double                         now = 0;
+  d->n_events                        = t->n_events;
+  for (int i = 0; i <= t->n_events; i++) {
+    double to   = i < t->n_events ? t->event[i].at : t->span;
+    d->steps[i] = (int)fmax(1, ceil(d->substeps * (to - now) - 1e-9));
+    now         = to;
+  }
+}
+
 const char *mhb_monodromy_set(mhb_monodromy *d, const mhb_solution *solution, double omega,
-                              int refinement) {
+                              int refinement, bool keep) {
+  if (!keep || d->n_events != d->schedule->n_events) set_steps(d);
   mhb_orbit_contacts_set_solution(d->orbit, solution, omega);
   run_pass(d, 1, refinement);
   if (!mhb_orbit_contacts_evaluate_samples(d->orbit)) return "the contact law lost its way";

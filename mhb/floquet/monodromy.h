@@ -9,6 +9,8 @@
 #ifndef MHB_FLOQUET_MONODROMY_H
 #define MHB_FLOQUET_MONODROMY_H
 
+#include <stdbool.h>
+
 #include "mesh/base/arena.h"
 #include "mhb/floquet/orbit_contacts.h"
 
@@ -23,6 +25,8 @@ typedef struct {
   int      *pivot;                         /* [3 contacts] */
   int       blades, n;                     /* of a cell; its states */
   double   *M;                             /* [cell][n][n] column-major */
+  int      *steps;    /* [capacity of events + 1] sub-steps of each interval, of refinement 1 */
+  int       n_events; /* when they were set; -1: never */
   shb_arena arena;
 } mhb_monodromy;
 
@@ -36,8 +40,10 @@ void       mhb_monodromy_destroy(mhb_monodromy *monodromy);
 
 /* Set M for a solution and the schedule set from it. Each interval between events has refinement
  * times as many sub-steps; omega: of the fundamental, rad/s.
+ *   keep  in  the sub-steps of the last call, if it had as many events: M is then a smooth function
+ *             of a solution near that
  * Returns NULL, or the reason of a failure. */
 const char *mhb_monodromy_set(mhb_monodromy *monodromy, const mhb_solution *solution, double omega,
-                              int refinement);
+                              int refinement, bool keep);
 
 #endif

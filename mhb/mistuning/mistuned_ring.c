@@ -111,6 +111,9 @@ shb_status mhb_mistuned_ring_create(const modal_model *tuned, const mhb_settings
             "rotor.mistuning: contact.to is ground, so that blades do not meet; leave it out");
   SHB_CHECK(tuned->has_left, SHB_ERR_INPUT,
             "rotor.mistuning: the modal file has no /contact/left, where a blade meets the next");
+  SHB_CHECK(!tuned->coriolis, SHB_ERR_INPUT,
+            "rotor.mistuning does not go with Coriolis terms (/modes/coriolis of the modal file); "
+            "give rotor.coriolis: no");
   mhb_mistuned_ring *ring = calloc(1, sizeof *ring);
   SHB_CHECK(ring, SHB_ERR_IO, "out of memory");
   ring->blades      = settings->blades;

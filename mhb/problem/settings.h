@@ -14,7 +14,14 @@ typedef enum { MHB_STABILITY_AUTO, MHB_STABILITY_ALWAYS, MHB_STABILITY_NEVER } m
 typedef enum { MHB_LASTING_AUTO, MHB_LASTING_ALWAYS, MHB_LASTING_NEVER } mhb_lasting_when;
 
 /* Special points that are followed along a parameter. */
-typedef enum { MHB_TRACK_NOTHING, MHB_TRACK_PEAKS, MHB_TRACK_FOLDS } mhb_track;
+typedef enum {
+  MHB_TRACK_NOTHING,
+  MHB_TRACK_PEAKS,
+  MHB_TRACK_FOLDS,
+  MHB_TRACK_FLIPS,
+  MHB_TRACK_NEIMARK_SACKERS,
+  MHB_N_TRACKS
+} mhb_track;
 
 /* Continuation parameter. */
 typedef enum {
@@ -145,5 +152,11 @@ typedef struct {
   int                       max_periods;
   int                       harmonics; /* of the fundamental, kept; 0: as many as the balance */
 } mhb_integration_settings;
+
+/* As the case and the response file have it. */
+const char *mhb_track_word(mhb_track track);
+
+/* Whether such points are those of a multiplier on the unit circle; NULL: no. */
+bool mhb_track_by_multiplier(const char *word);
 
 #endif

@@ -28,12 +28,13 @@ mhb_response *mhb_response_like(const mhb_response *response) {
   mhb_response *like =
       mhb_response_create(response->n_pairs, response->n_probes, response->n_harmonics);
   if (!like) return NULL;
-  like->subharmonics    = response->subharmonics;
-  like->parameter       = response->parameter;
-  like->n_multipliers   = response->n_multipliers;
-  like->ring            = response->ring;
-  like->output_harmonic = response->output_harmonic;
-  like->n_interfaces    = response->n_interfaces;
+  like->subharmonics      = response->subharmonics;
+  like->parameter         = response->parameter;
+  like->n_multipliers     = response->n_multipliers;
+  like->ring              = response->ring;
+  like->output_harmonic   = response->output_harmonic;
+  like->n_interfaces      = response->n_interfaces;
+  like->tracks_multiplier = response->tracks_multiplier;
   return like;
 }
 

@@ -34,6 +34,10 @@ const mhb_field mhb_fields[] = {
      "estimated error of the contact force's harmonics, relative to the motion"},
     {"error/modal", "", MHB_DOUBLE, AT(error_modal), "-",
      "estimated error from the modes left out, relative to the vibration"},
+    /* N_TRACKED: of tracked flips and Neimark-Sacker points */
+    {"multiplier", "", MHB_COMPLEX, AT(multiplier), "-",
+     "the Floquet multiplier on the unit circle, of a period of the fundamental; its angle is the "
+     "advance of the modulation in a period"},
     /* N_LATER: of nonlinear branches only; files of earlier versions lack them */
     {"harmonics", "", MHB_INT, AT(harmonics), "-",
      "harmonics of the balance at the point; higher ones of motion, force and probe are 0"},
@@ -78,7 +82,7 @@ const mhb_field mhb_fields[] = {
      "lines of the contact motion where it does not repeat, largest first; 0: none"},
     {"spectrum/amplitude", "l", MHB_DOUBLE, AT(line_amplitude), "m", "amplitude of the line"},
 };
-enum { N_LATER = 13, N_INTEGRATION = 5 };
+enum { N_TRACKED = 1, N_LATER = 13, N_INTEGRATION = 5 };
 _Static_assert(sizeof mhb_fields / sizeof *mhb_fields == MHB_N_FIELDS, "MHB_N_FIELDS counts them");
 
 size_t mhb_field_bytes(mhb_number kind) {
@@ -124,13 +128,15 @@ size_t mhb_field_row(const mhb_response *response, const mhb_branch *branch, con
 
 mhb_branch_kind mhb_field_owner(const mhb_field *f) {
   long from_end = mhb_fields + MHB_N_FIELDS - f;
-  return from_end <= N_INTEGRATION             ? MHB_BRANCH_INTEGRATION
-         : from_end <= N_INTEGRATION + N_LATER ? MHB_BRANCH_NONLINEAR
-                                               : MHB_N_BRANCH_KINDS;
+  return from_end <= N_INTEGRATION                         ? MHB_BRANCH_INTEGRATION
+         : from_end <= N_INTEGRATION + N_LATER             ? MHB_BRANCH_NONLINEAR
+         : from_end <= N_INTEGRATION + N_LATER + N_TRACKED ? MHB_BRANCH_TRACKED
+                                                           : MHB_N_BRANCH_KINDS;
 }
 
 bool mhb_field_kept(const mhb_response *response, const mhb_branch *branch, const mhb_field *f) {
   mhb_branch_kind owner = mhb_field_owner(f);
+  if (owner == MHB_BRANCH_TRACKED && !response->tracks_multiplier) return false;
   return width_of(response, branch, f) > 0 &&
          (owner == MHB_N_BRANCH_KINDS || owner == branch->kind);
 }

@@ -93,6 +93,7 @@ static shb_status read_tracking(hid_t file, const char *path, mhb_response *resp
   mhb_optimum *o    = &response->optimum;
   char        *kind = NULL;
   SHB_TRY(h5_read_attribute_text(file, "/", "track", &response->track));
+  response->tracks_multiplier = mhb_track_by_multiplier(response->track);
   SHB_TRY(h5_read_attribute_text(file, "/", "output", &response->output));
   SHB_TRY(h5_read_attribute_int(file, "/", "output_harmonic", 1, &response->output_harmonic));
   if (!response->track || !h5_exists(file, "/optimum")) return SHB_OK;

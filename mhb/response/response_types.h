@@ -18,7 +18,7 @@ typedef enum {
   MHB_BRANCH_OPEN,
   MHB_BRANCH_STUCK,
   MHB_BRANCH_INTEGRATION,
-  MHB_BRANCH_TRACKED, /* a peak or fold along a parameter */
+  MHB_BRANCH_TRACKED, /* a peak, fold, flip or Neimark-Sacker point along a parameter */
   MHB_N_BRANCH_KINDS
 } mhb_branch_kind;
 
@@ -38,7 +38,8 @@ enum {
   MHB_PEAK,
   MHB_FLIP,
   MHB_NEIMARK_SACKER,
-  MHB_OPTIMUM, /* of a tracked branch: its amplitude, or a fold's frequency, is stationary */
+  MHB_OPTIMUM, /* of a tracked branch: its amplitude is stationary; of others than peaks the
+                  frequency */
   MHB_N_SPECIALS
 };
 
@@ -180,6 +181,7 @@ typedef struct {
   double *seconds;                         /* [point] */
   double *error_newton, *error_truncation; /* [point] relative to the norm of the motion */
   double *error_sampling, *error_modal;    /* the same */
+  double complex *multiplier; /* [point] the one on the unit circle; tracks_multiplier only */
   /* nonlinear branches only */
   int            *judged;      /* [point] MHB_NOT_JUDGED ... */
   int            *loss;        /* [point] MHB_NO_LOSS ... */
@@ -225,9 +227,10 @@ typedef struct {
   bool    unfinished;      /* the run that makes it has more to do */
   bool    lacks_diameters; /* of its disc, without which stability cannot be judged */
   bool    run_up; /* the speed follows the frequency on the engine order; modes of the top speed */
-  double  psi, phi;        /* rad, mean of the pairs */
-  char   *track, *output;  /* with mhb.track: what is followed, of which output; else NULL */
-  int     output_harmonic; /* of the excitation: of the amplitude of outputs; 0, 1: the first */
+  double  psi, phi;          /* rad, mean of the pairs */
+  char   *track, *output;    /* with mhb.track: what is followed, of which output; else NULL */
+  bool    tracks_multiplier; /* these are flips or Neimark-Sacker points */
+  int     output_harmonic;   /* of the excitation: of the amplitude of outputs; 0, 1: the first */
   mhb_optimum               optimum;
   mhb_tracking_cost         cost;    /* of mhb.track */
   mhb_samples              *samples; /* of a mistuned ring; NULL: none were drawn */

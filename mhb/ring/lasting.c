@@ -20,7 +20,8 @@ enum {
 static const int    targets[]     = {12, 18, 27, MOST_BLOCKS};
 static const double START[STARTS] = {0.03, 0.1}; /* relative disturbances */
 static const double STABLE        = 0.8;         /* largest mhb_ring_model_stiffness */
-static const double ON_WAVE = 2e-3, NEAR_WAVE = 0.02, FALLS = 0.92, SAME_WAVE = 5e-3;
+static const double ON_WAVE = 2e-3, ON_MOTION = 1e-2, NEAR_WAVE = 0.02, FALLS = 0.92,
+                    SAME_WAVE = 5e-3;
 static const double MILD_MEAN = 0.05, MILD_WORST = 1.05, FEW_LINES = 0.65;
 static const double SAME_MEAN = 0.01, SAME_WORST = 0.03, WORST_SHARE = 0.999;
 
@@ -36,7 +37,7 @@ static mhb_block_mean second_half(const mhb_lasting_series *s) {
 static bool is_wave(const mhb_lasting_series *s) {
   int    n = s->blocks, half = n / 2;
   double last = s->spread[n - 1], middle = s->spread[half];
-  return last < ON_WAVE ||
+  return last < (s->mistuned ? ON_MOTION : ON_WAVE) ||
          (n >= 16 && last < NEAR_WAVE && last < middle * pow(FALLS, n - 1 - half));
 }
 
@@ -83,8 +84,8 @@ typedef struct {
   double          mean[MOST_BLOCKS], spread[MOST_BLOCKS];
   double         *peak; /* [period][blades] over the wave's */
   double *sample;       /* [LINE_PERIODS][MHB_SIDE_SAMPLES][3][blades], the last periods in turn */
-  double complex *pattern; /* [blades] the lag of the wave undone */
-  double complex  sum[3];  /* of the block: first harmonics, their squares */
+  double complex *pattern; /* [3][blades] undoes the lag of the wave, or the balance's motion */
+  double complex  sum[3];  /* of the block: first harmonics, [0] alone if mistuned; their squares */
   double          square, peaks;
   shb_arena       arena;
 } start;
@@ -95,10 +96,10 @@ static shb_status create(mhb_ring_model *model, start *s) {
   s->peak       = shb_arena_take(&s->arena, MOST_BLOCKS * BLOCK * blades, sizeof(double));
   s->sample     = shb_arena_take(&s->arena, (size_t)LINE_PERIODS * MHB_SIDE_SAMPLES * 3 * blades,
                                  sizeof(double));
-  s->pattern    = shb_arena_take(&s->arena, blades, sizeof *s->pattern);
+  s->pattern    = shb_arena_take(&s->arena, 3 * blades, sizeof *s->pattern);
   SHB_CHECK(!s->arena.failed, SHB_ERR_IO, "out of memory");
-  for (int b = 0; b < model->blades; b++)
-    s->pattern[b] = cexp(I * mhb_ring_model_lag(model, model->order, b));
+  for (int i = 0; i < 3 * model->blades; i++)
+    s->pattern[i] = cexp(I * mhb_ring_model_lag(model, model->order, i % model->blades));
   SHB_TRY(mhb_ring_create(model, &s->ring));
   return mhb_ring_output_create(&s->ring, &s->output);
 }
@@ -142,9 +143,9 @@ static void one_period(start *s, double scale) {
     peak[b] = s->output.peak[b] / scale;
     s->peaks += peak[b];
     for (int axis = 0; axis < 3; axis++) {
-      double complex a = s->output.first[axis * blades + b] * s->pattern[b];
-      s->sum[axis] += a;
-      s->square += creal(a * conj(a));
+      double complex first = s->output.first[axis * blades + b];
+      s->sum[s->ring.model->ring ? 0 : axis] += first * s->pattern[axis * blades + b];
+      s->square += creal(first * conj(first));
     }
   }
   s->periods++;
@@ -181,11 +182,50 @@ static double wave_peak(start *s, const mhb_wave *wave) {
   return sum / s->ring.model->blades;
 }
 
+/* Of a mistuned ring: the motion of the balance in place of the wave, for the spread. Returns the
+ * highest amplitude of a blade over the mean of all; 1 of a wave. */
+static double set_pattern(start s[STARTS], const mhb_wave *wave) {
+  const mhb_ring_model *m    = s[0].ring.model;
+  double                most = 0, sum = 0, square = 0;
+  double complex        first[3 * m->blades];
+  if (!m->ring) return 1;
+  mhb_ring_model_first(m, wave->n_harmonics, wave->force, first);
+  for (int b = 0; b < m->blades; b++) {
+    double own = 0;
+    for (int i = 0; i < 3; i++) own += pow(cabs(first[i * m->blades + b]), 2);
+    most = fmax(most, sqrt(own));
+    sum += sqrt(own) / m->blades;
+    square += own / m->blades;
+  }
+  for (int i = 0; i < 3 * m->blades && square > 0; i++)
+    s[0].pattern[i] = s[1].pattern[i] = conj(first[i]) / sqrt(square);
+  return sum > 0 ? most / sum : 1;
+}
+
 static mhb_lasting_series series_of(start *s, double *peaks) {
   int blocks = s->periods / BLOCK, first = blocks / 2 * BLOCK, blades = s->ring.model->blades;
   int n = (s->periods - first) * blades;
   memcpy(peaks, s->peak + (size_t)first * (size_t)blades, sizeof *peaks * (size_t)n);
-  return (mhb_lasting_series){blocks, n, s->mean, s->spread, peaks};
+  return (mhb_lasting_series){blocks, n, s->mean, s->spread, peaks, s->ring.model->ring != NULL};
+}
+
+/* Samples [period][sample][3][blades] of a mistuned ring: what repeats every period is replaced by
+ * a wave of its size. Different amplitudes of the blades are no side waves. */
+static void leave_wave(const mhb_ring_model *m, double *y) {
+  const int n      = MHB_SIDE_SAMPLES * 3 * m->blades;
+  double    square = 0, mean[n];
+  for (int i = 0; i < n; i++) {
+    mean[i] = 0;
+    for (int t = 0; t < LINE_PERIODS; t++) mean[i] += y[t * n + i] / LINE_PERIODS;
+    square += mean[i] * mean[i];
+  }
+  const double size = sqrt(2 * square * 3 / n);
+  for (int i = 0; i < n * LINE_PERIODS; i++) {
+    const int    b = i % m->blades, axis = i / m->blades % 3, at = i % n / (3 * m->blades);
+    const double phase = SHB_TWO_PI * (at + 1) / MHB_SIDE_SAMPLES -
+                         SHB_TWO_PI * m->settings.engine_order * b / m->blades;
+    y[i] += (axis ? 0 : size * cos(phase)) - mean[i % n];
+  }
 }
 
 /* Strongest side wave of the leading start, and the kind. */
@@ -201,6 +241,7 @@ static shb_status describe(const mhb_lasting_verdict *v, start *s, int engine_or
   SHB_CHECK(y, SHB_ERR_IO, "out of memory for side waves");
   memcpy(y, x + (size_t)now * part, sizeof *y * (size - (size_t)now * part));
   memcpy(y + size - (size_t)now * part, x, sizeof *y * (size_t)now * part);
+  if (m->ring) leave_wave(m, y);
   shb_status status = mhb_side_waves_find(y, periods, m->blades, engine_order, &found);
   shb_arena_free(&arena);
   SHB_TRY(status);
@@ -214,7 +255,7 @@ static shb_status run(start s[STARTS], const mhb_wave *wave, mhb_go_on go_on, vo
                       mhb_lasting *result) {
   const mhb_ring_model *m     = s[0].ring.model;
   mhb_noise             noise = {.state = 20};
-  double                scale = wave_peak(&s[0], wave);
+  double                scale = wave_peak(&s[0], wave), worst = set_pattern(s, wave);
   shb_arena             arena = {0};
   size_t                most  = (size_t)(MOST_BLOCKS * BLOCK) * (size_t)m->blades;
   double               *peaks = shb_arena_take(&arena, 2 * most, sizeof *peaks);
@@ -233,6 +274,7 @@ static shb_status run(start s[STARTS], const mhb_wave *wave, mhb_go_on go_on, vo
   }
   shb_arena_free(&arena);
   if (!v.decided) return SHB_OK;
+  if (!v.wave) v.worst /= worst;
   result->mean    = v.mean;
   result->worst   = v.worst;
   result->error   = v.error;

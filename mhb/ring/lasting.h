@@ -5,8 +5,11 @@
  * is discarded. A start is settled by mhb_block_mean_is_settled; both agree if their means are
  * within 1 % or three standard errors and their percentiles within 3 %. The spread of a block is
  *   D^2 = mean over blades and periods of |a_b - mean|^2/|mean|^2,
- * a_b the first harmonic of the output with the lag of the wave undone. Rules and how they were
- * found: docs/theory/lasting.md. */
+ * a_b the first harmonic of the output with the lag of the wave undone.
+ *
+ * Of a mistuned ring the wave is the motion of the balance: a_b is over that of the balance, and is
+ * weighed by its size. mean is over the mean of the blades, worst over the blade that swings
+ * highest there. Rules and how they were found: docs/theory/lasting.md. */
 #ifndef MHB_RING_LASTING_H
 #define MHB_RING_LASTING_H
 
@@ -56,6 +59,7 @@ typedef struct {
   int           blocks, n_peaks;
   const double *mean, *spread;
   double       *peak;
+  bool          mistuned; /* steps err differently in every blade: a spread of 1 % is none */
 } mhb_lasting_series;
 
 typedef struct {

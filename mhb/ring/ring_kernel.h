@@ -18,9 +18,23 @@ INSIDE void NAME(store)(double *x, NAME(vector) y) {
   *(NAME(loose) *)x = y;
 }
 
+/* Numbers of a mistuned ring's first mode, of the lanes at a place. */
+INSIDE const double *NAME(own_of)(const mhb_ring_modes *a, size_t at) {
+  size_t lane = at - MHB_LANES;
+  return a->own + lane / MHB_LANES * (size_t)a->modes * MHB_RING_LANE_SIZE * MHB_LANES +
+         lane % MHB_LANES;
+}
+
+/* z(t + h) of a mode without kicks, each lane with its own coefficients. */
+INSIDE NAME(vector) NAME(free_step)(const mhb_ring_modes *a, const double *own, const double *z) {
+  return NAME(load)(own + MHB_RING_TRACE * MHB_LANES) * NAME(load)(z + a->newest) -
+         NAME(load)(own + MHB_RING_DET * MHB_LANES) * NAME(load)(z + a->oldest);
+}
+
 /* One pair. The rows of a mode and the sums stay in registers, the forces in memory. */
-INSIDE void NAME(one_pair)(const mhb_ring_modes *a, size_t at, size_t block, bool sampled) {
-  const double *c = a->coefficient, *p = a->p + at;
+INSIDE void NAME(one_pair)(const mhb_ring_modes *a, size_t at, size_t block, bool sampled,
+                           bool mistuned) {
+  const double *c = a->coefficient, *p = a->p + at, *own = mistuned ? NAME(own_of)(a, at) : NULL;
   double       *z = a->z + block;
   NAME(vector) right[3], left[3], out[3];
   NAME(vector) behind[3]; /* forces of the left neighbour; loads across two cache lines */
@@ -29,15 +43,26 @@ INSIDE void NAME(one_pair)(const mhb_ring_modes *a, size_t at, size_t block, boo
     behind[i]                   = NAME(load)(p + (size_t)i * a->row - 1);
   }
   for (int k = 0; k < a->modes; k++, c += a->stride, z += 2 * MHB_LANES) {
-    NAME(vector) row[6];
-    NAME(vector) kept = c[MHB_RING_TRACE] * NAME(load)(z + a->newest);
-    NAME(vector) lost = c[MHB_RING_DET] * NAME(load)(z + a->oldest);
+    NAME(vector) row[6], next;
     for (int i = 0; i < 6; i++) row[i] = c[MHB_RING_ROWS + i] - (NAME(vector)){0};
-    for (int i = 0; i < 3; i++) {
-      kept -= row[i] * NAME(load)(p + (size_t)i * a->row);
-      lost += row[3 + i] * behind[i];
+    if (mistuned) {
+      NAME(vector) kick = {0}, other = {0};
+      for (int i = 0; i < 3; i++) {
+        kick += row[i] * NAME(load)(p + (size_t)i * a->row);
+        other += row[3 + i] * behind[i];
+      }
+      next =
+          NAME(free_step)(a, own, z) - NAME(load)(own + MHB_RING_GAIN * MHB_LANES) * (kick + other);
+      own += MHB_RING_LANE_SIZE * MHB_LANES;
+    } else {
+      NAME(vector) kept = c[MHB_RING_TRACE] * NAME(load)(z + a->newest);
+      NAME(vector) lost = c[MHB_RING_DET] * NAME(load)(z + a->oldest);
+      for (int i = 0; i < 3; i++) {
+        kept -= row[i] * NAME(load)(p + (size_t)i * a->row);
+        lost += row[3 + i] * behind[i];
+      }
+      next = kept - lost;
     }
-    NAME(vector) next = kept - lost;
     NAME(store)(z + a->oldest, next);
     for (int i = 0; i < 3; i++) {
       right[i] += row[i] * next;
@@ -66,10 +91,16 @@ INSIDE void NAME(sum_rows)(const mhb_ring_modes *a, const double *c, const doubl
 
 /* Any number of pairs, one after the other. */
 INSIDE void NAME(many_pairs)(const mhb_ring_modes *a, size_t at, size_t block, bool sampled) {
-  double *z = a->z + block, *old = z + a->oldest;
+  double       *z = a->z + block, *old = z + a->oldest;
+  const double *own = a->own ? NAME(own_of)(a, at) : NULL;
   for (int k = 0; k < a->modes; k++) {
     const double *c = a->coefficient + (size_t)k * a->stride;
     double       *x = z + (size_t)k * 2 * MHB_LANES;
+    if (own) {
+      NAME(store)
+      (x + a->oldest, NAME(free_step)(a, own + (size_t)k * MHB_RING_LANE_SIZE * MHB_LANES, x));
+      continue;
+    }
     NAME(store)
     (x + a->oldest,
      c[MHB_RING_TRACE] * NAME(load)(x + a->newest) - c[MHB_RING_DET] * NAME(load)(x + a->oldest));
@@ -85,7 +116,10 @@ INSIDE void NAME(many_pairs)(const mhb_ring_modes *a, size_t at, size_t block, b
       const double *r   = a->coefficient + (size_t)k * a->stride + MHB_RING_ROWS + 6 * j;
       double       *x   = old + (size_t)k * 2 * MHB_LANES;
       NAME(vector) kick = r[0] * p[0] + r[1] * p[1] + r[2] * p[2];
-      NAME(store)(x, NAME(load)(x) - (kick + r[3] * q[0] + r[4] * q[1] + r[5] * q[2]));
+      kick              = kick + r[3] * q[0] + r[4] * q[1] + r[5] * q[2];
+      if (own)
+        kick *= NAME(load)(own + ((size_t)k * MHB_RING_LANE_SIZE + MHB_RING_GAIN) * MHB_LANES);
+      NAME(store)(x, NAME(load)(x) - kick);
     }
   }
   for (int j = 0; j < a->pairs; j++) {
@@ -104,10 +138,12 @@ static __attribute__((target(TARGET))) void NAME(step_modes)(const mhb_ring_mode
     size_t block = lane / MHB_LANES * (size_t)a->modes * 2 * MHB_LANES + lane % MHB_LANES;
     if (a->pairs > 1)
       NAME(many_pairs)(a, at, block, a->out);
+    else if (a->own)
+      NAME(one_pair)(a, at, block, a->out, true);
     else if (a->out)
-      NAME(one_pair)(a, at, block, true);
+      NAME(one_pair)(a, at, block, true, false);
     else
-      NAME(one_pair)(a, at, block, false);
+      NAME(one_pair)(a, at, block, false, false);
   }
 }
 

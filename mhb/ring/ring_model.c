@@ -34,27 +34,46 @@ static double exactness(double w, double W, double h) {
   return sinc(0.5 * (w + W) * h) * sinc(0.5 * (w - W) * h) / sinc(w * h);
 }
 
-static void set_mode(mhb_ring_model *m, int i) {
-  double  W = m->omega, h = m->h, w = m->w[i], zeta = m->zeta[i], gain = w;
-  double *c = m->coefficient + (size_t)i * (size_t)m->stride,
-         *M = m->map + MHB_RING_MAP * (size_t)i;
+/* M [MHB_RING_MAP] and trace and det of mode i with stretch times its frequency. Its rows are times
+ * 1/stretch, as they are divided by w. */
+static void set_map(const mhb_ring_model *m, int i, double stretch, double *M, double *trace,
+                    double *det) {
+  double W = m->omega, h = m->h, w = m->w[i] * stretch, zeta = m->zeta[i], gain = w;
   if (!(w * h <= FASTEST)) {
     double ratio = W / w; /* 0 of a mode without inertia */
     w            = FASTEST / h;
     gain         = sqrt((w * w - W * W) / (1 - ratio * ratio));
   }
   double a = zeta * w, wd = w * sqrt(1 - zeta * zeta), e = exp(-a * h), x = e * cos(wd * h),
-         y          = e * sin(wd * h);
-  M[0]              = x + y * a / wd;
-  M[1]              = y * w / wd;
-  M[2]              = -y * w / wd;
-  M[3]              = x - y * a / wd;
-  M[4]              = w;
-  double s          = exactness(w, W, h);
-  double scale      = gain * sqrt(s * M[1] * h / w); /* of the rows, with that of z */
-  M[5]              = scale;
-  c[MHB_RING_TRACE] = 2 * x;
-  c[MHB_RING_DET]   = e * e;
+         y = e * sin(wd * h);
+  M[0]     = x + y * a / wd;
+  M[1]     = y * w / wd;
+  M[2]     = -y * w / wd;
+  M[3]     = x - y * a / wd;
+  M[4]     = w;
+  double s = exactness(w, W, h);
+  M[5]     = gain / stretch * sqrt(s * M[1] * h / w); /* of the rows, with that of z */
+  *trace   = 2 * x;
+  *det     = e * e;
+}
+
+/* The mode of every blade: z has the scale of the tuned one. */
+static void set_own(mhb_ring_model *m, int i) {
+  const double scale = m->map[MHB_RING_MAP * i + 5];
+  for (int l = 0; l < m->lanes; l++) {
+    double *M = (double *)mhb_ring_model_map(m, i, l);
+    set_map(m, i, m->stretch[i * m->lanes + l], M, mhb_ring_model_own(m, i, l, MHB_RING_TRACE),
+            mhb_ring_model_own(m, i, l, MHB_RING_DET));
+    *mhb_ring_model_own(m, i, l, MHB_RING_GAIN) = (M[5] / scale) * (M[5] / scale);
+    M[5]                                        = scale;
+  }
+}
+
+static void set_mode(mhb_ring_model *m, int i) {
+  double *c = m->coefficient + (size_t)i * (size_t)m->stride;
+  set_map(m, i, 1, m->map + MHB_RING_MAP * (size_t)i, &c[MHB_RING_TRACE], &c[MHB_RING_DET]);
+  if (m->own) set_own(m, i);
+  const double scale = m->map[MHB_RING_MAP * i + 5];
   for (int row = 0; row < 6 * m->pairs; row++) {
     int pair = row / 6, side = row / 3 % 2, axis = row % 3;
     c[MHB_RING_ROWS + row] = scale * mhb_ring_model_shape(m, i, side)[3 * pair + axis];
@@ -63,11 +82,13 @@ static void set_mode(mhb_ring_model *m, int i) {
     c[MHB_RING_ROWS + 6 * m->pairs + axis] = scale * m->out[3 * i + axis];
 }
 
-/* Motion without contact: harmonic k as amplitudes of cos and sin a lane. */
-static void set_lanes(const mhb_ring_model *m, int k, const double complex *a, double *out) {
+/* Motion without contact: harmonic k as amplitudes of cos and sin a lane. next: from a blade to the
+ * next one in a; 0: equal blades, a is that of blade 0. */
+static void set_lanes(const mhb_ring_model *m, int k, const double complex *a, int next,
+                      double *out) {
   size_t half = 3 * (size_t)m->lanes;
-  for (int b = 0; b < m->blades; b++) {
-    double complex turn = cexp(-I * mhb_ring_model_lag(m, k, b));
+  for (int b = 0; b < m->blades; b++, a += next) {
+    double complex turn = next ? 1 : cexp(-I * mhb_ring_model_lag(m, k, b));
     for (int axis = 0; axis < 3; axis++) {
       out[(size_t)(axis * m->lanes + b)]        = creal(a[axis] * turn);
       out[half + (size_t)(axis * m->lanes + b)] = k ? -cimag(a[axis] * turn) : 0;
@@ -76,8 +97,9 @@ static void set_lanes(const mhb_ring_model *m, int k, const double complex *a, d
 }
 
 static void set_free(mhb_ring_model *m) {
-  mhb_receptance *r = m->receptance;
+  mhb_receptance *r = m->ring ? m->ring : m->receptance;
   int             n = r->n, q = 3 * r->model->n_probes;
+  const int       of = m->ring ? 3 * m->pairs : 0, probes = m->ring ? q / m->blades : 0;
   size_t          lanes = (size_t)m->lanes, block = 3 * lanes;
   double complex  none[n], probe[q + 1];
   memset(none, 0, sizeof none);
@@ -88,14 +110,14 @@ static void set_free(mhb_ring_model *m) {
     for (int pair = 0; pair < m->pairs; pair++) {
       double each[2 * block];
       memset(each, 0, sizeof each);
-      set_lanes(m, k, r->free + k * n + 3 * pair, each);
+      set_lanes(m, k, r->free + k * n + 3 * pair, of, each);
       for (size_t part = 0; part < 2; part++)
         memcpy(to + (part * (size_t)m->pairs + (size_t)pair) * block, each + part * block,
                block * sizeof *to);
     }
     if (m->probe < 0) continue;
     mhb_receptance_probe(r, k, none, probe);
-    set_lanes(m, k, probe + 3 * m->probe, m->free_output + (size_t)j * 2 * block);
+    set_lanes(m, k, probe + 3 * m->probe, probes, m->free_output + (size_t)j * 2 * block);
   }
 }
 
@@ -118,6 +140,23 @@ shb_status mhb_ring_model_set(mhb_ring_model *m, double omega, int steps) {
   return SHB_OK;
 }
 
+void mhb_ring_model_first(const mhb_ring_model *m, int n_harmonics, const double complex *force,
+                          double complex *first) {
+  const mhb_receptance *r = m->ring;
+  const int             n = r->n, q = 3 * r->model->n_probes, k = m->order;
+  const int             next = m->probe < 0 ? 3 * m->pairs : q / m->blades;
+  double complex        p[n], motion[n + q];
+  for (int i = 0; i < n; i++)
+    p[i] = k <= n_harmonics ? force[(size_t)i * ((size_t)n_harmonics + 1) + (size_t)k] : 0;
+  if (m->probe < 0)
+    mhb_receptance_motion(r, k, p, motion);
+  else
+    mhb_receptance_probe(r, k, p, motion);
+  for (int b = 0; b < m->blades; b++)
+    for (int axis = 0; axis < 3; axis++)
+      first[axis * m->blades + b] = motion[b * next + (m->probe < 0 ? 0 : 3 * m->probe) + axis];
+}
+
 /* ---- stability of the steps ---- */
 
 /* Root of the stiffness of a stuck pair: block diagonal kv, Ku^1/2. */
@@ -135,8 +174,13 @@ static void root_stiffness(const mhb_slip_law *law, double K[3][3]) {
 /* x[3 pairs] <- K^1/2 B of a mode at a nodal diameter, times the root of its share of G. */
 static void weighted_row(const mhb_ring_model *m, int mode, double complex phase,
                          double complex *x) {
-  const double *c     = m->coefficient + (size_t)mode * (size_t)m->stride;
-  double        share = 1 / sqrt(1 + c[MHB_RING_TRACE] + c[MHB_RING_DET]);
+  const double *c      = m->coefficient + (size_t)mode * (size_t)m->stride;
+  double        square = 1 / (1 + c[MHB_RING_TRACE] + c[MHB_RING_DET]);
+  for (int l = 0; l < m->lanes && m->own; l++) /* the largest share of any blade */
+    square = fmax(square, *mhb_ring_model_own(m, mode, l, MHB_RING_GAIN) /
+                              (1 + *mhb_ring_model_own(m, mode, l, MHB_RING_TRACE) +
+                               *mhb_ring_model_own(m, mode, l, MHB_RING_DET)));
+  double share = sqrt(square);
   for (int pair = 0; pair < m->pairs; pair++) {
     double         K[3][3];
     double complex u[3];
@@ -241,6 +285,12 @@ static shb_status allocate(mhb_ring_model *m) {
   m->harmonic      = shb_arena_take(a, (size_t)m->n_free, sizeof(int));
   m->free_motion   = shb_arena_take(a, frees * pairs, sizeof(double));
   m->free_output   = shb_arena_take(a, frees, sizeof(double));
+  if (m->ring) {
+    size_t all = most * (size_t)m->lanes;
+    m->stretch = shb_arena_take(a, all, sizeof(double));
+    m->own     = shb_arena_take(a, MHB_RING_LANE_SIZE * all, sizeof(double));
+    m->own_map = shb_arena_take(a, MHB_RING_MAP * all, sizeof(double));
+  }
   SHB_CHECK(!a->failed, SHB_ERR_IO, "out of memory for a ring of %d blades", m->blades);
   return SHB_OK;
 }
@@ -255,8 +305,31 @@ static int harmonics_of_load(const mhb_receptance *r, int *harmonic) {
   return n;
 }
 
+/* Whether all modes of each blade have one deviation. The merged modes follow it then. */
+static bool is_uniform(const mhb_mistuned_ring *ring) {
+  for (int i = 0; i < ring->blades * ring->n_modes; i++)
+    if (ring->deviation[i] != ring->deviation[i / ring->n_modes * ring->n_modes]) return false;
+  return true;
+}
+
+/* Merged modes stand for modes left out. With deviations mode by mode these are the tuned ones, and
+ * all modes of the model are kept. */
+static void set_stretch(mhb_ring_model *m, const mhb_mistuned_ring *ring) {
+  const bool uniform = is_uniform(ring);
+  for (int i = 0; i < m->modes; i++)
+    for (int l = 0; l < m->lanes; l++) {
+      const double *of = ring->deviation + (size_t)(l < m->blades ? l : 0) * (size_t)ring->n_modes;
+      const double  deviation      = i < m->kept ? of[i] : uniform ? of[0] : 0;
+      m->stretch[i * m->lanes + l] = 1 + (l < m->blades ? deviation : 0);
+    }
+}
+
 static shb_status make(mhb_ring_model *m, const modal_model *modal, double n0, double lowest) {
+  const mhb_mistuned_ring *ring = m->settings.ring;
+  if (ring) modal = ring->tuned;
   int nu = m->settings.subharmonics, top = modal->n_load > 0 ? modal->n_load : 1;
+  if (ring) SHB_TRY(mhb_receptance_create(&ring->whole, &m->settings, nu * top, &m->ring));
+  m->settings.ring = NULL;
   SHB_TRY(mhb_receptance_create(modal, &m->settings, nu * top, &m->receptance));
   m->blades = m->settings.to_ground ? 1 : m->settings.blades;
   m->lanes  = mhb_whole_lanes(m->blades);
@@ -265,14 +338,17 @@ static shb_status make(mhb_ring_model *m, const modal_model *modal, double n0, d
   m->probe  = modal->n_probes > 0 ? 0 : -1;
   m->n_free = harmonics_of_load(m->receptance, NULL);
   while (m->kept < modal->n_modes &&
-         (m->kept == 0 || SHB_TWO_PI * modal->frequency[m->kept] <= LAST_MODE * lowest))
+         (m->kept == 0 || SHB_TWO_PI * modal->frequency[m->kept] <= LAST_MODE * lowest ||
+          (ring && !is_uniform(ring))))
     m->kept++;
   SHB_TRY(allocate(m));
   harmonics_of_load(m->receptance, m->harmonic);
   set_laws(m, n0);
   set_own_modes(m);
   m->modes = m->kept;
-  return set_merged_modes(m);
+  SHB_TRY(set_merged_modes(m));
+  if (ring) set_stretch(m, ring);
+  return SHB_OK;
 }
 
 shb_status mhb_ring_model_create(const modal_model *modal, const mhb_settings *settings, double n0,
@@ -292,6 +368,7 @@ shb_status mhb_ring_model_create(const modal_model *modal, const mhb_settings *s
 void mhb_ring_model_destroy(mhb_ring_model *m) {
   if (!m) return;
   mhb_receptance_destroy(m->receptance);
+  mhb_receptance_destroy(m->ring);
   shb_arena_free(&m->arena);
   shb_arena_free(&m->table);
   free(m);

@@ -15,6 +15,10 @@
  * (merged_modes.h). Modes faster than wh = FASTEST are slowed to that, with their receptance at W
  * kept. The step needs no implicit solution.
  *
+ * In a mistuned ring w of mode k of blade b is f_kb times that of the tuned blade. Rows and scale
+ * of z are those of the tuned blade. A mode and blade then has three numbers of its own: trace, det
+ * and the gain of its kicks. The gain is its s M_01 h/w over that of the tuned blade.
+ *
  * Lanes are blades, their number rounded up to eight. Derivation: docs/theory/lasting.md. */
 #ifndef MHB_RING_RING_MODEL_H
 #define MHB_RING_RING_MODEL_H
@@ -28,6 +32,9 @@ enum { MHB_RING_SAMPLES = 64 };
 /* Columns of a mode's coefficients, before its 6 pairs rows (R, L of each pair) and the output's 3
  * rows. */
 enum { MHB_RING_TRACE, MHB_RING_DET, MHB_RING_ROWS };
+
+/* Of a mode and blade of a mistuned ring: trace, det, gain. */
+enum { MHB_RING_GAIN = MHB_RING_DET + 1, MHB_RING_LANE_SIZE };
 
 /* Numbers of a mode's map: M by rows, w of the step, scale of z. */
 enum { MHB_RING_MAP = 6 };
@@ -43,21 +50,25 @@ typedef struct {
   double         *shape; /* [mode][side][3 pairs], divided by w: m/N^1/2 */
   double         *out;   /* [mode][3] of the output, divided by w */
   /* at one frequency and number of steps: */
-  double        omega, h;      /* rad/s of the excitation, s */
-  int           steps;         /* a period of the fundamental, 2 pi order/omega */
-  int           stride;        /* of the coefficients */
-  double       *coefficient;   /* [mode][stride] */
-  double       *map;           /* [mode][MHB_RING_MAP] */
-  mhb_slip_law *law;           /* [pair] */
-  int           n_free;        /* harmonics of the motion without contact */
-  int          *harmonic;      /* [n_free] of the fundamental */
-  double       *free_motion;   /* [n_free][cos, sin][3 pairs][lanes] m */
-  double       *free_output;   /* [n_free][cos, sin][3][lanes] m */
-  double       *cosine, *sine; /* [steps] of the phase */
-  shb_arena     arena, table;
+  double  omega, h;    /* rad/s of the excitation, s */
+  int     steps;       /* a period of the fundamental, 2 pi order/omega */
+  int     stride;      /* of the coefficients */
+  double *coefficient; /* [mode][stride] */
+  double *map;         /* [mode][MHB_RING_MAP] */
+  /* mistuned, else NULL: the ring's own receptance; f [mode][lanes]; [lanes/8][mode][trace, det,
+   * gain][8]; map [mode][lanes][MHB_RING_MAP] */
+  mhb_receptance *ring;
+  double         *stretch, *own, *own_map;
+  mhb_slip_law   *law;           /* [pair] */
+  int             n_free;        /* harmonics of the motion without contact */
+  int            *harmonic;      /* [n_free] of the fundamental */
+  double         *free_motion;   /* [n_free][cos, sin][3 pairs][lanes] m */
+  double         *free_output;   /* [n_free][cos, sin][3][lanes] m */
+  double         *cosine, *sine; /* [steps] of the phase */
+  shb_arena       arena, table;
 } mhb_ring_model;
 
-/* Structure and laws at a preload.
+/* Structure and laws at a preload; of the ring in settings->ring if there is one.
  *   n0      in  N, total of the leading interface
  *   lowest  in  rad/s, lowest frequency of the excitation that will be set
  * The modal model must outlive it.
@@ -81,6 +92,25 @@ double mhb_ring_model_lag(const mhb_ring_model *model, int harmonic, int blade);
 
 /* Floating-point operations a step, for an estimate of the cost. */
 double mhb_ring_model_work(const mhb_ring_model *model);
+
+/* First harmonic of the excitation of the output of every blade, first[3][blades] m, by the
+ * receptance at the frequency set. force: as of mhb_ring_start, of a mistuned ring. */
+void mhb_ring_model_first(const mhb_ring_model *model, int n_harmonics, const double complex *force,
+                          double complex *first);
+
+/* M of a mode of a blade, w and scale. */
+static inline const double *mhb_ring_model_map(const mhb_ring_model *m, int mode, int lane) {
+  return m->own_map ? m->own_map + (size_t)MHB_RING_MAP * (size_t)(mode * m->lanes + lane)
+                    : m->map + (size_t)MHB_RING_MAP * (size_t)mode;
+}
+
+/* Number i of trace, det, gain of a mode of a blade of a mistuned ring. */
+static inline double *mhb_ring_model_own(const mhb_ring_model *m, int mode, int lane, int i) {
+  return m->own +
+         ((size_t)(lane / MHB_LANES * m->modes + mode) * MHB_RING_LANE_SIZE + (size_t)i) *
+             MHB_LANES +
+         lane % MHB_LANES;
+}
 
 static inline const double *mhb_ring_model_shape(const mhb_ring_model *m, int mode, int side) {
   return m->shape + (size_t)(6 * mode + 3 * side) * (size_t)m->pairs;

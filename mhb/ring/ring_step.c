@@ -6,7 +6,7 @@
 typedef struct {
   int           modes, pairs, newest, oldest;
   size_t        lanes, row, stride;
-  const double *coefficient, *p;
+  const double *coefficient, *own, *p;  /* own: NULL of equal blades */
   double       *z, *right, *left, *out; /* out: NULL where it is not sampled */
 } mhb_ring_modes;
 
@@ -151,6 +151,7 @@ void mhb_ring_period(mhb_ring *ring) {
                                  .row         = ring->row,
                                  .stride      = (size_t)m->stride,
                                  .coefficient = m->coefficient,
+                                 .own         = m->own,
                                  .p           = ring->p,
                                  .z           = ring->z,
                                  .right       = ring->right,
@@ -187,14 +188,14 @@ static double kick(const mhb_ring *ring, int mode, int lane) {
     const double *r = row + 6 * (i / 3) + i % 3;
     sum -= r[0] * p[0] + r[3] * p[-1];
   }
-  return sum;
+  return m->own ? sum * *mhb_ring_model_own(m, mode, lane, MHB_RING_GAIN) : sum;
 }
 
 void mhb_ring_get(const mhb_ring *ring, double *q, double *v) {
   const mhb_ring_model *m = ring->model;
   for (int k = 0; k < m->modes; k++)
     for (int l = 0; l < m->blades; l++) {
-      const double *z = place(ring, k, l), *M = m->map + MHB_RING_MAP * k;
+      const double *z = place(ring, k, l), *M = mhb_ring_model_map(m, k, l);
       double        now = z[ring->newest], last = z[MHB_LANES - ring->newest];
       double        y = M[2] * last + M[3] * (now - M[0] * last) / M[1]; /* before the kick */
       y += 0.5 * kick(ring, k, l) / M[1];
@@ -207,7 +208,7 @@ void mhb_ring_put(mhb_ring *ring, const double *q, const double *v) {
   const mhb_ring_model *m = ring->model;
   for (int k = 0; k < m->modes; k++)
     for (int l = 0; l < m->blades; l++) {
-      const double *M = m->map + MHB_RING_MAP * k;
+      const double *M = mhb_ring_model_map(m, k, l);
       double       *z = place(ring, k, l), det = M[0] * M[3] - M[1] * M[2];
       double        now = q[k * m->lanes + l] / M[5];
       double        y   = v[k * m->lanes + l] / (M[5] * M[4]) - 0.5 * kick(ring, k, l) / M[1];
@@ -218,11 +219,11 @@ void mhb_ring_put(mhb_ring *ring, const double *q, const double *v) {
 
 /* q, v += sign times the motion of the model's own modes without contact, at phase 0. */
 static void add_free_modes(const mhb_ring_model *m, double sign, double *q, double *v) {
-  const mhb_receptance *r = m->receptance;
   for (int j = 0; j < m->n_free; j++)
     for (int b = 0; b < m->blades; b++) {
-      int            k    = m->harmonic[j];
-      double complex turn = cexp(-I * mhb_ring_model_lag(m, k, b));
+      int                   k    = m->harmonic[j];
+      const mhb_receptance *r    = m->ring ? m->ring->ring->blade[b] : m->receptance;
+      double complex        turn = m->ring ? 1 : cexp(-I * mhb_ring_model_lag(m, k, b));
       for (int i = 0; i < m->kept; i++) {
         double complex a =
             m->w[i] * r->scale * r->lambda[k * r->n_modes + i] * r->F[k * r->n_modes + i] * turn;
@@ -267,6 +268,29 @@ static void add_harmonic(mhb_ring *ring, int k, const double complex *p) {
   }
 }
 
+/* The same of a mistuned ring, p[blades][3 pairs]. */
+static void add_own_harmonic(mhb_ring *ring, int k, const double complex *p) {
+  const mhb_ring_model *m    = ring->model;
+  const int             n3   = 3 * m->pairs;
+  const double complex  turn = cexp(I * (k * m->omega / m->order) * m->h);
+  for (int i = 0; i < m->modes * m->blades; i++) {
+    const int             mode = i / m->blades, b = i % m->blades;
+    const double         *c     = m->coefficient + (size_t)mode * (size_t)m->stride + MHB_RING_ROWS;
+    const double complex *right = p + b * n3, *left = p + (b > 0 ? b - 1 : m->blades - 1) * n3;
+    double complex        sum = 0;
+    for (int row = 0; row < n3; row++) {
+      const double *r = c + 6 * (row / 3) + row % 3;
+      sum -= r[0] * right[row] + r[3] * left[row];
+    }
+    sum *= *mhb_ring_model_own(m, mode, b, MHB_RING_GAIN) /
+           (turn - *mhb_ring_model_own(m, mode, b, MHB_RING_TRACE) +
+            *mhb_ring_model_own(m, mode, b, MHB_RING_DET) / turn);
+    double *z = place(ring, mode, b);
+    z[ring->newest] += creal(sum);
+    z[MHB_LANES - ring->newest] += creal(sum / turn);
+  }
+}
+
 /* Motion at phase 0 and the state of the contacts; friction within its limit. */
 static void settle_contacts(mhb_ring *ring) {
   const mhb_ring_model *m = ring->model;
@@ -305,17 +329,20 @@ static void settle_contacts(mhb_ring *ring) {
 
 void mhb_ring_start(mhb_ring *ring, int n_harmonics, const double complex *force) {
   const mhb_ring_model *m  = ring->model;
-  int                   n3 = 3 * m->pairs;
-  double complex        p[n3];
+  int                   n3 = 3 * m->pairs, n = m->ring ? m->blades * n3 : n3;
+  double complex        p[n];
   memset(ring->z, 0, sizeof(double) * 2 * (size_t)m->modes * (size_t)m->lanes);
   memset(ring->p, 0, sizeof(double) * (size_t)n3 * ring->row);
   for (int k = 0; k <= n_harmonics; k++) {
-    for (int i = 0; i < n3; i++) p[i] = force[(size_t)i * ((size_t)n_harmonics + 1) + (size_t)k];
-    add_harmonic(ring, k, p);
+    for (int i = 0; i < n; i++) p[i] = force[(size_t)i * ((size_t)n_harmonics + 1) + (size_t)k];
+    if (m->ring)
+      add_own_harmonic(ring, k, p);
+    else
+      add_harmonic(ring, k, p);
     for (int b = 0; b < m->blades; b++)
       for (int i = 0; i < n3; i++)
         ring->p[(size_t)i * ring->row + MHB_LANES + (size_t)b] +=
-            creal(p[i] * cexp(-I * mhb_ring_model_lag(m, k, b)));
+            creal(m->ring ? p[b * n3 + i] : p[i] * cexp(-I * mhb_ring_model_lag(m, k, b)));
   }
   settle_contacts(ring);
 }

@@ -28,7 +28,8 @@ void       mhb_ring_destroy(mhb_ring *ring);
 void mhb_ring_period(mhb_ring *ring);
 
 /* Start on a wave at phase 0: the steady motion of the steps under its contact forces.
- *   force  in  [3 pairs][n_harmonics + 1] N of blade 0, harmonics of the fundamental */
+ *   force  in  [3 pairs][n_harmonics + 1] N of blade 0, harmonics of the fundamental; of a mistuned
+ *              ring [blades][3 pairs][n_harmonics + 1] of all contacts */
 void mhb_ring_start(mhb_ring *ring, int n_harmonics, const double complex *force);
 
 /* Positions and velocities of the modes at the end of a period, times w of the model.

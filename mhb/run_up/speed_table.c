@@ -340,6 +340,10 @@ static shb_status choose_speeds(const mhb_speed_table *r, family *f) {
             "where the "
             "modal stage makes the file, /speeds in a file of your own",
             f->path);
+  SHB_CHECK(!s->model[0].coriolis, SHB_ERR_INPUT,
+            "mhb.run_up: %s has Coriolis terms (/modes/coriolis), which are not interpolated over "
+            "the speed; leave them out",
+            f->path);
   SHB_TRY(check_range(r, f->path));
   int from = 0, to = s->n - 1;
   while (from + 1 < s->n && s->speed[from + 1] <= r->band[0] / r->engine_order) from++;

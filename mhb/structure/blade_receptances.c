@@ -1,6 +1,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "mhb/structure/equal_shapes.h"
 #include "mhb/structure/receptance.h"
 #include "mhb/structure/ring_receptance.h"
 

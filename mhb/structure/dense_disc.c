@@ -244,6 +244,9 @@ shb_status mhb_dense_disc(const mhb_settings *s, modal_model *model) {
             "time integration of a disc needs all nodal diameters, 0 to %d; the modal file has %d "
             "of %d; add them by modal.nodal_diameters: all",
             d->blades / 2, d->n, d->blades / 2 + 1);
+  SHB_CHECK(!one->coriolis, SHB_ERR_INPUT,
+            "time integration knows no Coriolis terms (/modes/coriolis of the modal file); give "
+            "rotor.coriolis: no");
   *model = (modal_model){.n_modes      = d->blades * one->n_modes,
                          .n_pairs      = d->blades * one->n_pairs,
                          .n_probes     = one->n_probes,

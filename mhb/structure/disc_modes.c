@@ -1,5 +1,6 @@
 #include "mhb/structure/disc_modes.h"
 
+#include <lapacke.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -42,6 +43,111 @@ static void set_modes(mhb_disc_modes *d, const mhb_modal_part *part, int diamete
   }
 }
 
+/* ---- Coriolis terms ---- */
+
+/* Eigenvalues, eigenvectors V and V^-1 of (W z, z')' = [0, W; -W, -(D + G)] (W z, z'), W =
+ * diag(w_i). The matrix is skew-Hermitian but for D, so that V is well conditioned. */
+typedef struct {
+  size_t          m;
+  double complex *pole, *V, *inverse; /* [2 m], [2 m][2 m] by columns */
+  size_t         *place;              /* [2 m] eigenvalue of each amplitude */
+} coupling;
+
+static shb_status decompose(const mhb_disc_modes *d, int diameter, coupling *c) {
+  const size_t          m = c->m, all = 2 * m;
+  const double complex *G = d->coupled->G + (size_t)diameter * m * m;
+  lapack_int            pivot[all];
+  double complex       *A = calloc(all * all, sizeof *A);
+  SHB_CHECK(A, SHB_ERR_IO, "out of memory for the Coriolis terms of %zu modes", m);
+  for (size_t j = 0; j < m; j++) {
+    const double w       = d->omega[(size_t)diameter * m + j];
+    A[j * all + m + j]   = -w;
+    A[(m + j) * all + j] = w;
+    for (size_t i = 0; i < m; i++) A[(m + j) * all + m + i] = -G[i * m + j];
+    A[(m + j) * all + m + j] -= 2 * d->zeta[(size_t)diameter * m + j] * w;
+  }
+  const lapack_int n = (lapack_int)all;
+  bool ok = LAPACKE_zgeev(LAPACK_COL_MAJOR, 'N', 'V', n, A, n, c->pole, NULL, 1, c->V, n) == 0;
+  memcpy(c->inverse, c->V, all * all * sizeof *c->V);
+  ok = ok && LAPACKE_zgetrf(LAPACK_COL_MAJOR, n, n, c->inverse, n, pivot) == 0 &&
+       LAPACKE_zgetri(LAPACK_COL_MAJOR, n, c->inverse, n, pivot) == 0;
+  free(A);
+  SHB_CHECK(ok, SHB_ERR_INPUT, "the gyroscopic modes of nodal diameter %d are not found", diameter);
+  size_t above = 0, below = 0;
+  for (size_t i = 0; i < all; i++) {
+    const bool up = cimag(c->pole[i]) > 0;
+    if ((up ? above : below) < m) c->place[up ? above : m + below] = i;
+    *(up ? &above : &below) += 1;
+  }
+  SHB_CHECK(above == m, SHB_ERR_INPUT,
+            "%zu of %zu gyroscopic modes of nodal diameter %d oscillate; the damping is too high",
+            above, m, diameter);
+  return SHB_OK;
+}
+
+/* Amplitudes of one nodal diameter from its coupling. */
+static void set_amplitudes(mhb_disc_modes *d, int diameter, const coupling *c) {
+  const size_t       m = c->m, all = 2 * m, n = (size_t)d->n, k = (size_t)diameter;
+  mhb_coupled_modes *to = d->coupled;
+  const double      *w  = d->omega + k * m;
+  int                count;
+  mhb_disc_modes_first(d, diameter, &count);
+  const double twice = count == 1 ? 2 : 1; /* the other of a conjugate pair */
+  for (size_t a = 0; a < all; a++) {
+    const double complex *v = c->V + c->place[a] * all;
+    to->pole[k * all + a]   = c->pole[c->place[a]];
+    for (size_t j = 0; j < all; j++) {
+      const double scale                        = j < m ? w[j] : 1;
+      to->to_state[(k * all + j) * all + a]     = twice * v[j] / scale;
+      to->to_amplitude[(k * all + a) * all + j] = scale * c->inverse[j * all + c->place[a]];
+    }
+    for (size_t r = 0; r < n; r++) {
+      double complex out = 0, in = 0;
+      for (size_t j = 0; j < m; j++) {
+        const double complex phi = d->shape[(k * m + j) * n + r];
+        out += phi * to->to_state[(k * all + j) * all + a];
+        in += to->to_amplitude[(k * all + a) * all + m + j] * conj(phi);
+      }
+      to->shape[(k * all + a) * n + r] = out;
+      to->force[(k * all + a) * n + r] = in;
+    }
+  }
+}
+
+static shb_status couple_one(mhb_disc_modes *d, const mhb_modal_part *part, int diameter) {
+  const size_t    m = (size_t)d->modes, all = 2 * m, square = all * all;
+  const size_t    stride = (size_t)d->all, k = (size_t)diameter;
+  double complex *memory = malloc((all + 2 * square) * sizeof *memory);
+  coupling   c = {m, memory, memory + all, memory + all + square, malloc(all * sizeof *c.place)};
+  shb_status status = SHB_OK;
+  for (size_t i = 0; i < m; i++)
+    for (size_t j = 0; j < m; j++)
+      d->coupled->G[k * m * m + i * m + j] = part->G[(k * stride + i) * stride + j];
+  if (!memory || !c.place)
+    status = shb_fail(SHB_ERR_IO, __FILE__, __LINE__, "out of memory for the Coriolis terms");
+  if (status == SHB_OK) status = decompose(d, diameter, &c);
+  if (status == SHB_OK) set_amplitudes(d, diameter, &c);
+  free(memory);
+  free(c.place);
+  return status;
+}
+
+static shb_status couple(mhb_disc_modes *d, const mhb_modal_part *part) {
+  const size_t K = (size_t)d->diameters, m = (size_t)d->modes, all = 2 * m, n = (size_t)d->n;
+  d->coupled = shb_arena_take(&d->arena, 1, sizeof *d->coupled);
+  SHB_CHECK(d->coupled, SHB_ERR_IO, "out of memory for the disc");
+  mhb_coupled_modes *c = d->coupled;
+  c->G                 = shb_arena_take(&d->arena, K * m * m, sizeof *c->G);
+  c->pole              = shb_arena_take(&d->arena, K * all, sizeof *c->pole);
+  c->shape             = shb_arena_take(&d->arena, K * all * n, sizeof *c->shape);
+  c->force             = shb_arena_take(&d->arena, K * all * n, sizeof *c->force);
+  c->to_amplitude      = shb_arena_take(&d->arena, K * all * all, sizeof *c->to_amplitude);
+  c->to_state          = shb_arena_take(&d->arena, K * all * all, sizeof *c->to_state);
+  SHB_CHECK(!d->arena.failed, SHB_ERR_IO, "out of memory for the disc");
+  for (int k = 0; k < d->diameters; k++) SHB_TRY(couple_one(d, part, k));
+  return SHB_OK;
+}
+
 /* The nodal diameters in the place of harmonics: the one of index n lags by n turns of 1/N. */
 static shb_status fill(mhb_disc_modes *d, const mhb_receptance *r, const mhb_settings *s) {
   const modal_nodal_diameters *from = s->nodal_diameters;
@@ -52,7 +158,8 @@ static shb_status fill(mhb_disc_modes *d, const mhb_receptance *r, const mhb_set
   for (int n = 0; n < d->diameters; n++) {
     int missing;
     d->phase[n] = cexp(-I * SHB_TWO_PI * n / d->blades);
-    SHB_CHECK(modal_nodal_diameters_wave(from, n, &d->wave[n], &missing), SHB_ERR_INPUT,
+    d->wave[n]  = modal_wave_real(r->model);
+    SHB_CHECK(!from || modal_nodal_diameters_wave(from, n, &d->wave[n], &missing), SHB_ERR_INPUT,
               "the modal file lacks nodal diameter %d", missing);
   }
   const mhb_relative  relative  = {d->n, s->to_ground ? 1 : 2, r->T0};
@@ -64,9 +171,10 @@ static shb_status fill(mhb_disc_modes *d, const mhb_receptance *r, const mhb_set
   SHB_TRY(mhb_modal_part_create(r->model, relative, &harmonics, &d->part));
   for (int n = 0; n < d->diameters; n++) set_modes(d, d->part, n);
   if (r->disc) return SHB_OK;
+  shb_status status = d->part->G ? couple(d, d->part) : SHB_OK;
   mhb_modal_part_destroy(d->part);
   d->part = NULL;
-  return SHB_OK;
+  return status;
 }
 
 void mhb_disc_modes_set(const mhb_receptance *r, mhb_disc_modes *d) {
@@ -76,11 +184,11 @@ void mhb_disc_modes_set(const mhb_receptance *r, mhb_disc_modes *d) {
   for (int n = 0; n < d->diameters; n++) set_modes(d, d->part, n);
 }
 
-shb_status mhb_disc_modes_create(const mhb_receptance *r, const mhb_settings *s, int modes,
-                                 mhb_disc_modes **out) {
+shb_status mhb_disc_modes_create(const mhb_receptance *r, const mhb_settings *s, int blades,
+                                 int modes, mhb_disc_modes **out) {
   mhb_disc_modes *d = calloc(1, sizeof *d);
   SHB_CHECK(d, SHB_ERR_IO, "out of memory");
-  const int N  = s->nodal_diameters->blades;
+  const int N  = blades;
   d->blades    = N;
   d->n         = r->n;
   d->all       = r->n_modes;

@@ -2,9 +2,12 @@
  *
  * Blade b, free at both faces, has n motions. With the shapes B of its modes, S of its residual
  * modes, and the terms M_t of residual_terms.h:
+ *
  *   H_b = sum_i L_i B_i B_i^T + sum_j g_j S_j S_j^T + sum_t a_t M_t,b          [n][n] m/N
- * All matrices are real and symmetric but for M, and common to all blades but for M. So a blade at
- * a harmonic costs 2 n^2 multiplications a mode, by whole vectors, and nothing is complex but L. */
+ *
+ * All matrices are real. Those of the modes are common to all blades. So a blade at a harmonic
+ * costs 2 n^2 multiplications a mode, by whole vectors; only L is complex. The terms M_t are
+ * those of each blade. */
 #ifndef MHB_STRUCTURE_EQUAL_SHAPES_H
 #define MHB_STRUCTURE_EQUAL_SHAPES_H
 
@@ -15,7 +18,7 @@
 
 struct mhb_receptance;
 
-typedef struct {
+typedef struct mhb_equal_shapes {
   int       n, modes, residual_modes;
   int       square;         /* n^2 in whole vectors */
   double   *shapes;         /* [n][modes + residual_modes] B, S */

@@ -42,6 +42,13 @@ static void set_load(mhb_modal_part *b, int k) {
   }
 }
 
+static shb_status set_coriolis(mhb_modal_part *b, int k) {
+  const int       m = b->n_modes;
+  double complex *G = b->G + (size_t)k * (size_t)m * (size_t)m;
+  for (int i = 0; i < m * m; i++) G[i] = mhb_gyroscopic_element(&b->wave[k], i / m, i % m);
+  return mhb_gyroscopic_of_wave(&b->wave[k], &b->gyroscopic[k]);
+}
+
 static void set_split(mhb_modal_part *b, int k) {
   size_t                m = (size_t)b->n_modes, nm = (size_t)b->n * m;
   double               *re = b->split + 2 * (size_t)k * (nm + m), *im = re + nm + m;
@@ -73,9 +80,14 @@ static shb_status make(mhb_modal_part *b, const mhb_harmonics *harmonics) {
   b->F      = shb_arena_take(&b->arena, K * m, sizeof *b->F);
   b->split  = shb_arena_take(&b->arena, K * 2 * (n + 1) * m, sizeof *b->split);
   b->driven = shb_arena_take(&b->arena, K, sizeof *b->driven);
+  if (b->model->coriolis) {
+    b->G          = shb_arena_take(&b->arena, K * m * m, sizeof *b->G);
+    b->gyroscopic = shb_arena_take(&b->arena, K, sizeof *b->gyroscopic);
+  }
   if (b->arena.failed) return SHB_ERR_IO;
   for (size_t k = 0; k < K; k++)
     b->wave[k] = harmonics->wave ? harmonics->wave[k] : modal_wave_real(b->model);
+  for (int k = 0; b->G && k <= b->n_harmonics; k++) SHB_TRY(set_coriolis(b, k));
   mhb_harmonics own = *harmonics;
   own.wave          = b->wave;
   return mhb_residual_terms_create(b->model, b->relative, &own, &b->residual_terms);
@@ -104,6 +116,8 @@ shb_status mhb_modal_part_create(const modal_model *model, mhb_relative relative
 void mhb_modal_part_destroy(mhb_modal_part *b) {
   if (!b) return;
   mhb_residual_terms_destroy(b->residual_terms);
+  for (int k = 0; b->gyroscopic && k <= b->n_harmonics; k++)
+    mhb_gyroscopic_free(&b->gyroscopic[k]);
   shb_arena_free(&b->arena);
   free(b);
 }

@@ -4,6 +4,7 @@
  * phi/nu):
  *   B_k[3 a + c][i] = T0^T (right - e_k left)      relative motion of pair a in mode i, kg^-1/2
  *   F_k[i]                                         modal force of the load at scale 1, N kg^-1/2
+ *   G_k[i][j]                                      Coriolis matrix, 1/s, if the model has one
  * and the residual terms (residual_terms.h). In a run-up the derivative of the model by the
  * frequency is a second modal part. */
 #ifndef MHB_STRUCTURE_MODAL_PART_H
@@ -15,6 +16,7 @@
 #include "mesh/base/status.h"
 #include "mhb/structure/relative_motion.h"
 #include "mhb/structure/residual_terms.h"
+#include "mhb/structure/gyroscopic.h"
 
 typedef struct {
   const modal_model    *model; /* of all harmonics, or of the mean */
@@ -24,6 +26,8 @@ typedef struct {
   const double complex *phase;                       /* [k] e_k, the caller's */
   double complex       *B;                           /* [k][n][modes] */
   double complex       *F;                           /* [k][modes] */
+  double complex       *G; /* [k][modes][modes]; NULL: without Coriolis terms, as the next */
+  mhb_gyroscopic     *gyroscopic; /* [k] the modes that G couples */
   double             *split; /* [k][2 (re, im)][n + 1][modes] B, then F: for the loops over modes */
   int                *driven; /* [k] whether the load has this harmonic */
   mhb_residual_terms *residual_terms;

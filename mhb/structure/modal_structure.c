@@ -132,7 +132,8 @@ shb_status mhb_modal_structure_create(const mhb_receptance *r, const mhb_setting
                                       .wave     = ground && !of ? 0 : wave_of(settings, blades),
                                       .mistuned = r->ring != NULL};
   s->contacts = s->blades * s->pairs;
-  if (of) SHB_TRY(mhb_disc_modes_create(r, settings, s->modes, &s->disc));
+  if (of || (!r->ring && r->model->coriolis))
+    SHB_TRY(mhb_disc_modes_create(r, settings, blades, s->modes, &s->disc));
   take_arrays(r, whole, s);
   if (s->arena.failed) {
     mhb_modal_structure_destroy(s);

@@ -6,7 +6,7 @@
  *
  * Of a mistuned ring (settings->ring) all blades have the same shapes and damping ratios.
  * With settings->nodal_diameters the blades are also coupled by their disc (disc_modes.h); then the
- * modes are those of the nodal diameters. */
+ * modes are those of the nodal diameters. So they are with Coriolis terms. */
 #ifndef MHB_STRUCTURE_MODAL_STRUCTURE_H
 #define MHB_STRUCTURE_MODAL_STRUCTURE_H
 

@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "mesh/base/constants.h"
+#include "mhb/numerics/lu.h"
 #include "mhb/numerics/simd.h"
 #include "mhb/problem/interfaces.h"
 #include "modal/model/joined_pairs.h"
@@ -88,6 +89,10 @@ static int allocate(mhb_receptance *r) {
   r->R       = calloc(K * n * n, sizeof *r->R);
   r->scratch = shb_arena_take(a, 4 * m, sizeof *r->scratch);
   r->BL      = shb_arena_take(a, n * m, sizeof *r->BL);
+  if (r->model->coriolis) {
+    r->factor = shb_arena_take(a, K * m * m, sizeof *r->factor);
+    r->pivot  = shb_arena_take(a, K * m, sizeof *r->pivot);
+  }
   return !a->failed && r->R;
 }
 
@@ -330,6 +335,139 @@ void mhb_receptance_residual_terms(const mhb_receptance *r, int k, double w, dou
   mhb_residual_terms_matrix(r->residual_terms, k, w, R);
 }
 
+/* Without a run-up the mean does not depend on the frequency. */
+static double frequency_of(const mhb_receptance *r, int k) {
+  return k == 0 && !r->at ? 0 : r->omega;
+}
+
+/* ---- modes coupled by Coriolis terms ---- */
+
+void mhb_receptance_dynamic_stiffness(const mhb_receptance *r, int k, double w, double complex *A) {
+  const modal_model    *model = mhb_receptance_model(r, k);
+  const size_t          m     = (size_t)r->n_modes;
+  const double complex *G     = r->part->G ? r->part->G + (size_t)k * m * m : NULL;
+  for (size_t j = 0; j < m; j++)
+    for (size_t i = 0; i < m; i++) A[j * m + i] = G ? I * w * G[i * m + j] : 0;
+  for (size_t i = 0; i < m; i++) {
+    const double wi = SHB_TWO_PI * model->frequency[i];
+    A[i * m + i] += CMPLX(wi * wi - w * w, 2 * model->damping_ratio[i] * wi * w);
+  }
+}
+
+/* w, or where a gyroscopic mode without damping has its resonance a frequency beside it, as in
+ * set_lambda. */
+static double beside_resonances(const mhb_receptance *r, int k, double w) {
+  const mhb_gyroscopic *modes = &r->part->gyroscopic[k];
+  for (int i = modes->n; i < 2 * modes->n; i++) {
+    const double wi = modes->omega[i], a = wi * wi - w * w, b = 2 * modes->decay[i] * w;
+    if (hypot(a, b) < NUDGE * wi * wi) return wi * (1 - copysign(0.5 * NUDGE, a));
+  }
+  return w;
+}
+
+static void factor_at(const mhb_receptance *r, int k, double complex *A, int *pivot) {
+  const double w = k * r->omega / r->nu;
+  mhb_receptance_dynamic_stiffness(r, k, beside_resonances(r, k, w), A);
+  mhb_factor_complex(r->n_modes, A, pivot);
+}
+
+/* x <- L x at the frequency of the receptance, whether its factor is that of it or not. */
+static void coupled_solve(const mhb_receptance *r, int k, double complex *x) {
+  const size_t    m    = (size_t)r->n_modes;
+  const int       kept = r->load_at[k] == frequency_of(r, k);
+  double complex *own  = kept ? NULL : malloc(m * m * sizeof *own);
+  int             pivot[m];
+  if (own) factor_at(r, k, own, pivot);
+  if (kept || own)
+    mhb_solve_complex(r->n_modes, own ? own : r->factor + (size_t)k * m * m,
+                      own ? pivot : r->pivot + (size_t)k * m, 1, x);
+  else
+    for (size_t i = 0; i < m; i++) x[i] = NAN; /* no memory: nothing converges */
+  free(own);
+}
+
+static void join(int m, const double *re, const double *im, double complex *x) {
+  for (int i = 0; i < m; i++) x[i] = CMPLX(re[i], im[i]);
+}
+
+static void part(int m, const double complex *x, double *re, double *im) {
+  for (int i = 0; i < m; i++) {
+    re[i] = creal(x[i]);
+    im[i] = cimag(x[i]);
+  }
+}
+
+/* 2 zeta_i w_i, 1/s */
+static double loss_of(const mhb_receptance *r, int k, int i) {
+  const modal_model *model = mhb_receptance_model(r, k);
+  return 2 * model->damping_ratio[i] * SHB_TWO_PI * model->frequency[i];
+}
+
+/* y <- -dA/d omega x, A = L^-1. */
+static void coupled_slope(const mhb_receptance *r, int k, const double complex *x,
+                          double complex *y) {
+  const int             m  = r->n_modes;
+  const double          kk = (double)k / r->nu;
+  const double complex *G  = r->part->G + (size_t)k * (size_t)m * (size_t)m;
+  for (int i = 0; i < m; i++) {
+    double complex sum = (2 * I * kk * r->omega + loss_of(r, k, i)) * x[i]; /* times j: -2 w x */
+    for (int j = 0; j < m; j++) sum += G[(size_t)i * (size_t)m + (size_t)j] * x[j];
+    y[i] = -I * kk * sum;
+  }
+}
+
+/* R += B L B^H; the factor is up to date. */
+static void coupled_matrix(mhb_receptance *r, int k, double complex *R) {
+  const int             n = r->n, m = r->n_modes;
+  const size_t          nm  = (size_t)n * (size_t)m;
+  const double complex *B   = r->B + (size_t)k * nm;
+  const double complex  one = 1;
+  for (size_t i = 0; i < nm; i++) r->BL[i] = conj(B[i]);
+  mhb_solve_complex(m, r->factor + (size_t)k * (size_t)m * (size_t)m,
+                    r->pivot + (size_t)k * (size_t)m, n, r->BL);
+  cblas_zgemm(CblasRowMajor, CblasNoTrans, CblasTrans, n, n, m, &one, B, m, r->BL, m, &one, R, n);
+}
+
+/* lambda and free, as harmonic_at makes them, without R. */
+static void load_at(mhb_receptance *r, int k) {
+  if (r->ring) {
+    mhb_ring_receptance_update_load(r->ring, k, r->free + k * r->n,
+                                    r->free_response_unit + k * r->n);
+    return;
+  }
+  int             n = r->n, m = r->n_modes;
+  double          w = k * r->omega / r->nu, *L = r->scratch, *y = L + 2 * m;
+  double complex *u = r->free_response_unit + k * n;
+  const double *re = mhb_modal_part_split(r->part, k, 0), *im = mhb_modal_part_split(r->part, k, 1);
+  const double *load_re = re + n * m, *load_im = im + n * m;
+  if (r->factor) {
+    double complex  x[m];
+    int            *pivot = r->pivot + (size_t)k * (size_t)m;
+    double complex *A     = r->factor + (size_t)k * (size_t)m * (size_t)m;
+    factor_at(r, k, A, pivot);
+    join(m, load_re, load_im, x);
+    mhb_solve_complex(m, A, pivot, 1, x);
+    part(m, x, y, y + m);
+  } else {
+    set_lambda(r, k, w, L, L + m);
+    for (int i = 0; i < m; i++) r->lambda[k * m + i] = CMPLX(L[i], L[m + i]);
+  }
+  memset(u, 0, sizeof *u * (size_t)n);
+  if (!r->driven[k]) { /* nor is the free response, which stays 0 */
+    memset(r->free + k * n, 0, sizeof *u * (size_t)n);
+    return;
+  }
+  for (int i = 0; i < m && !r->factor; i++) {
+    y[i]     = L[i] * load_re[i] - L[m + i] * load_im[i];
+    y[m + i] = L[i] * load_im[i] + L[m + i] * load_re[i];
+  }
+  mhb_residual_terms_load(r->residual_terms, k, w, 1, u);
+  for (int a = 0; a < n; a++, re += m, im += m) {
+    u[a] += product(m, y, y + m, re, im, 1);
+    r->free[k * n + a] = r->scale * u[a];
+  }
+}
+
 static void harmonic_at(mhb_receptance *r, int k) {
   if (r->ring) {
     mhb_ring_receptance_update(r->ring, k, r->free + k * r->n, r->free_response_unit + k * r->n);
@@ -340,6 +478,12 @@ static void harmonic_at(mhb_receptance *r, int k) {
   double complex *R = r->R + (size_t)k * (size_t)n * (size_t)n, *u = r->free_response_unit + k * n;
   const double *re = mhb_modal_part_split(r->part, k, 0), *im = mhb_modal_part_split(r->part, k, 1);
   double complex *all = r->BL, one = 1;
+  if (r->factor) {
+    load_at(r, k);
+    mhb_receptance_residual_terms(r, k, w, R);
+    coupled_matrix(r, k, R);
+    return;
+  }
   set_lambda(r, k, w, L, L + m);
   for (int i = 0; i < m; i++) r->lambda[k * m + i] = CMPLX(L[i], L[m + i]);
   memset(u, 0, sizeof *u * (size_t)n);
@@ -359,36 +503,6 @@ static void harmonic_at(mhb_receptance *r, int k) {
                 r->B + (size_t)k * (size_t)n * (size_t)m, m, &one, R, n);
 }
 
-/* lambda and free, as harmonic_at makes them, without R. */
-static void load_at(mhb_receptance *r, int k) {
-  if (r->ring) {
-    mhb_ring_receptance_update_load(r->ring, k, r->free + k * r->n,
-                                    r->free_response_unit + k * r->n);
-    return;
-  }
-  int             n = r->n, m = r->n_modes;
-  double          w = k * r->omega / r->nu, *L = r->scratch, *y = L + 2 * m;
-  double complex *u = r->free_response_unit + k * n;
-  const double *re = mhb_modal_part_split(r->part, k, 0), *im = mhb_modal_part_split(r->part, k, 1);
-  const double *load_re = re + n * m, *load_im = im + n * m;
-  set_lambda(r, k, w, L, L + m);
-  for (int i = 0; i < m; i++) r->lambda[k * m + i] = CMPLX(L[i], L[m + i]);
-  memset(u, 0, sizeof *u * (size_t)n);
-  if (!r->driven[k]) { /* nor is the free response, which stays 0 */
-    memset(r->free + k * n, 0, sizeof *u * (size_t)n);
-    return;
-  }
-  for (int i = 0; i < m; i++) {
-    y[i]     = L[i] * load_re[i] - L[m + i] * load_im[i];
-    y[m + i] = L[i] * load_im[i] + L[m + i] * load_re[i];
-  }
-  mhb_residual_terms_load(r->residual_terms, k, w, 1, u);
-  for (int a = 0; a < n; a++, re += m, im += m) {
-    u[a] += product(m, y, y + m, re, im, 1);
-    r->free[k * n + a] = r->scale * u[a];
-  }
-}
-
 void mhb_receptance_set_frequency(mhb_receptance *r, double omega) {
   r->omega = omega;
   if (r->ring) mhb_ring_receptance_set_frequency(r->ring, omega);
@@ -400,16 +514,11 @@ void mhb_receptance_set_frequency(mhb_receptance *r, double omega) {
   mhb_modal_part_update(r->part);
 }
 
-/* Without a run-up the mean does not depend on the frequency. */
-static double frequency_of(const mhb_receptance *r, int k) {
-  return k == 0 && !r->at ? 0 : r->omega;
-}
-
 void mhb_receptance_update(mhb_receptance *r, int k) {
   double w = frequency_of(r, k);
   if (r->updated_at[k] != w) {
     harmonic_at(r, k);
-    if (!r->ring && r->n >= MHB_WORTH_BLAS)
+    if (!r->ring && !r->factor && r->n >= MHB_WORTH_BLAS)
       load_at(r, k); /* its last digits, not R's, everywhere */
     r->updated_at[k] = r->load_at[k] = w;
   }
@@ -472,6 +581,15 @@ MHB_HOT static void slope_drive(const mhb_receptance *r, int k, const double com
   int    m  = r->n_modes;
   double kk = (double)k / r->nu, spring = 2 * kk * kk * r->omega;
   drive(r, k, p, yr, yi);
+  if (r->factor) {
+    double complex x[m], y[m];
+    join(m, yr, yi, x);
+    coupled_solve(r, k, x);
+    coupled_slope(r, k, x, y);
+    coupled_solve(r, k, y);
+    part(m, y, yr, yi);
+    return;
+  }
   const double complex *lambda = r->lambda + k * m;
   for (int i = 0; i < m; i++) {
     double a = creal(lambda[i]), b = cimag(lambda[i]);
@@ -489,8 +607,15 @@ MHB_HOT static void motion_drive(const mhb_receptance *r, int k, double w, const
                                  double *restrict yr, double *restrict yi) {
   int    m = r->n_modes;
   double L[2 * m];
-  set_lambda(r, k, w, L, L + m);
   drive(r, k, p, yr, yi);
+  if (r->factor) {
+    double complex x[m];
+    join(m, yr, yi, x);
+    coupled_solve(r, k, x);
+    part(m, x, yr, yi);
+    return;
+  }
+  set_lambda(r, k, w, L, L + m);
   for (int i = 0; i < m; i++) {
     double x = yr[i];
     yr[i]    = L[i] * x - L[m + i] * yi[i];
@@ -562,6 +687,22 @@ void mhb_receptance_slope(const mhb_receptance *r, int k, const double complex *
                                r->lambda + k * r->n_modes, r->scale, p, slope);
 }
 
+/* Change of the amplitudes of coupled modes, as mhb_receptance_probe_change. */
+static void coupled_change(const mhb_receptance *r, int k, const double complex *p,
+                           const double complex *dp, double d_omega, double d_scale,
+                           double complex *a) {
+  const int m = r->n_modes;
+  for (int i = 0; i < m; i++) a[i] = mhb_modal_part_force(r->part, k, dp, i, d_scale);
+  if (d_omega != 0) {
+    double complex x[m], y[m];
+    for (int i = 0; i < m; i++) x[i] = mhb_modal_part_force(r->part, k, p, i, r->scale);
+    coupled_solve(r, k, x);
+    coupled_slope(r, k, x, y);
+    for (int i = 0; i < m; i++) a[i] += d_omega * y[i];
+  }
+  coupled_solve(r, k, a);
+}
+
 void mhb_receptance_probe_change(const mhb_receptance *r, int k, const double complex *p,
                                  const double complex *dp, double d_omega, double d_scale,
                                  double complex *change) {
@@ -575,9 +716,12 @@ void mhb_receptance_probe_change(const mhb_receptance *r, int k, const double co
   mhb_residual_terms_probe_change(r->residual_terms, k, kk * r->omega,
                                   (mhb_structure_forces){r->scale, p},
                                   (mhb_structure_forces){d_scale, dp}, dw2, change);
+  double complex coupled[r->factor ? m : 1];
+  if (r->factor) coupled_change(r, k, p, dp, d_omega, d_scale, coupled);
   for (int i = 0; i < m; i++) {
-    double complex a = r->lambda[k * m + i] * mhb_modal_part_force(r->part, k, dp, i, d_scale);
-    if (d_omega != 0)
+    double complex a = r->factor ? coupled[i] : 0;
+    if (!r->factor) a = r->lambda[k * m + i] * mhb_modal_part_force(r->part, k, dp, i, d_scale);
+    if (!r->factor && d_omega != 0)
       a += d_omega * lambda_slope(r, k, i) * mhb_modal_part_force(r->part, k, p, i, r->scale);
     for (int s = 0; s < q; s++) change[s] += mhb_modal_part_probe(r->part, k, s, i, a);
   }
@@ -607,16 +751,24 @@ void mhb_receptance_by_damping(const mhb_receptance *r, int k, const double comp
     mhb_ring_receptance_by_damping(r->ring, k, p, motion, probe);
     return;
   }
-  int    m = r->n_modes, q = 3 * r->model->n_probes;
-  double w = k * r->omega / r->nu, yr[m], yi[m];
+  int            m = r->n_modes, q = 3 * r->model->n_probes;
+  double         w = k * r->omega / r->nu, yr[m], yi[m];
+  double complex coupled[r->factor ? m : 1];
   drive(r, k, p, yr, yi);
   memset(probe, 0, sizeof *probe * (size_t)q);
+  if (r->factor) {
+    join(m, yr, yi, coupled);
+    coupled_solve(r, k, coupled);
+    for (int i = 0; i < m; i++) coupled[i] *= -I * loss_of(r, k, i) * w;
+    coupled_solve(r, k, coupled);
+  }
   for (int i = 0; i < m; i++) {
     double b = 2 * mhb_receptance_model(r, k)->damping_ratio[i] * SHB_TWO_PI *
                mhb_receptance_model(r, k)->frequency[i] * w;
-    double complex L = r->lambda[k * m + i], y = -I * b * L * L * CMPLX(yr[i], yi[i]);
-    yr[i] = creal(y);
-    yi[i] = cimag(y);
+    double complex L = r->factor ? 0 : r->lambda[k * m + i];
+    double complex y = r->factor ? coupled[i] : -I * b * L * L * CMPLX(yr[i], yi[i]);
+    yr[i]            = creal(y);
+    yi[i]            = cimag(y);
     for (int s = 0; s < q; s++) probe[s] += mhb_modal_part_probe(r->part, k, s, i, y);
   }
   modal_sums(r, k, yr, yi, motion);

@@ -10,6 +10,10 @@
  * and the probes by the same with their own shapes. |L_i| is at most 1e8/w_i^2: without damping, at
  * a resonance, it is that of a frequency 5e-9 beside it.
  *
+ * Coriolis terms (modes/coriolis of the model) couple the modes:
+ *   L = (diag(w_i^2 - w^2 + 2 j zeta_i w_i w) + j w G_k)^-1,   [modes][modes]
+ * It is not formed: a factor of its inverse is kept for each harmonic.
+ *
  * With a flexible disc (settings->nodal_diameters) harmonic k is that of nodal diameter k (E + N
  * l)/nu modulo N: its shapes, frequencies and residual terms. phi_i phi_i^H is then complex.
  *
@@ -47,23 +51,29 @@ typedef struct mhb_receptance {
   const double complex *F;   /* [k][modes] modal force at scale 1 */
   const int            *driven; /* [k] whether the load has this harmonic */
   mhb_residual_terms   *residual_terms;
-  double                scale;              /* of the excitation */
-  double                omega;              /* rad/s, of mhb_receptance_set_frequency */
-  double               *updated_at;         /* [k] rad/s of the arrays below, NAN: never */
-  double               *load_at;            /* [k] the same of lambda and free */
-  double complex       *lambda;             /* [k][modes] L */
-  double complex       *R;                  /* [k][n][n] m/N; memory is touched when R_k is made */
-  double complex       *free;               /* [k][n] m, response without contact */
-  double complex       *free_response_unit; /* the same at scale 1 */
-  double               *scratch;            /* [4][modes] */
-  double complex       *BL;                 /* [n][modes] B L of one harmonic */
-  shb_arena             arena;
+  double                scale;      /* of the excitation */
+  double                omega;      /* rad/s, of mhb_receptance_set_frequency */
+  double               *updated_at; /* [k] rad/s of the arrays below, NAN: never */
+  double               *load_at;    /* [k] the same of lambda and free */
+  double complex       *lambda;     /* [k][modes] L; not set with Coriolis terms */
+  double complex *factor; /* [k][modes][modes] with Coriolis terms: L^-1, factored, else NULL */
+  int            *pivot;  /* [k][modes] its row exchanges */
+  double complex *R;      /* [k][n][n] m/N; memory is touched when R_k is made */
+  double complex *free;   /* [k][n] m, response without contact */
+  double complex *free_response_unit; /* the same at scale 1 */
+  double         *scratch;            /* [4][modes] */
+  double complex *BL;                 /* [n][modes] B L of one harmonic */
+  shb_arena       arena;
 } mhb_receptance;
 
 /* Modal model of harmonic k: that of its nodal diameter, or the only one. */
 static inline const modal_model *mhb_receptance_model(const mhb_receptance *r, int k) {
   return r->part->wave[k].model;
 }
+
+/* A[modes][modes] <- L^-1 of harmonic k at w rad/s, by columns. */
+void mhb_receptance_dynamic_stiffness(const mhb_receptance *receptance, int k, double w,
+                                      double complex *A);
 
 /* The modal file has the nodal diameters of harmonics 0 to top. SHB_ERR_INPUT: it lacks one, or has
  * another number of blades. */

@@ -199,8 +199,9 @@ bool mhb_residual_terms_driven(const mhb_residual_terms *l, int k) {
 
 /* ---- at a frequency ---- */
 
+/* NULL without shapes of attachment: r = 0. */
 static const double complex *shapes(const mhb_residual_terms *l, int k) {
-  return l->S + (size_t)k * (size_t)l->relative.n * (size_t)l->r;
+  return !l->S ? NULL : l->S + (size_t)k * (size_t)l->relative.n * (size_t)l->r;
 }
 
 /* sum_t weight_t x_t at i, over the terms there are. */

@@ -13,18 +13,18 @@
 #include "mesh/base/arena.h"
 #include "mesh/base/status.h"
 #include "mhb/mistuning/mistuned_ring.h"
-#include "mhb/structure/equal_shapes.h"
 
 /* Block of R beside the diagonal. */
 typedef enum { MHB_RING_BEFORE, MHB_RING_OWN, MHB_RING_AFTER, MHB_RING_BLOCKS } mhb_ring_block;
 
 struct mhb_receptance; /* of one blade */
+struct mhb_equal_shapes;
 
 typedef struct mhb_ring_receptance {
   const mhb_mistuned_ring *ring;
   int                      blades, n, q;  /* n = 3 pairs of a contact; q = 3 probes of a blade */
   struct mhb_receptance  **blade;         /* [blades]; their R are not made */
-  mhb_equal_shapes        *shapes;        /* makes the matrices of the blades */
+  struct mhb_equal_shapes *shapes;        /* makes the matrices of the blades */
   double complex          *R;             /* [k][blades][before, own, after][n][n] m/N */
   double complex          *p, *dp, *part; /* [2n] of one blade */
   shb_arena                arena;

@@ -11,9 +11,16 @@
 static const double STEP       = 1e-6;
 static const double LEAST_GAIN = 0.99;
 
-/* Newton's method at a value is given up if three iterations gain less than this. */
+/* G of a multiplier, in lengths of the motion: the residual's tolerance of 1e-10 is 1e-8 of the
+ * multiplier, and 1e-6 counts as round-off. */
+static const double MULTIPLIER_WEIGHT = 0.01;
+
+/* A point is a solution of the balance from this relative distance on. */
+static const double ON_SURFACE = 1e-12;
+
+/* Newton's method for a peak at a value is given up if three iterations gain less than this. */
 static const double SLOW_GAIN = 0.5;
-enum { MAX_NEWTON = 25, MAX_HALVINGS = 3 };
+enum { MAX_NEWTON = 25, MAX_HALVINGS = 8, MAX_HALVINGS_OF_PEAK = 3 };
 
 struct mhb_peak_system {
   mhb_curve_system  base; /* first: its functions get it back */
@@ -21,8 +28,10 @@ struct mhb_peak_system {
   mhb_tracked_point kind;
   int               output;
   mhb_parameter     parameter;
-  double            rate; /* d omega/d xi */
-  int               n;    /* unknowns of the balance; the system has one more */
+  double            rate;       /* d omega/d xi */
+  double            length;     /* m */
+  double            least_unit; /* of q */
+  int               n;          /* unknowns of the balance; the system has one more */
 
   /* the point that was linearised last */
   double         *z; /* [n + 1]; NAN: none */
@@ -31,16 +40,17 @@ struct mhb_peak_system {
   mhb_peak_report report;
 
   /* work space of one linearisation */
-  mhb_evaluation *displaced;
-  mhb_amplitude   amplitude;
-  double         *jacobian;          /* [n][n] column-major */
-  double         *by_xi, *by_q;      /* [n] r_xi, r_q */
-  double         *gradient;          /* [n + 1] A_z */
-  double         *bordered;          /* [n + 1][n + 1] B, factored */
-  double         *border;            /* [n + 1] c */
-  double         *tangent, *adjoint; /* [n + 1] T; l, k */
-  double         *moved, *moved_r;   /* [n + 1], [n] */
-  lapack_int     *pivot;             /* [n + 2] */
+  mhb_evaluation           *displaced;
+  mhb_multiplier_condition *condition; /* of flips and Neimark-Sacker points, else NULL */
+  mhb_amplitude             amplitude;
+  double                   *jacobian;          /* [n][n] column-major */
+  double                   *by_xi, *by_q;      /* [n] r_xi, r_q */
+  double                   *gradient;          /* [n + 1] A_z */
+  double                   *bordered;          /* [n + 1][n + 1] B, factored */
+  double                   *border;            /* [n + 1] c */
+  double                   *tangent, *adjoint; /* [n + 1] T; l, k */
+  double                   *moved, *moved_r;   /* [n + 1], [n] */
+  lapack_int               *pivot;             /* [n + 2] */
   /* the bordered matrix of the continuation */
   double     *step_matrix; /* [n + 2][n + 2] column-major, factored */
   lapack_int *step_pivot;  /* [n + 2] */
@@ -160,6 +170,54 @@ static double slip_share(const mhb_balance *b) {
   return least;
 }
 
+/* The row of a multiplier's G, by z into s->moved and by q into the point's slope. g is that of the
+ * solution to which a Newton step of the balance leads. Across the surface of solutions it then has
+ * no slope, as in the row. */
+static void multiplier_row(mhb_peak_system *s, mhb_curve_point *point) {
+  const size_t         one    = (size_t)s->n + 1;
+  const double         weight = MULTIPLIER_WEIGHT * s->length;
+  double              *across = s->adjoint; /* Y; flips have no use for the adjoint */
+  double              *onto   = s->moved_r; /* the surface of solutions */
+  mhb_multiplier_slope slope;
+  for (int i = 0; i < s->n; i++) across[i] = -s->by_q[i];
+  for (int i = 0; i < s->n; i++) onto[i] = -point->r[i];
+  across[s->n] = onto[s->n] = 0;
+  solve_bordered(s, 'N', across);
+  solve_bordered(s, 'N', onto);
+  bool there = mhb_norm(onto, s->n + 1) <= ON_SURFACE * mhb_norm(point->x, s->n + 1);
+  for (size_t j = 0; j < one; j++) onto[j] += point->x[j];
+  const mhb_multiplier_base base = {there ? point->evaluation : NULL,
+                                    there ? point->x : onto,
+                                    point->value,
+                                    s->tangent,
+                                    across,
+                                    s->border};
+  bool found = mhb_multiplier_condition_linearise(s->condition, &base, &slope) == NULL;
+  if (!found) slope = (mhb_multiplier_slope){.place.g = NAN};
+  s->report.multiplier = slope.place;
+  double along         = slope.along / dot(s->n + 1, s->border, s->tangent);
+  for (size_t j = 0; j < one; j++) s->moved[j] = weight * along * s->border[j];
+  point->r[s->n]     = weight * slope.place.g;
+  point->slope[s->n] = weight * slope.by_value;
+}
+
+/* The same of a peak's or a fold's G, and the report's curvature. */
+static void peak_row(mhb_peak_system *s, mhb_curve_point *point, double by_q) {
+  const size_t one  = (size_t)s->n + 1;
+  const double k    = s->adjoint[s->n];
+  const double step = STEP * mhb_norm(point->x, s->n + 1);
+  for (size_t i = 0; i < one; i++) s->moved[i] = point->x[i] + step * s->tangent[i];
+  double by_q_moved = derivatives(s, s->displaced, s->moved, point->value, s->moved_r);
+  by_q_moved -= dot(s->n, s->adjoint, s->by_q);
+  lagrangian_gradient(s, s->moved);
+  s->report.curvature = 0;
+  for (size_t j = 0; j < one; j++) {
+    s->moved[j] = (s->moved[j] - k * s->border[j]) / step;
+    s->report.curvature += s->moved[j] * s->tangent[j];
+  }
+  point->slope[s->n] = (by_q_moved - by_q) / step;
+}
+
 /* The matrix of (r, G) at the point, its r and slope, and the report. */
 static void linearise(mhb_curve_system *system, mhb_curve_point *point) {
   mhb_peak_system *s = of(system);
@@ -172,22 +230,14 @@ static void linearise(mhb_curve_system *system, mhb_curve_point *point) {
   s->report.amplitude  = s->amplitude.amplitude;
   s->report.slip_share = slip_share(s->balance);
   point->r[n]          = tangent_and_adjoint(s);
-  double k             = s->adjoint[n];
-  by_q -= dot(s->n, s->adjoint, s->by_q);
-  s->report.by_value = by_q;
-
-  double step = STEP * mhb_norm(point->x, s->n + 1);
-  for (size_t i = 0; i < one; i++) s->moved[i] = point->x[i] + step * s->tangent[i];
-  double by_q_moved = derivatives(s, s->displaced, s->moved, point->value, s->moved_r);
-  by_q_moved -= dot(s->n, s->adjoint, s->by_q);
-  lagrangian_gradient(s, s->moved);
-  s->report.curvature = 0;
-  for (size_t j = 0; j < one; j++) {
-    double of_j         = (s->moved[j] - k * s->border[j]) / step;
-    matrix[j * one + n] = of_j;
-    s->report.curvature += of_j * s->tangent[j];
+  if (s->condition) {
+    if (!isnan(point->r[n])) multiplier_row(s, point);
+  } else {
+    by_q -= dot(s->n, s->adjoint, s->by_q);
+    s->report.by_value = by_q;
+    peak_row(s, point, by_q);
   }
-  point->slope[n] = (by_q_moved - by_q) / step;
+  for (size_t j = 0; j < one; j++) matrix[j * one + n] = s->moved[j];
   mhb_balance_use(s->balance, point->evaluation);
   memcpy(s->border, s->tangent, sizeof(double) * one);
   memcpy(s->z, point->x, sizeof(double) * one);
@@ -234,6 +284,27 @@ void mhb_peak_system_derivatives(mhb_curve_system *system, const mhb_curve_point
   }
   mhb_slope_by_damping(b, s->by_q);
   by[MHB_PEAK_BY_DAMPING] = s->amplitude.by_damping - dot(s->n, s->adjoint, s->by_q);
+}
+
+const char *mhb_peak_system_choose(mhb_curve_system *system, const double *x, double omega,
+                                   double value) {
+  return mhb_multiplier_condition_choose(of(system)->condition, x, omega, value);
+}
+
+void mhb_peak_system_accept(mhb_curve_system *system, const mhb_curve_point *point) {
+  ensure(system, point);
+  mhb_multiplier_condition_accept(of(system)->condition);
+}
+
+void mhb_peak_system_judge(mhb_curve_system *system, const mhb_curve_point *point,
+                           mhb_multipliers *multipliers, bool *finer) {
+  mhb_peak_system *s = of(system);
+  mhb_multiplier_condition_judge(s->condition, point->evaluation, point->x, multipliers, finer);
+}
+
+void mhb_peak_system_adapt(mhb_curve_system *system) {
+  mhb_multiplier_condition_adapt(of(system)->condition);
+  of(system)->value = NAN;
 }
 
 static void evaluate(mhb_curve_system *system, mhb_curve_point *point) {
@@ -289,14 +360,15 @@ static bool newton_step(mhb_curve_system *system, const mhb_curve_point *point, 
 
 static mhb_reason solve_at_value(mhb_curve_system *system, double tolerance,
                                  mhb_curve_point *point) {
-  int    one = of(system)->n + 1;
+  int    one = of(system)->n + 1, most = system->costly ? MAX_HALVINGS_OF_PEAK : MAX_HALVINGS;
   double delta[one + 1], from[one], seen[MAX_NEWTON];
   linearise(system, point);
   double residual = mhb_norm(point->r, one);
   for (point->iterations = 0; point->iterations < MAX_NEWTON; point->iterations++) {
     if (residual <= tolerance * mhb_norm(point->x, one)) return MHB_CONVERGED;
     seen[point->iterations] = residual;
-    if (point->iterations >= 3 && residual > SLOW_GAIN * seen[point->iterations - 3])
+    if (system->costly && point->iterations >= 3 &&
+        residual > SLOW_GAIN * seen[point->iterations - 3])
       return MHB_NO_DESCENT;
     if (!newton_step(system, point, delta)) return MHB_SINGULAR;
     memcpy(from, point->x, sizeof from);
@@ -306,7 +378,7 @@ static mhb_reason solve_at_value(mhb_curve_system *system, double tolerance,
       linearise(system, point);
       residual = mhb_norm(point->r, one);
       if (residual < LEAST_GAIN * before) break;
-      if (halvings == MAX_HALVINGS) return MHB_NO_DESCENT;
+      if (halvings == most) return MHB_NO_DESCENT;
     }
   }
   return MHB_MAX_ITERATIONS;
@@ -330,13 +402,17 @@ static void copy(const mhb_curve_system *system, const double *x, int j, double 
 static void destroy(mhb_curve_system *system) {
   mhb_peak_system *s = of(system);
   if (s->displaced) evaluation_destroy(system, s->displaced);
+  mhb_multiplier_condition_destroy(s->condition);
   shb_arena_free(&s->arena);
   free(s);
 }
 
 static double unit_of_value(const mhb_curve_system *system, const mhb_curve_point *point) {
-  (void)system;
-  return fabs(point->value);
+  return fmax(fabs(point->value), of(system)->least_unit);
+}
+
+void mhb_peak_system_passes_zero(mhb_curve_system *system, double least_unit) {
+  of(system)->least_unit = least_unit;
 }
 
 static shb_status fill(mhb_peak_system *s) {
@@ -357,6 +433,9 @@ static shb_status fill(mhb_peak_system *s) {
   SHB_CHECK(!arena->failed, SHB_ERR_IO, "out of memory to follow peaks of %d unknowns", s->n);
   s->value     = NAN;
   s->border[n] = 1;
+  if (s->kind == MHB_TRACK_FLIP || s->kind == MHB_TRACK_NEIMARK_SACKER)
+    return mhb_multiplier_condition_create(s->balance, s->parameter, s->kind == MHB_TRACK_FLIP,
+                                           s->rate, &s->condition);
   return mhb_evaluation_create(s->balance, &s->displaced);
 }
 
@@ -370,10 +449,11 @@ shb_status mhb_peak_system_create(mhb_balance *balance, mhb_tracked_point kind, 
   s->output         = output;
   s->parameter      = parameter;
   s->rate           = range / length;
+  s->length         = length;
   s->n              = balance->n;
   s->base           = (mhb_curve_system){.n                  = balance->n + 1,
                                          .least              = mhb_parameter_least(parameter),
-                                         .plain              = kind == MHB_TRACK_PEAK,
+                                         .plain              = kind != MHB_TRACK_FOLD,
                                          .costly             = kind == MHB_TRACK_PEAK,
                                          .row_length         = balance->n + 1,
                                          .copies             = 1,

@@ -1,5 +1,5 @@
-/* Peaks and folds of a response curve as solutions with a free frequency, to be followed along a
- * parameter q (docs/theory/tracking.md).
+/* Peaks, folds, flips and Neimark-Sacker points of a response curve as solutions with a free
+ * frequency, to be followed along a parameter q (docs/theory/tracking.md).
  *
  *   z = (x, xi),  xi = length omega/range    unknowns, m
  *   r(x, omega, q) = 0                          the balance
@@ -16,28 +16,37 @@
  * one more linearisation. The error of the row is some 1e-6, which slows Newton's method slightly
  * and leaves its limit as it is.
  *
+ * At a flip or a Neimark-Sacker point G = 0.01 length g in its place, g of multiplier_condition.h.
+ *
  * Sources: Govaerts 2000 (bordered systems); Krack, Gross 2019 (peaks of a response curve). */
 #ifndef MHB_TRACKING_PEAK_SYSTEM_H
 #define MHB_TRACKING_PEAK_SYSTEM_H
 
 #include "mhb/continuation/curve.h"
+#include "mhb/tracking/multiplier_condition.h"
 #include "mhb/tracking/output_amplitude.h"
 
-typedef enum { MHB_TRACK_PEAK, MHB_TRACK_FOLD } mhb_tracked_point;
+typedef enum {
+  MHB_TRACK_PEAK,
+  MHB_TRACK_FOLD,
+  MHB_TRACK_FLIP,
+  MHB_TRACK_NEIMARK_SACKER
+} mhb_tracked_point;
 
 /* What a linearised point of the system tells besides G. */
 typedef struct {
   double amplitude;  /* m, of the output */
   double curvature;  /* d2A/ds2 along the response curve, 1/m: below 0 at a maximum */
-  double by_value;   /* dA/dq along the peaks; for a fold d xi/dq, m a unit */
+  double by_value;   /* dA/dq along the peaks; for a fold d xi/dq, m a unit; else 0 */
   double slip_share; /* smallest share of the period in which a nonlinear pair slips or is open; 0:
                         all pairs are linear */
+  mhb_multiplier_place multiplier; /* of a flip or Neimark-Sacker point */
 } mhb_peak_report;
 
 typedef struct mhb_peak_system mhb_peak_system;
 
-/* The system of the peaks of an output (output_amplitude.h), or of the folds. The balance must
- * outlive it and be used by nothing else meanwhile.
+/* The system of the peaks of an output (output_amplitude.h), or of the other points. The balance
+ * must outlive it and be used by nothing else meanwhile.
  *   parameter  in  q, not the frequency
  *   range      in  rad/s, the width of the frequency range
  *   length     in  m, the size of the motion
@@ -49,8 +58,26 @@ shb_status mhb_peak_system_create(mhb_balance *balance, mhb_tracked_point kind, 
 /* The system for a curve, which takes it over. */
 mhb_curve_system *mhb_peak_system_base(mhb_peak_system *system);
 
+/* Steps in q are relative to it, or to this where it is smaller: the range of q contains 0. */
+void mhb_peak_system_passes_zero(mhb_curve_system *system, double least_unit);
+
 /* Linearise a point and report. */
 mhb_peak_report mhb_peak_system_report(mhb_curve_system *system, const mhb_curve_point *point);
+
+/* Of flips and Neimark-Sacker points: choose the multiplier at a solution x[n] near the first one.
+ * Returns NULL, or why there is none. */
+const char *mhb_peak_system_choose(mhb_curve_system *system, const double *x, double omega,
+                                   double value);
+
+/* The point is on the curve: the multiplier is expected near that of this one. */
+void mhb_peak_system_accept(mhb_curve_system *system, const mhb_curve_point *point);
+
+/* The verdict's multipliers at a point; *finer: they took other sub-steps than the curve so far. */
+void mhb_peak_system_judge(mhb_curve_system *system, const mhb_curve_point *point,
+                           mhb_multipliers *multipliers, bool *finer);
+
+/* Take over the sub-steps of the last verdict; a point is to be corrected then. */
+void mhb_peak_system_adapt(mhb_curve_system *system);
 
 /* The derivatives of a peak, by the number of each. */
 enum {

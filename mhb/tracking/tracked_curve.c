@@ -9,6 +9,7 @@
 #include "mesh/base/progress.h"
 #include "mhb/balance/truncation_error.h"
 #include "mhb/branches/record.h"
+#include "mhb/continuation/corrector.h"
 #include "mhb/continuation/segment.h"
 #include "mhb/numerics/vector.h"
 
@@ -16,9 +17,15 @@
  * and the law's derivatives lose their meaning. */
 static const double LEAST_SLIP = 2e-3;
 
+/* A pair of multipliers meets on the real axis within this of its discriminant. */
+static const double MEETING = 1e-7;
+
+/* Least unit of the parameter in a range that contains 0, in ranges. */
+static const double NEAR_ZERO = 0.05;
+
 /* Beyond a kink amplitude and frequency differ by no more than this, relative. */
 static const double NEIGHBOUR = 2e-2;
-enum { MOST_KINKS = 12 };
+enum { MOST_KINKS = 12, MOST_REFINEMENTS = 2 };
 
 /* Error of an inflection's place on its step. The parameter has its extremum there: its own error
  * is of the order of the square. */
@@ -47,13 +54,46 @@ typedef struct {
   int                 segment;   /* under way */
   int                 direction; /* in which it began */
   double              clock;
-  bool                spoilt; /* a point has too large a truncation error */
+  bool                spoilt;      /* a point has too large a truncation error */
+  mhb_multipliers     multipliers; /* of the point judged last */
 } tracer;
 
 /* ---- what segments ask for ---- */
 
+static bool by_multiplier(const mhb_tracking *tracking) {
+  return tracking->kind == MHB_TRACK_FLIP || tracking->kind == MHB_TRACK_NEIMARK_SACKER;
+}
+
+/* The verdict on a point, t->multipliers. If it takes other sub-steps than the curve so far, the
+ * point is corrected with those. The verdict then finds its multiplier on the circle. */
+static void judge(tracer *t, mhb_curve_point *point) {
+  mhb_arclength *curve = t->host.curve;
+  const int      n     = curve->n;
+  double         fixed[n + 1], normal[n + 1], x[n], value = point->value;
+  bool           finer, at_end = value == curve->low || value == curve->high;
+  memset(fixed, 0, sizeof fixed);
+  fixed[n]                  = curve->parameter_scale;
+  const double discriminant = mhb_peak_system_report(curve->system, point).multiplier.discriminant;
+  mhb_peak_system_judge(curve->system, point, &t->multipliers, &finer);
+  if (discriminant > -MEETING) return; /* the place where a pair meets is located already */
+  for (int tries = 0; finer && tries < MOST_REFINEMENTS; tries++) {
+    mhb_peak_system_adapt(curve->system);
+    memcpy(normal, at_end ? fixed : point->tangent, sizeof normal);
+    memcpy(x, point->x, sizeof x);
+    bool moved = mhb_arclength_correct(curve, normal, 1, point);
+    if (!moved) { /* it stays where it was */
+      memcpy(point->x, x, sizeof x);
+      mhb_arclength_measure(curve, point);
+    }
+    if (!moved || at_end) point->value = value;
+    if (moved && !mhb_arclength_set_tangent(curve, point->tangent, point)) return;
+    mhb_peak_system_judge(curve->system, point, &t->multipliers, &finer);
+  }
+}
+
 static void estimate_event(mhb_segment_host *host, mhb_curve_point *point) {
   tracer *t = (tracer *)host;
+  if (by_multiplier(t->tracking)) judge(t, point);
   mhb_balance_use(t->balance, point->evaluation);
   point->truncation      = mhb_truncation_error(t->truncation, point->x);
   point->truncation_kind = (int)t->truncation->kind;
@@ -66,7 +106,9 @@ static shb_status estimate(mhb_segment_host *host, mhb_curve_point *point, bool 
 }
 
 static shb_status accept(mhb_segment_host *host, bool *moved) {
-  (void)host;
+  const tracer *t = (const tracer *)host;
+  if (by_multiplier(t->tracking))
+    mhb_peak_system_accept(host->curve->system, &host->curve->current);
   *moved = false;
   return SHB_OK;
 }
@@ -84,10 +126,22 @@ static shb_status started(mhb_segment_host *host, const mhb_seed *seed, mhb_end 
    * slip, along the hair of stuck solutions. */
   mhb_balance_use(t->balance, host->curve->current.evaluation);
   if (t->tracking->kind == MHB_TRACK_PEAK && sticks(t->balance)) *end = MHB_END_NO_START;
+  if (by_multiplier(t->tracking) && *end == MHB_END_NONE)
+    mhb_peak_system_accept(host->curve->system, &host->curve->current);
   if (*end != MHB_END_NONE) return SHB_OK;
   mhb_curve_place_free(&t->start);
   t->back = (mhb_curve_return){&t->start, 0};
   return mhb_curve_place_note(&t->start, host->curve->system, &host->curve->current, 1e-6);
+}
+
+/* A point where no other multiplier is outside is the border of the stable motions. */
+static void record_multiplier(tracer *t, mhb_curve_point *point) {
+  mhb_branch *branch   = &t->store->branch[t->segment];
+  const int   last     = branch->n_points - 1;
+  const bool  known    = t->multipliers.verdict != MHB_UNDECIDED;
+  branch->stable[last] = known ? t->multipliers.verdict != MHB_UNSTABLE : -1;
+  branch->multiplier[last] =
+      mhb_peak_system_report(t->host.curve->system, point).multiplier.multiplier;
 }
 
 static shb_status record(mhb_segment_host *host, mhb_curve_point *point, int special, bool *go_on) {
@@ -96,6 +150,7 @@ static shb_status record(mhb_segment_host *host, mhb_curve_point *point, int spe
   mhb_balance_use(t->balance, point->evaluation);
   mhb_balance_set_parameter(t->balance, t->tracking->parameter);
   SHB_TRY(mhb_record(t->store, t->segment, t->balance, point, special, now - t->clock));
+  if (by_multiplier(t->tracking)) record_multiplier(t, point);
   t->clock = now;
   /* the whole curve is followed again with more harmonics */
   const double most = t->tracking->tolerance;
@@ -128,7 +183,29 @@ static double amplitude_slope(mhb_arclength *curve, const mhb_curve_point *point
   return mhb_peak_system_report(curve->system, point).by_value;
 }
 
-enum { MOST_TESTS = 9 };
+/* Extremum of the frequency along flips and Neimark-Sacker points. */
+static double frequency_slope(mhb_arclength *curve, const mhb_curve_point *point, void *context) {
+  (void)context;
+  return point->tangent[curve->n - 1];
+}
+
+/* A pair meets on the real axis: its discriminant becomes positive. By the side it meets on. */
+static double meets(mhb_arclength *curve, const mhb_curve_point *point, int side) {
+  mhb_multiplier_place at = mhb_peak_system_report(curve->system, point).multiplier;
+  return side * creal(at.lambda) > 0 ? at.discriminant : -1;
+}
+
+static double meets_at_plus(mhb_arclength *curve, const mhb_curve_point *point, void *context) {
+  (void)context;
+  return meets(curve, point, 1);
+}
+
+static double meets_at_minus(mhb_arclength *curve, const mhb_curve_point *point, void *context) {
+  (void)context;
+  return meets(curve, point, -1);
+}
+
+enum { MOST_TESTS = 11 };
 
 static int make_tests(tracer *t, mhb_event_test test[MOST_TESTS]) {
   int  n    = 0;
@@ -154,6 +231,14 @@ static int make_tests(tracer *t, mhb_event_test test[MOST_TESTS]) {
                                  .direction = 1,
                                  .at_next   = true,
                                  .end       = MHB_END_TURNED};
+  if (t->tracking->kind == MHB_TRACK_NEIMARK_SACKER) {
+    test[n++] = (mhb_event_test){
+        .name = "pair meets at +1", .g = meets_at_plus, .direction = 1, .end = MHB_END_MEETS_PLUS};
+    test[n++] = (mhb_event_test){.name      = "pair meets at -1",
+                                 .g         = meets_at_minus,
+                                 .direction = 1,
+                                 .end       = MHB_END_MEETS_MINUS};
+  }
   test[n++] = (mhb_event_test){
       .name = "corner", .g = too_little_slip, .direction = 1, .end = MHB_END_CORNER};
   test[n++] = (mhb_event_test){.name      = "end of the frequency range",
@@ -164,7 +249,9 @@ static int make_tests(tracer *t, mhb_event_test test[MOST_TESTS]) {
   mhb_events_range_ends(test + n);
   n += 2;
   if (!peak) test[n++] = (mhb_event_test){.name = "cusp", .g = mhb_fold_test, .special = MHB_FOLD};
-  test[n++] = (mhb_event_test){.name = "optimum", .g = amplitude_slope, .special = MHB_OPTIMUM};
+  test[n++] = (mhb_event_test){.name = "optimum",
+                               .g = by_multiplier(t->tracking) ? frequency_slope : amplitude_slope,
+                               .special = MHB_OPTIMUM};
   return n;
 }
 
@@ -226,18 +313,22 @@ static bool may_be_kink(const tracer *t, mhb_end end) {
 
 static shb_status trace_half(tracer *t, const double *z, double value, int direction, int *segment,
                              mhb_end *end) {
-  double   further[t->balance->n + 1];
-  mhb_seed seed = {.kind       = MHB_SEED_SOLUTION,
-                   .x          = z,
-                   .value      = value,
-                   .direction  = direction,
-                   .skip_first = false};
+  mhb_curve_system *curve = t->host.curve->system;
+  double            further[t->balance->n + 1];
+  mhb_seed          seed = {.kind       = MHB_SEED_SOLUTION,
+                            .x          = z,
+                            .value      = value,
+                            .direction  = direction,
+                            .skip_first = false};
   SHB_TRY(mhb_response_branch(t->store, MHB_BRANCH_TRACKED, segment));
   t->segment         = *segment;
   t->direction       = direction;
   t->clock           = shb_seconds();
   t->host.max_points = t->tracking->max_points;
-  bool outside       = direction > 0 ? value >= t->tracking->high : value <= t->tracking->low;
+  if (by_multiplier(t->tracking) &&
+      mhb_peak_system_choose(curve, z, mhb_peak_system_omega(curve, z), value) != NULL)
+    return SHB_OK;
+  bool outside = direction > 0 ? value >= t->tracking->high : value <= t->tracking->low;
   if (outside) *end = direction > 0 ? MHB_END_HIGH : MHB_END_LOW;
   if (outside || t->spoilt) return SHB_OK;
   SHB_TRY(mhb_trace_segment(&t->host, &seed, end));
@@ -307,6 +398,9 @@ static shb_status make_curve(tracer *t, double length) {
   SHB_TRY(mhb_truncation_create(t->balance, &t->truncation));
   SHB_TRY(mhb_peak_system_create(t->balance, tracking->kind, tracking->output, tracking->parameter,
                                  tracking->frequency[1] - tracking->frequency[0], length, &system));
+  if (tracking->low <= 0)
+    mhb_peak_system_passes_zero(mhb_peak_system_base(system),
+                                NEAR_ZERO * (tracking->high - tracking->low));
   SHB_TRY(mhb_arclength_create(mhb_peak_system_base(system), tracking->low, tracking->high,
                                &t->host.curve));
   if (tracking->kind == MHB_TRACK_PEAK) {

@@ -18,6 +18,9 @@
  * interpolated between its points. */
 static const double ON_CURVE = 5e-4;
 
+/* Relative rounding of a value. */
+static const double ROUNDED = 1e-12;
+
 /* Peaks below this share of the highest of a sweep are not followed: they are not the highest near
  * by. Where they become the highest further on, another sweep has them. */
 static const double MINOR = 0.85;
@@ -60,7 +63,7 @@ typedef struct {
   mhb_response       *response;
   mhb_publisher       publisher;
   shb_progress       *progress;
-  int                 n_lost;  /* highest peaks of sweeps that led to no curve */
+  int                 n_lost;  /* highest peaks, or flips and the like, that led to no curve */
   double              lost_at; /* the first one's parameter */
 } tracking_run;
 
@@ -89,8 +92,14 @@ static const char *output_name(const tracking_run *run) {
 }
 
 static mhb_tracking tracking_of(const mhb_settings *settings, int output) {
+  static const mhb_tracked_point kind[MHB_N_TRACKS] = {
+      [MHB_TRACK_NOTHING]         = MHB_TRACK_PEAK,
+      [MHB_TRACK_PEAKS]           = MHB_TRACK_PEAK,
+      [MHB_TRACK_FOLDS]           = MHB_TRACK_FOLD,
+      [MHB_TRACK_FLIPS]           = MHB_TRACK_FLIP,
+      [MHB_TRACK_NEIMARK_SACKERS] = MHB_TRACK_NEIMARK_SACKER};
   return (mhb_tracking){
-      .kind       = settings->track == MHB_TRACK_FOLDS ? MHB_TRACK_FOLD : MHB_TRACK_PEAK,
+      .kind       = kind[settings->track],
       .output     = output,
       .parameter  = settings->parameter,
       .low        = settings->range[0],
@@ -124,21 +133,22 @@ static mhb_settings settings_at(const mhb_settings *settings, mhb_parameter para
   return s;
 }
 
-/* A frequency sweep at a value of the parameter, curves only.
- *   outline  in  its curves in outline, with the fewest harmonics where the case leaves their
- *                number to the program */
+/* A frequency sweep at a value of the parameter, curves only. Where the case leaves the number of
+ * harmonics to the program, it has the fewest. A sweep that locates peaks has as many as needed.
+ *   outline  in  its curves in outline */
 static shb_status sweep_at(const tracking_run *run, double value, bool outline,
                            mhb_response **response) {
-  mhb_settings s  = settings_at(run->asked, run->tracking.parameter, value);
-  s.parameter     = MHB_IN_FREQUENCY;
-  s.track         = MHB_TRACK_NOTHING;
-  s.stability     = MHB_STABILITY_NEVER;
+  mhb_settings s = settings_at(run->asked, run->tracking.parameter, value);
+  s.parameter    = MHB_IN_FREQUENCY;
+  s.track        = MHB_TRACK_NOTHING;
+  if (!mhb_track_by_multiplier(mhb_track_word(run->asked->track)))
+    s.stability = MHB_STABILITY_NEVER;
   s.lasting       = MHB_LASTING_NEVER;
   s.search.starts = 0;
   s.resume        = false;
   s.outline       = outline;
   if (outline) s.tolerance = fmax(s.tolerance, OUTLINE);
-  if (outline && s.motion_tolerance > 0) {
+  if ((outline || run->tracking.kind != MHB_TRACK_PEAK) && s.motion_tolerance > 0) {
     s.harmonics        = least_harmonics(&s) * s.subharmonics;
     s.motion_tolerance = 0;
   }
@@ -166,17 +176,24 @@ static void sweep_peaks_free(sweep_peaks *s) {
   *s = (sweep_peaks){0};
 }
 
-/* The peak, or fold, at a point of the sweep. */
+/* The point to be followed at a point of the sweep. */
 static bool is_seed(const tracking_run *run, const sweep_peaks *s, const mhb_branch *branch, int i,
                     mhb_sweep_peak *peak) {
-  if (i == 0 || i == branch->n_points - 1) return false;
-  if (run->tracking.kind == MHB_TRACK_FOLD) {
-    *peak = (mhb_sweep_peak){
-        .branch = branch, .point = i, .frequency = branch->frequency[i], .weight = {0, 1, 0}};
-    return branch->special[i] == MHB_FOLD;
-  }
-  return (s->outline || branch->special[i] == MHB_PEAK) &&
-         mhb_sweep_peak_at(s->sweep, branch, i, run->tracking.output, s->outline, peak);
+  const int        output    = run->tracking.output;
+  static const int special[] = {[MHB_TRACK_PEAK]           = MHB_PEAK,
+                                [MHB_TRACK_FOLD]           = MHB_FOLD,
+                                [MHB_TRACK_FLIP]           = MHB_FLIP,
+                                [MHB_TRACK_NEIMARK_SACKER] = MHB_NEIMARK_SACKER};
+  if (!s->outline && branch->special[i] != special[run->tracking.kind]) return false;
+  if (run->tracking.kind == MHB_TRACK_PEAK)
+    return i > 0 && i < branch->n_points - 1 &&
+           mhb_sweep_peak_at(s->sweep, branch, i, output, s->outline, peak);
+  *peak = (mhb_sweep_peak){.branch    = branch,
+                           .point     = i,
+                           .frequency = branch->frequency[i],
+                           .amplitude = mhb_response_amplitude(s->sweep, branch, i, output),
+                           .weight    = {0, 1, 0}};
+  return true;
 }
 
 /* Find the peaks of the sweep. */
@@ -197,23 +214,43 @@ static shb_status find_peaks(const tracking_run *run, sweep_peaks *s) {
   return SHB_OK;
 }
 
-/* Frequency and amplitude of a tracked branch at a value of the parameter, linear between its
- * points; NAN beyond its ends. At a place that a fold's curve passes twice, the one nearest to a
- * frequency. */
+/* Frequency between points i and i + 1 of a branch, by the cubic through them and those beside.
+ * Linear, if the parameter does not run one way there. */
+static double between(const mhb_branch *branch, int i, double value, bool cubic) {
+  const int    from = cubic && i > 0 ? i - 1 : i, most = branch->n_points - 1;
+  const int    to  = cubic && i + 2 <= most ? i + 2 : i + 1;
+  const double way = branch->value[i + 1] - branch->value[i];
+  double       sum = 0;
+  for (int j = from; j < to; j++)
+    if ((branch->value[j + 1] - branch->value[j]) * way <= 0)
+      return between(branch, i, value, false);
+  for (int j = from; j <= to; j++) {
+    double weight = 1;
+    for (int k = from; k <= to; k++)
+      if (k != j) weight *= (value - branch->value[k]) / (branch->value[j] - branch->value[k]);
+    sum += weight * branch->frequency[j];
+  }
+  return sum;
+}
+
+/* Frequency and amplitude of a tracked branch at a value of the parameter; NAN beyond its ends. At
+ * a place that the curve passes twice, the ones nearest to a frequency. */
 static double frequency_at(const tracking_run *run, const mhb_branch *branch, double value,
                            double near, double *amplitude) {
   double best = NAN;
   for (int i = 0; i + 1 < branch->n_points; i++) {
     double from = branch->value[i], to = branch->value[i + 1];
-    if (from == to || (value - from) * (value - to) > 0) continue;
-    double part = (value - from) / (to - from);
-    double f    = branch->frequency[i] + part * (branch->frequency[i + 1] - branch->frequency[i]);
-    if (!isnan(best) && fabs(f - near) >= fabs(best - near)) continue;
-    double a[2];
-    for (int end = 0; end < 2; end++)
-      a[end] = mhb_response_amplitude(run->response, branch, i + end, run->tracking.output);
-    best       = f;
-    *amplitude = a[0] + part * (a[1] - a[0]);
+    double slack = ROUNDED * fmax(fabs(from), fabs(to)); /* an end of the range is rounded */
+    if (from == to || value < fmin(from, to) - slack || value > fmax(from, to) + slack) continue;
+    for (int cubic = 0; cubic < 2; cubic++) { /* the line is better at a kink */
+      double f = between(branch, i, value, cubic);
+      if (!isnan(best) && fabs(f - near) >= fabs(best - near)) continue;
+      double a[2];
+      for (int end = 0; end < 2; end++)
+        a[end] = mhb_response_amplitude(run->response, branch, i + end, run->tracking.output);
+      best       = f;
+      *amplitude = a[0] + (value - from) / (to - from) * (a[1] - a[0]);
+    }
   }
   return best;
 }
@@ -235,6 +272,11 @@ static void drop_last(mhb_response *response) {
   bool drop[response->n_branches];
   for (int b = 0; b < response->n_branches; b++) drop[b] = b == response->n_branches - 1;
   mhb_response_drop(response, drop);
+}
+
+/* Both ends of the range are ends of a tracked curve. */
+static const char *end_text(mhb_end end) {
+  return mhb_end_text(end == MHB_END_LOW ? MHB_END_HIGH : end);
 }
 
 /* Follow a point of a sweep with m harmonics, into a new branch.
@@ -272,7 +314,7 @@ static shb_status follow_with(tracking_run *run, const mhb_sweep_peak *peak, dou
   if (status != SHB_OK) return status;
   mhb_branch *branch = &run->response->branch[index];
   char        reason[200];
-  snprintf(reason, sizeof reason, "%s; %s", mhb_end_text(end.low), mhb_end_text(end.high));
+  snprintf(reason, sizeof reason, "%s; %s", end_text(end.low), end_text(end.high));
   branch->reason   = strdup(reason);
   branch->searched = branch->complete = true;
   *good                               = *found;
@@ -298,17 +340,19 @@ static shb_status follow(tracking_run *run, const mhb_sweep_peak *peak, double v
   return SHB_OK;
 }
 
-/* Follow the peaks of a sweep that are not known.
- *   lost  out  one that is as high as the highest could not be followed */
-static shb_status follow_all(tracking_run *run, const sweep_peaks *s, bool *lost) {
-  *lost = false;
+/* Follow the points of a sweep that are not known.
+ *   lost  out  how many could not be followed; of peaks and folds those as high as the highest */
+static shb_status follow_all(tracking_run *run, const sweep_peaks *s, int *lost) {
+  *lost = 0;
   for (int i = 0; i < s->n && !shb_interrupted(); i++) {
     const mhb_sweep_peak *peak = &s->peak[i];
     bool                  gone;
     if (run->tracking.kind == MHB_TRACK_PEAK && peak->amplitude < MINOR * s->most) continue;
     if (is_known(run, s->value, peak)) continue;
     SHB_TRY(follow(run, peak, s->value, &gone));
-    *lost = *lost || (gone && peak->amplitude >= HIGHEST * s->most);
+    bool counts =
+        mhb_track_by_multiplier(run->response->track) || peak->amplitude >= HIGHEST * s->most;
+    *lost += gone && counts;
   }
   return SHB_OK;
 }
@@ -325,15 +369,16 @@ static shb_status make_response(tracking_run *run, const mhb_response *sweep) {
       mhb_response_create(run->model->n_pairs, run->model->n_probes, run->settings.harmonics);
   SHB_CHECK(run->response, SHB_ERR_IO, "out of memory");
   run->response->unfinished = true;
-  run->response->track      = strdup(run->tracking.kind == MHB_TRACK_FOLD ? "fold" : "peak");
+  run->response->track      = strdup(mhb_track_word(run->asked->track));
   run->response->output     = strdup(output_name(run));
   SHB_CHECK(run->response->track && run->response->output, SHB_ERR_IO, "out of memory");
-  run->response->psi = sweep->psi;
-  run->response->phi = sweep->phi;
+  run->response->tracks_multiplier = mhb_track_by_multiplier(run->response->track);
+  run->response->psi               = sweep->psi;
+  run->response->phi               = sweep->phi;
   return mhb_response_describe(run->response, run->model, &run->settings);
 }
 
-/* The peaks of a sweep at a value; folds need a sweep that is more than an outline. */
+/* The peaks of a sweep at a value. Other points need a sweep that is more than an outline. */
 static shb_status find_seeds(const tracking_run *run, double value, bool outline, sweep_peaks *s) {
   *s                = (sweep_peaks){.value = value, .outline = outline};
   shb_status status = sweep_at(run, value, outline, &s->sweep);
@@ -342,12 +387,12 @@ static shb_status find_seeds(const tracking_run *run, double value, bool outline
   return status;
 }
 
-/* Follow the peaks of a sweep in outline that are not known yet. If the highest cannot be followed,
- * a sweep that locates it is made.
- *   lost  out  that did not help */
-static shb_status follow_seeds(tracking_run *run, const sweep_peaks *outline, bool *lost) {
+/* Follow the points of a sweep that are not known yet. If the highest peak of an outline cannot be
+ * followed, a sweep that locates it is made.
+ *   lost  out  that did not help; how many are lost, as for follow_all */
+static shb_status follow_seeds(tracking_run *run, const sweep_peaks *outline, int *lost) {
   SHB_TRY(follow_all(run, outline, lost));
-  if (!*lost || shb_interrupted()) return SHB_OK;
+  if (*lost == 0 || shb_interrupted()) return SHB_OK;
   if (outline->outline) {
     sweep_peaks located;
     SHB_TRY(find_seeds(run, outline->value, false, &located));
@@ -355,7 +400,8 @@ static shb_status follow_seeds(tracking_run *run, const sweep_peaks *outline, bo
     sweep_peaks_free(&located);
     if (status != SHB_OK) return status;
   }
-  if (*lost && run->n_lost++ == 0) run->lost_at = outline->value;
+  if (*lost > 0 && run->n_lost == 0) run->lost_at = outline->value;
+  run->n_lost += run->response->tracks_multiplier ? *lost : *lost > 0;
   return SHB_OK;
 }
 
@@ -372,7 +418,9 @@ static shb_status sweep_and_follow(tracking_run *run, double value, double ampli
   double started = shb_processor_seconds();
   SHB_TRY(find_seeds(run, value, true, &seeds));
   run->response->cost.further += shb_processor_seconds() - started;
-  shb_status status = follow_seeds(run, &seeds, higher);
+  int        lost;
+  shb_status status = follow_seeds(run, &seeds, &lost);
+  *higher           = lost > 0;
   for (int i = 0; i < seeds.n; i++)
     *higher = *higher || (seeds.peak[i].amplitude > amplitude * MAY_BE_HIGHER &&
                           !is_known(run, value, &seeds.peak[i]));
@@ -459,7 +507,7 @@ static shb_status run_all(tracking_run *run, sweep_peaks seeds[N_SWEEPS]) {
     shb_progress_show(run->progress, 20 + 80. * i / N_SWEEPS, "following from %s %.6g %s",
                       mhb_parameter_name(run->tracking.parameter), value[i],
                       mhb_parameter_unit(run->tracking.parameter));
-    bool unused;
+    int unused;
     SHB_TRY(follow_seeds(run, &seeds[i], &unused));
   }
   int budget = MOST_FURTHER_SWEEPS;
@@ -478,6 +526,12 @@ shb_status mhb_tracked_response(const modal_model *model, const mhb_settings *se
   sweep_peaks seeds[N_SWEEPS] = {{0}};
   *out                        = NULL;
   SHB_TRY(mhb_output_named(model, settings->output, &output));
+  SHB_CHECK(
+      !mhb_track_by_multiplier(mhb_track_word(settings->track)) || mhb_judges_stability(settings),
+      SHB_ERR_INPUT,
+      "mhb.track: %s needs multipliers; that takes a modal file with the modes of all nodal "
+      "diameters (modal.nodal_diameters: all) and mhb.stability not never",
+      mhb_track_word(settings->track));
   tracking_run run = {.model    = model,
                       .asked    = settings,
                       .settings = *settings,
@@ -495,6 +549,11 @@ shb_status mhb_tracked_response(const modal_model *model, const mhb_settings *se
   if (shb_interrupted())
     return shb_fail(SHB_INTERRUPTED, __FILE__, __LINE__,
                     "interrupted; the curves so far are saved");
+  SHB_CHECK(run.n_lost == 0 || run.tracking.kind < MHB_TRACK_FLIP, SHB_NOT_CONVERGED,
+            "%d %s point%s of sweeps could not be followed, the first at %s %g %s", run.n_lost,
+            run.response->track, run.n_lost == 1 ? "" : "s",
+            mhb_parameter_name(run.tracking.parameter), run.lost_at,
+            mhb_parameter_unit(run.tracking.parameter));
   SHB_CHECK(run.n_lost == 0, SHB_NOT_CONVERGED,
             "the highest peak of %d sweep%s could not be followed, the first at %s %g %s",
             run.n_lost, run.n_lost == 1 ? "" : "s", mhb_parameter_name(run.tracking.parameter),

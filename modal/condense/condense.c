@@ -5,15 +5,24 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "fem/body/mass_product.h"
 #include "fem/solver/petsc_error.h"
 #include "mesh/base/constants.h"
 #include "modal/common/phases.h"
 #include "modal/condense/residual_modes.h"
 
-/* BATCH: right-hand sides per solve; more save no time but need memory. MAX_COLUMNS: columns of
+/* BATCH: right-hand sides per solve, at most; BATCH_NUMBERS: numbers in one matrix of them, at most.
+ * More save no time but need memory. MAX_COLUMNS: columns of
  * which residual modes are made at most, all at once. MAX_NUMBERS: numbers in their vectors, at
  * most. */
-enum { BATCH = 32, MAX_COLUMNS = 96, BLOCKS = MODAL_RESIDUAL_BLOCKS, MAX_NUMBERS = 1 << 27 };
+enum {
+  BATCH         = 80,
+  LEAST_BATCH   = 40,
+  BATCH_NUMBERS = 1 << 24,
+  MAX_COLUMNS   = 96,
+  BLOCKS        = MODAL_RESIDUAL_BLOCKS,
+  MAX_NUMBERS   = 1 << 27
+};
 
 /* Contribution of a residual mode that is not kept, relative to the largest receptance, at half the
  * eigenvalue of the last mode. */
@@ -158,7 +167,7 @@ static PetscErrorCode compute_chain(workspace *w, int first, int count, bool sin
       PetscCall(modal_dofs_sample(&w->to->probe, w->system, V, b, b, w->probe[i]));
     }
     if (i == last && !single_batch) break;
-    PetscCall(modal_mass_multiply(w->system, V, w->B));
+    PetscCall(fem_mass_multiply(w->system->M, V, w->B));
     if (single_batch && i < BLOCKS) PetscCall(products(w, V, w->B, w->moment[2 * i + 1]));
     if (single_batch && i == BLOCKS) PetscCall(column_products(V, w->B, first, count, w->tail[1]));
     if (!single_batch && i == 1) PetscCall(column_products(V, w->B, first, count, w->tail[0]));
@@ -378,6 +387,13 @@ static bool fits_single_batch(const workspace *w) {
   return w->n_column <= MAX_COLUMNS && w->n_column <= room;
 }
 
+/* Columns of a batch where not all fit in one. */
+static int batch_size(const workspace *w) {
+  const double room = (double)BATCH_NUMBERS / (3. * (double)w->system->n_free);
+  const int    size = (int)fmin(fmax(room, LEAST_BATCH), BATCH) / LEAST_BATCH * LEAST_BATCH;
+  return w->n_column < size ? w->n_column : size;
+}
+
 /* Residual terms belong to contact dofs: without contact there are none. */
 static void drop_residual_terms(modal_model *model) {
   free(model->load_tail);
@@ -405,7 +421,7 @@ static shb_status fill(workspace *w, shb_progress *progress, modal_model *model)
     return SHB_OK;
   }
   const bool single_batch = fits_single_batch(w);
-  const int  batch        = single_batch || n < BATCH ? n : BATCH;
+  const int  batch        = single_batch ? n : batch_size(w);
   FEM_PETSC(create_batch(w, batch));
   for (int first = 0; first < n; first += batch) {
     int count = n - first < batch ? n - first : batch, stop = shb_interrupted();

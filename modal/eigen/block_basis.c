@@ -4,9 +4,11 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "fem/body/mass_product.h"
 #include "modal/common/random_vector.h"
+#include "modal/eigen/block_products.h"
 
-static const PetscScalar one = 1, minus = -1, zero = 0;
+static const PetscScalar one = 1;
 
 PetscErrorCode modal_block_basis_create(Mat M, KSP ksp, int p, int capacity, modal_block_basis *b) {
   PetscInt rows;
@@ -50,6 +52,7 @@ PetscErrorCode modal_block_basis_randomise(const modal_block_basis *b, uint64_t 
   PetscFunctionBeginUser;
   PetscCall(MatGetOwnershipRange(b->W, &first, NULL));
   PetscCall(MatDenseGetArrayWrite(b->W, &W));
+#pragma omp parallel for collapse(2) schedule(static)
   for (size_t c = 0; c < (size_t)b->p; c++)
     for (size_t i = 0; i < (size_t)b->rows; i++) {
       const uint64_t key         = ((uint64_t)first + i) * (uint64_t)b->p + (uint64_t)c;
@@ -61,50 +64,52 @@ PetscErrorCode modal_block_basis_randomise(const modal_block_basis *b, uint64_t 
 
 PetscErrorCode modal_block_basis_apply_mass(const modal_block_basis *b) {
   PetscFunctionBeginUser;
-  for (int c = 0; c < b->p; c++) {
-    Vec w, mw;
-    PetscCall(MatDenseGetColumnVecRead(b->W, c, &w));
-    PetscCall(MatDenseGetColumnVecWrite(b->MW, c, &mw));
-    PetscCall(MatMult(b->M, w, mw));
-    PetscCall(MatDenseRestoreColumnVecWrite(b->MW, c, &mw));
-    PetscCall(MatDenseRestoreColumnVecRead(b->W, c, &w));
-  }
+  PetscCall(fem_mass_multiply(b->M, b->W, b->MW));
+  PetscFunctionReturn(0);
+}
+
+/* out_k = Q_k^T Y for n blocks, sums of all ranks. */
+static PetscErrorCode inner_blocks(const modal_block_basis *b, int n, double *const *Q,
+                                   const double *Y, double *out) {
+  const size_t p = (size_t)b->p;
+  PetscFunctionBeginUser;
+  PetscCheck(modal_block_inner((size_t)b->rows, p, (size_t)n, Q, Y, out), PETSC_COMM_SELF,
+             PETSC_ERR_MEM, "no memory for products of blocks");
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, out, n * b->p * b->p, MPI_DOUBLE, MPI_SUM, b->comm));
   PetscFunctionReturn(0);
 }
 
 PetscErrorCode modal_block_basis_inner(const modal_block_basis *b, const double *X, const double *Y,
                                        double *out) {
+  double *block = (double *)X;
   PetscFunctionBeginUser;
-  PetscCallBLAS("BLASgemm", BLASgemm_("T", "N", &b->p, &b->p, &b->rows, &one, X, &b->rows, Y,
-                                      &b->rows, &zero, out, &b->p));
-  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, out, b->p * b->p, MPI_DOUBLE, MPI_SUM, b->comm));
+  PetscCall(inner_blocks(b, 1, &block, Y, out));
   PetscFunctionReturn(0);
 }
 
-/* W -= Q_k C */
-static PetscErrorCode subtract(const modal_block_basis *b, int k, const double *C, double *W) {
-  PetscFunctionBeginUser;
-  PetscCallBLAS("BLASgemm", BLASgemm_("N", "N", &b->rows, &b->p, &b->p, &minus, b->Q[k], &b->rows,
-                                      C, &b->p, &one, W, &b->rows));
-  PetscFunctionReturn(0);
-}
-
-PetscErrorCode modal_block_basis_project_out(const modal_block_basis *b, double *last) {
+/* W -= Q Q^T M W, with MW = M W before it. The coefficients of the last block are added to last (or
+ * NULL). */
+static PetscErrorCode project_out(const modal_block_basis *b, double *last) {
+  const size_t  each = (size_t)b->p * (size_t)b->p, n = (size_t)b->n;
   double       *W, *C;
   const double *MW;
   PetscFunctionBeginUser;
   PetscCall(modal_block_basis_apply_mass(b));
-  PetscCall(PetscMalloc1((size_t)(b->p * b->p), &C));
+  PetscCall(PetscMalloc1(n * each + 1, &C));
   PetscCall(MatDenseGetArray(b->W, &W));
   PetscCall(MatDenseGetArrayRead(b->MW, &MW));
-  for (int k = 0; k < b->n; k++) {
-    PetscCall(modal_block_basis_inner(b, b->Q[k], MW, C));
-    PetscCall(subtract(b, k, C, W));
-  }
-  for (int i = 0; last && b->n > 0 && i < b->p * b->p; i++) last[i] += C[i];
+  PetscCall(inner_blocks(b, b->n, b->Q, MW, C));
+  modal_block_subtract((size_t)b->rows, (size_t)b->p, n, b->Q, C, W);
+  for (size_t i = 0; last && n > 0 && i < each; i++) last[i] += C[(n - 1) * each + i];
   PetscCall(MatDenseRestoreArrayRead(b->MW, &MW));
   PetscCall(MatDenseRestoreArray(b->W, &W));
   PetscCall(PetscFree(C));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode modal_block_basis_project_out(const modal_block_basis *b) {
+  PetscFunctionBeginUser;
+  PetscCall(project_out(b, NULL));
   PetscFunctionReturn(0);
 }
 
@@ -149,8 +154,7 @@ PetscErrorCode modal_block_basis_orthonormalise(const modal_block_basis *b, doub
   PetscFunctionBeginUser;
   *good = true;
   for (int i = 0; i < b->p * b->p; i++) R[i] = i % (b->p + 1) == 0;
-  for (int pass = 0; pass < (b->n > 0 ? 2 : 1); pass++)
-    PetscCall(modal_block_basis_project_out(b, D));
+  for (int pass = 0; pass < (b->n > 0 ? 2 : 1); pass++) PetscCall(project_out(b, D));
   for (int pass = 0; pass < 2 && *good; pass++)
     PetscCall(modal_block_basis_cholesky_qr(b, R, good));
   PetscFunctionReturn(0);

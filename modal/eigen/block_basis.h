@@ -38,9 +38,8 @@ PetscErrorCode modal_block_basis_apply_mass(const modal_block_basis *b);
 PetscErrorCode modal_block_basis_inner(const modal_block_basis *b, const double *X, const double *Y,
                                        double *out);
 
-/* W -= Q Q^T M W, with MW = M W on entry to the projection. The coefficients of the last block are
- * added to last (or NULL). */
-PetscErrorCode modal_block_basis_project_out(const modal_block_basis *b, double *last);
+/* W -= Q Q^T M W, with MW = M W on entry to the projection. */
+PetscErrorCode modal_block_basis_project_out(const modal_block_basis *b);
 
 /* Cholesky QR in the M inner product: W = W' R with W'^T M W' = 1, MW = M W alike. MW = M W on
  * entry. product = R product. *good is false if W has not full rank. */

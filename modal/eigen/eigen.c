@@ -136,22 +136,6 @@ PetscErrorCode modal_eigen_inverse(const modal_eigen *eigen, Mat B, Mat X) {
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode modal_mass_multiply(const fem_system *system, Mat X, Mat Y) {
-  PetscInt n;
-  Vec      x, y;
-
-  PetscFunctionBeginUser;
-  PetscCall(MatGetSize(X, NULL, &n));
-  for (PetscInt c = 0; c < n; c++) {
-    PetscCall(MatDenseGetColumnVecRead(X, c, &x));
-    PetscCall(MatDenseGetColumnVecWrite(Y, c, &y));
-    PetscCall(MatMult(system->M, x, y));
-    PetscCall(MatDenseRestoreColumnVecWrite(Y, c, &y));
-    PetscCall(MatDenseRestoreColumnVecRead(X, c, &x));
-  }
-  PetscFunctionReturn(0);
-}
-
 PetscErrorCode modal_eigen_project_out(const fem_system *system, const modal_eigen *eigen, Mat X) {
   const PetscScalar *phi, *m_phi;
   PetscScalar       *x, *coefficient, one = 1, minus = -1, zero = 0;

@@ -47,9 +47,6 @@ PetscErrorCode modal_eigen_solve(const fem_system *system, const modal_eigen_set
 /* X = (K - shift M)^-1 B, all columns at once. */
 PetscErrorCode modal_eigen_inverse(const modal_eigen *eigen, Mat B, Mat X);
 
-/* Y = M X, column by column. */
-PetscErrorCode modal_mass_multiply(const fem_system *system, Mat X, Mat Y);
-
 /* X -= phi phi^T M X: remove the modes from every column. */
 PetscErrorCode modal_eigen_project_out(const fem_system *system, const modal_eigen *eigen, Mat X);
 

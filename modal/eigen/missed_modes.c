@@ -115,7 +115,7 @@ static PetscErrorCode apply(const search *s) {
   PetscFunctionBeginUser;
   PetscCall(project(b, s->residual, s->Y));
   PetscCall(KSPMatSolve(b->ksp, b->MW, b->W));
-  PetscCall(modal_block_basis_project_out(b, NULL));
+  PetscCall(modal_block_basis_project_out(b));
   PetscCallBLAS("BLASgemm", BLASgemm_("N", "N", &b->p, &b->p, &b->p, &one, s->F, &b->p, s->Y, &b->p,
                                       &zero, s->C, &b->p));
   PetscCall(add(b, one, s->residual, s->C, false));
@@ -142,7 +142,7 @@ static PetscErrorCode normalise(const search *s, int k, double t, double *B, boo
   least = fabs(B[0]);
   for (int i = 1; i < b->p; i++) least = fmin(least, fabs(B[i * (b->p + 1)]));
   if (!*good || least > 1e-3 * t) PetscFunctionReturn(0);
-  PetscCall(modal_block_basis_project_out(b, NULL));
+  PetscCall(modal_block_basis_project_out(b));
   PetscCall(modal_block_basis_apply_mass(b));
   PetscCall(orthogonalise(s, s->current));
   if (k > 0) PetscCall(orthogonalise(s, s->previous));

@@ -275,6 +275,7 @@ static void copy_rest(const modal_model *a, modal_model *b) {
   const size_t r = (size_t)a->n_residual, real = sizeof(double), both = sizeof(double complex);
   b->frequency           = copy(a->frequency, m * real);
   b->damping_ratio       = copy(a->damping_ratio, m * real);
+  b->coriolis            = copy(a->coriolis, m * m * real);
   b->eigen_residual      = copy(a->eigen_residual, m * real);
   b->residual_frequency  = copy(a->residual_frequency, r * real);
   b->residual_force      = copy(a->residual_force, K * r * both);
@@ -323,6 +324,7 @@ static bool is_whole(const modal_model *a, const modal_model *b) {
                               a->probe_contact_fourth,
                               a->frequency,
                               a->damping_ratio,
+                              a->coriolis,
                               a->modal_force,
                               a->probe,
                               a->residual_force,
@@ -343,6 +345,7 @@ static bool is_whole(const modal_model *a, const modal_model *b) {
                               b->probe_contact_fourth,
                               b->frequency,
                               b->damping_ratio,
+                              b->coriolis,
                               b->modal_force,
                               b->probe,
                               b->residual_force,

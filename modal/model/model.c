@@ -123,6 +123,7 @@ static const double *imaginary_of(const void *data, const modal_model *m, const 
     const double *re, *im;
   } both[] = {{m->right, im->right},
               {m->left, im->left},
+              {m->coriolis, im->coriolis},
               {m->residual_flexibility, im->residual_flexibility},
               {m->residual_inertia, im->residual_inertia},
               {m->residual_fourth, im->residual_fourth},
@@ -175,6 +176,9 @@ shb_status modal_model_write_complex_at(hid_t at, const modal_model *model,
       {"modes/damping_ratio", "m", "-", "modal damping ratio", false, model->damping_ratio},
       {"modes/residual", "m", "-", "relative residual of the eigenpair", false,
        model->eigen_residual},
+      {"modes/coriolis", "mm", "1/s",
+       "Coriolis matrix phi^H G phi of the modes at the rotor speed: q'' + G q' + diag(omega^2) q",
+       false, model->coriolis},
       {"contact/right/shape", "p3m", "kg^-1/2", "mass-normalised modes at the right contact", false,
        model->right},
       {"contact/left/shape", "p3m", "kg^-1/2", "mass-normalised modes at the left contact", false,
@@ -324,7 +328,34 @@ static shb_status read_optional_complex(hid_t at, const char *dataset, h5_shape 
   return h5_exists(at, dataset) ? h5_read_complex(at, dataset, &shape, data) : SHB_OK;
 }
 
-static shb_status read_modes(hid_t at, const char *path, modal_model *model) {
+/* Coriolis forces do no work: the matrix must be skew-symmetric to 1e-6 of its largest value, or
+ * skew-Hermitian. */
+static shb_status read_coriolis(hid_t at, const char *path, modal_model *model, modal_model *im) {
+  const size_t m       = (size_t)model->n_modes;
+  h5_shape     shape   = H5_SHAPE((hsize_t)m, (hsize_t)m);
+  double       largest = 0, worst = 0;
+  size_t       row = 0, column = 0;
+  if (!h5_exists(at, "modes/coriolis")) return SHB_OK;
+  SHB_TRY(read_split(at, "modes/coriolis", &shape, &model->coriolis, im ? &im->coriolis : NULL));
+  for (size_t i = 0; i < m; i++)
+    for (size_t j = 0; j < m; j++) {
+      const size_t here = i * m + j, there = j * m + i;
+      const double b = im ? im->coriolis[here] : 0, c = im ? im->coriolis[there] : 0;
+      const double off = hypot(model->coriolis[here] + model->coriolis[there], b - c);
+      largest          = fmax(largest, hypot(model->coriolis[here], b));
+      if (off <= worst) continue;
+      worst  = off;
+      row    = i;
+      column = j;
+    }
+  SHB_CHECK(worst <= 1e-6 * largest, SHB_ERR_INPUT,
+            "%s: /modes/coriolis is not skew-%s: [%zu, %zu] and [%zu, %zu] add up to %.2g of the "
+            "largest value; a matrix that does no work is wanted",
+            path, im ? "Hermitian" : "symmetric", row, column, column, row, worst / largest);
+  return SHB_OK;
+}
+
+static shb_status read_modes(hid_t at, const char *path, modal_model *model, modal_model *im) {
   h5_shape shape = H5_SHAPE(0);
   SHB_TRY(h5_read_double(at, "modes/frequency", &shape, &model->frequency));
   SHB_CHECK(shape.dim[0] > 0 && shape.dim[0] <= MAX_MODES, SHB_ERR_INPUT,
@@ -333,6 +364,7 @@ static shb_status read_modes(hid_t at, const char *path, modal_model *model) {
   model->n_modes = (int)shape.dim[0];
   SHB_TRY(h5_read_double(at, "modes/damping_ratio", &shape, &model->damping_ratio));
   SHB_TRY(read_optional(at, "modes/residual", shape, &model->eigen_residual, NULL));
+  SHB_TRY(read_coriolis(at, path, model, im));
   return check_modes(path, model);
 }
 
@@ -567,7 +599,7 @@ static shb_status read_residual_modes(hid_t at, const char *path, modal_model *m
 
 shb_status modal_model_read_complex_at(hid_t at, const char *path, modal_model *model,
                                        modal_model *imaginary) {
-  SHB_TRY(read_modes(at, path, model));
+  SHB_TRY(read_modes(at, path, model, imaginary));
   SHB_TRY(read_contact(at, path, model, imaginary));
   SHB_TRY(read_interfaces(at, path, model));
   SHB_TRY(read_load(at, path, model));
@@ -638,6 +670,7 @@ static shb_status check_all_real(const char *path, const modal_model *m, const m
   const split_array all[] = {
       {m->right, im->right, 3 * pairs * modes, "contact/right/shape"},
       {m->left, im->left, 3 * pairs * modes, "contact/left/shape"},
+      {m->coriolis, im->coriolis, modes * modes, "modes/coriolis"},
       {m->residual_flexibility, im->residual_flexibility, c * c, "contact/residual_flexibility"},
       {m->residual_inertia, im->residual_inertia, c * c, "contact/residual_inertia"},
       {m->residual_fourth, im->residual_fourth, c * c, "contact/residual_fourth"},
@@ -695,6 +728,7 @@ void modal_model_free(modal_model *model) {
                   model->interface,
                   model->frequency,
                   model->damping_ratio,
+                  model->coriolis,
                   model->right,
                   model->left,
                   model->residual_flexibility,

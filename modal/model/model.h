@@ -28,13 +28,14 @@ typedef struct {
   bool    has_left;                           /* false: contact to ground */
   double *frequency;                          /* [m] Hz */
   double *damping_ratio;                      /* [m] */
-  double *right, *left;                       /* [pair][3][m] kg^-1/2 */
-  double *residual_flexibility;               /* [n_contact][n_contact] m/N, or NULL */
-  double *residual_inertia;   /* [n_contact][n_contact] m s2/N, or NULL: coefficient of omega^2 */
-  double *residual_fourth;    /* [n_contact][n_contact] m s4/N, or NULL: coefficient of omega^4 */
-  int     n_residual;         /* residual modes that stand for the modes left out; 0: none */
-  double *residual_frequency; /* [r] Hz, ascending */
-  double *residual_shape;     /* [n_contact][r] kg^-1/2 */
+  double *coriolis;     /* [m][m] 1/s, phi^T G phi at the rotor speed: skew-symmetric; NULL: none */
+  double *right, *left; /* [pair][3][m] kg^-1/2 */
+  double *residual_flexibility; /* [n_contact][n_contact] m/N, or NULL */
+  double *residual_inertia;     /* [n_contact][n_contact] m s2/N, or NULL: coefficient of omega^2 */
+  double *residual_fourth;      /* [n_contact][n_contact] m s4/N, or NULL: coefficient of omega^4 */
+  int     n_residual;           /* residual modes that stand for the modes left out; 0: none */
+  double *residual_frequency;   /* [r] Hz, ascending */
+  double *residual_shape;       /* [n_contact][r] kg^-1/2 */
   double complex *residual_force; /* [K+1][r] N kg^-1/2 */
   double         *residual_probe; /* [3 q][r] kg^-1/2 */
   /* Order r of the tail a w^2r + b w^(2r+2) + ... that terms and residual modes leave out. */

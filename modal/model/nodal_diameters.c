@@ -119,7 +119,8 @@ static shb_status check_parts(const char *label, const modal_model *a, const mod
   const struct {
     const char *dataset;
     const void *first, *here;
-  } part[] = {{"contact/residual_flexibility", a->residual_flexibility, b->residual_flexibility},
+  } part[] = {{"modes/coriolis", a->coriolis, b->coriolis},
+              {"contact/residual_flexibility", a->residual_flexibility, b->residual_flexibility},
               {"contact/residual_inertia", a->residual_inertia, b->residual_inertia},
               {"contact/residual_fourth", a->residual_fourth, b->residual_fourth},
               {"contact/residual_tail", a->contact_tail, b->contact_tail},

@@ -239,6 +239,7 @@ static void shrink(void *data, size_t rows, size_t from, size_t to, size_t size)
 }
 
 static void shrink_shapes(modal_model *of, size_t pairs, size_t probes, size_t from, size_t to) {
+  shrink(of->coriolis, to, from, to, sizeof(double));
   shrink(of->right, pairs, from, to, sizeof(double));
   shrink(of->left, pairs, from, to, sizeof(double));
   shrink(of->probe, probes, from, to, sizeof(double));

@@ -21,12 +21,14 @@ typedef struct {
   double complex *value; /* [count][n][n] */
 } samples;
 
-/* of is zeroed; value stays NULL where the samples would be too large. */
+/* of is zeroed. value stays NULL where the samples would be too large, and with Coriolis terms,
+ * which they would lack. */
 static shb_status sample(const modal_model *model, samples *of) {
   const int    m = model->n_modes, n = modal_model_contact_dofs(model), count = SAMPLES + m;
   const size_t each = (size_t)n * (size_t)n;
   *of               = (samples){.n = n, .count = count};
-  if (n == 0 || (size_t)count * each * sizeof(double complex) > MAX_BYTES) return SHB_OK;
+  if (n == 0 || model->coriolis || (size_t)count * each * sizeof(double complex) > MAX_BYTES)
+    return SHB_OK;
   of->frequency = malloc((size_t)count * sizeof *of->frequency);
   of->error     = malloc((size_t)count * sizeof *of->error);
   of->value     = malloc((size_t)count * each * sizeof *of->value);

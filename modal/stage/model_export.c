@@ -60,6 +60,12 @@ shb_status modal_export_check(hid_t file, const modal_check *check) {
   return h5_write_attribute_double(file, "/modes", "missed_chance", check->probability);
 }
 
+shb_status modal_export_turning(hid_t at, fem_turning turning) {
+  if (turning == FEM_TURNS_UNSAID) return SHB_OK;
+  return h5_write_attribute_text(at, "modes/coriolis", "rotor_turns",
+                                 turning == FEM_TURNS_LEFT ? "left" : "right");
+}
+
 shb_status modal_export_contact(hid_t file, const modal_patches *patches) {
   if (patches->n_pairs == 0) return SHB_OK;
   const size_t pairs = (size_t)patches->n_pairs;

@@ -3,6 +3,7 @@
 #ifndef MODAL_STAGE_MODEL_EXPORT_H
 #define MODAL_STAGE_MODEL_EXPORT_H
 
+#include "fem/body/rotation.h"
 #include "mesh/core/fe_mesh.h"
 #include "modal/common/completeness.h"
 #include "modal/condense/contact_patches.h"
@@ -27,6 +28,9 @@ shb_status modal_export_stress(hid_t file, int n_modes, int n_nodes, const float
 
 /* Write the attributes checked, checked_count, checked_below and missed_chance of /modes. */
 shb_status modal_export_check(hid_t file, const modal_check *check);
+
+/* Write the attribute rotor_turns of modes/coriolis, left or right, where there is one. */
+shb_status modal_export_turning(hid_t at, fem_turning turning);
 
 /* Write /contact/nodes [entry][3] (pair, right node, left node or -1), /contact/weight [entry] and
  * /contact/coordinates [side][pair][3]. */

@@ -87,6 +87,7 @@ static shb_status write_group(hid_t at, int i, const mesh_fe *mesh, const modal_
   const modal_nodal_diameters *all     = &sector->models;
   const bool                   is_real = 2 * all->diameter[i] == all->blades;
   SHB_TRY(write_check(at, &sector->check[i]));
+  SHB_TRY(modal_export_turning(at, first->coriolis));
   if (i == 0) {
     SHB_TRY(write_first(at, mesh, first, of));
   } else {

@@ -11,6 +11,7 @@
 #include "mesh/base/memory.h"
 #include "modal/common/phases.h"
 #include "modal/cyclic/wave_condense.h"
+#include "modal/cyclic/wave_coriolis.h"
 #include "modal/cyclic/wave_modes.h"
 
 enum { MESSAGE = 512 };
@@ -79,6 +80,20 @@ static bool wants_fields(const work *w) {
   return !w->tracks || w->tracks->main;
 }
 
+/* The Coriolis matrix of the modes of a nodal diameter, where it is asked for. */
+static shb_status add_coriolis(const work *w, const wave_modes *modes, modal_model *re,
+                               modal_model *im) {
+  const size_t square  = (size_t)modes->n * (size_t)modes->n;
+  const bool   is_real = !im->probe; /* allocated for every complex model */
+  if (w->settings->coriolis == FEM_TURNS_UNSAID) return SHB_OK;
+  re->coriolis = calloc(square, sizeof *re->coriolis);
+  if (!is_real) im->coriolis = calloc(square, sizeof *im->coriolis);
+  SHB_CHECK(re->coriolis && (is_real || im->coriolis), SHB_ERR_IO,
+            "out of memory for the Coriolis terms");
+  return wave_coriolis(modes, &w->body->rotation, w->settings->coriolis, re->coriolis,
+                       im->coriolis);
+}
+
 /* Modes and condensation with a factor. */
 static shb_status solve_with(const work *w, int i, wave_operator *op, wave_modes *modes) {
   const wave_settings    wanted = {.modes = w->settings->modes, .check = w->settings->check};
@@ -91,6 +106,7 @@ static shb_status solve_with(const work *w, int i, wave_operator *op, wave_modes
   SHB_TRY(wave_condense(op, modes, &w->first->to, &all->model[i], &all->imaginary[i],
                         &all->backward[i]));
   if (w->tracks) SHB_TRY(modal_sector_tracks_take(w->tracks, i, modes));
+  SHB_TRY(add_coriolis(w, modes, &all->model[i], &all->imaginary[i]));
   return modal_label(w->settings, &w->first->patches, &all->model[i]);
 }
 

@@ -11,6 +11,7 @@
 #include "modal/common/phases.h"
 #include "modal/common/session.h"
 #include "modal/condense/condense.h"
+#include "modal/eigen/coriolis.h"
 #include "modal/model/mode_selection.h"
 #include "modal/model/reduce.h"
 
@@ -225,6 +226,19 @@ static shb_status find_enough(const fem_body *body, const modal_settings *settin
   return modal_model_reduce(&result->model, enough, true);
 }
 
+/* The Coriolis matrix of the modes, where it is asked for. */
+static shb_status add_coriolis(const fem_body *body, const modal_settings *settings,
+                               modal_result *result) {
+  const size_t m = (size_t)result->eigen.n;
+  if (settings->coriolis == FEM_TURNS_UNSAID) return SHB_OK;
+  result->coriolis       = settings->coriolis;
+  result->model.coriolis = calloc(m * m, sizeof *result->model.coriolis);
+  SHB_CHECK(result->model.coriolis, SHB_ERR_IO, "out of memory for the Coriolis terms");
+  FEM_PETSC(
+      modal_coriolis(&result->eigen, &body->rotation, settings->coriolis, result->model.coriolis));
+  return SHB_OK;
+}
+
 static shb_status solve(MPI_Comm comm, const fem_body *body, const modal_settings *settings,
                         const modal_condensation *to, shb_progress *progress,
                         modal_result *result) {
@@ -236,6 +250,7 @@ static shb_status solve(MPI_Comm comm, const fem_body *body, const modal_setting
     SHB_TRY(find_modes(body, settings, to, settings->modes, progress, result));
   else
     SHB_TRY(find_enough(body, settings, to, progress, result));
+  SHB_TRY(add_coriolis(body, settings, result));
   SHB_TRY(modal_participation_create(body, result->deflection.at.displacement, &result->system,
                                      &result->eigen, &result->participation));
   modal_phase(comm, progress, "participation", "effective masses");

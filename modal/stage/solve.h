@@ -42,6 +42,7 @@ typedef struct {
   double               speed;    /* rad/s; 0: at rest */
   int                  n_speeds; /* of modal_stage; above 1: all of speeds, which include speed */
   const double        *speeds;   /* [n_speeds] rad/s, distinct */
+  fem_turning          coriolis; /* with Coriolis terms of a rotor that turns this way */
   double               pressure; /* Pa, steady, on group load, into the deformed surface */
   int                  modes;    /* 0: as many as tolerance and band need */
   double               tolerance, band; /* of the contact receptance; Hz */
@@ -86,7 +87,8 @@ typedef struct {
   modal_deflection      deflection; /* static, under the centrifugal load; zero at rest */
   modal_participation   participation;
   modal_residual_shapes residual;
-  modal_condensation    to; /* dofs that were condensed to */
+  modal_condensation    to;       /* dofs that were condensed to */
+  fem_turning           coriolis; /* of the Coriolis matrix in the model */
 } modal_result;
 
 /* Give a model the names of probes and interfaces, normals and areas. Errors: SHB_ERR_IO no

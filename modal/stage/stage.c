@@ -1,5 +1,6 @@
 #include "modal/stage/stage.h"
 
+#include <math.h>
 #include <omp.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -7,6 +8,7 @@
 #include "fem/body/partition.h"
 #include "fem/body/stress.h"
 #include "fem/solver/petsc_error.h"
+#include "mesh/base/constants.h"
 #include "mesh/core/cyclic_sides.h"
 #include "mesh/core/group_checks.h"
 #include "mesh/io/read.h"
@@ -82,6 +84,7 @@ static shb_status write_all(hid_t file, const contents *c) {
   SHB_TRY(modal_export_stress(file, result->model.n_modes, mesh->n_nodes, of->stress));
   SHB_TRY(modal_residual_shapes_write(file, &result->residual, of->residual_stress));
   SHB_TRY(modal_export_check(file, &result->eigen.check));
+  SHB_TRY(modal_export_turning(file, result->coriolis));
   SHB_TRY(modal_participation_write(file, &result->participation));
   SHB_TRY(modal_export_contact(file, &result->patches));
   SHB_TRY(modal_sampled_write(file, &result->model));
@@ -146,6 +149,20 @@ static shb_status read_mesh(const char *path, const modal_settings *settings,
   return mesh_fe_orient(mesh, settings->axis);
 }
 
+/* What the modes left out would change with Coriolis terms: docs/theory/coriolis.md. */
+static void note_coriolis(const modal_settings *settings, const modal_result *first,
+                          const modal_sector *sector, shb_progress *progress) {
+  const int m    = first->model.n_modes;
+  double    last = first->model.frequency[m - 1];
+  if (settings->coriolis == FEM_TURNS_UNSAID) return;
+  for (int i = 0; i < sector->models.n; i++)
+    last = fmin(last, sector->models.model[i].frequency[m - 1]);
+  const double ratio = settings->speed / (SHB_TWO_PI * last);
+  shb_progress_note(progress,
+                    "Coriolis terms: modes left out change low frequencies by less than %.1e",
+                    2 * ratio * ratio);
+}
+
 static shb_status run(MPI_Comm comm, int rank, const char *out_path, const mesh_fe *mesh,
                       const modal_settings *settings, const shb_provenance *provenance,
                       shb_progress *progress) {
@@ -155,6 +172,11 @@ static shb_status run(MPI_Comm comm, int rank, const char *out_path, const mesh_
   modal_fields of     = {NULL, NULL, NULL};
   shb_status   status;
   if (mesh->image) SHB_TRY(modal_sector_check(comm, settings));
+  SHB_CHECK(settings->coriolis == FEM_TURNS_UNSAID || settings->n_speeds <= 1, SHB_ERR_INPUT,
+            "rotor.coriolis takes one rotor.speed, not %d; give a case for each",
+            settings->n_speeds);
+  SHB_CHECK(settings->coriolis == FEM_TURNS_UNSAID || settings->speed > 0, SHB_ERR_INPUT,
+            "rotor.coriolis needs rotor.speed; at rest there are no Coriolis forces");
   if (settings->n_speeds > 1)
     status = modal_speed_range_solve(comm, mesh, settings, progress, &speeds,
                                      mesh->image ? &sector : NULL, &result);
@@ -167,6 +189,7 @@ static shb_status run(MPI_Comm comm, int rank, const char *out_path, const mesh_
     status = modal_agree(comm, rank == 0 ? find_stresses(mesh, settings, &result, &of) : SHB_OK);
   if (status == SHB_OK)
     modal_phase(comm, progress, "stress", "%d modes at %d nodes", result.eigen.n, mesh->n_nodes);
+  if (status == SHB_OK) note_coriolis(settings, &result, &sector, progress);
   if (status == SHB_OK) {
     shb_progress_show(progress, 96, "writing %s", out_path);
     const contents all  = {mesh, &result, &speeds, &sector, &of, provenance};

@@ -358,10 +358,11 @@ static void put_crossings(const post_campbell *campbell, post_buffer *out) {
     return;
   }
   post_put(out,
-           "<div class=\"scroll\"><table><caption>Resonances of the free blade%s in the range of "
+           "<div class=\"scroll\"><table><caption>Resonances of the free %s%s in the range of "
            "speeds.</caption>\n<thead><tr><th scope=\"col\">Speed, rpm</th><th "
            "scope=\"col\">Order</th><th scope=\"col\">Mode</th><th scope=\"col\">Frequency, "
            "Hz</th></tr></thead>\n<tbody>\n",
+           campbell->blades > 0 ? "sectors" : "blade",
            campbell->n_stuck > 0 ? ", and of the ring with stuck contacts," : "");
   for (int i = 0; i < n; i++)
     post_put(out, "<tr><th scope=\"row\">%s</th><td>%dE</td><td>%s%d</td><td>%s</td></tr>\n",

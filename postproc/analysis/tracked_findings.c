@@ -52,11 +52,74 @@ static void put_kind(const post_analysis *analysis, post_buffer *out) {
   }
 }
 
+/* The least and the largest of values over all points of all curves. */
+static void extent(const mhb_response *r, bool of_frequency, double range[2]) {
+  range[0] = INFINITY;
+  range[1] = -INFINITY;
+  for (int b = 0; b < r->n_branches; b++) {
+    const mhb_branch *branch = &r->branch[b];
+    for (int i = 0; i < branch->n_points; i++) {
+      double at = of_frequency ? branch->frequency[i] : branch->value[i];
+      range[0]  = fmin(range[0], at);
+      range[1]  = fmax(range[1], at);
+    }
+  }
+}
+
+/* Flips and Neimark-Sacker points: where there are any, and what they border. */
+static void put_crossings(const post_analysis *analysis, post_buffer *out) {
+  const mhb_response *r    = analysis->response;
+  const bool          flip = strcmp(r->track, "flip") == 0;
+  const char         *unit = mhb_parameter_unit(r->parameter);
+  int                 n = 0, border = 0;
+  double              value[2], frequency[2];
+  char                a[4][POST_NUMBER];
+  for (int b = 0; b < r->n_branches; b++) {
+    n += r->branch[b].n_points;
+    for (int i = 0; i < r->branch[b].n_points; i++) border += r->branch[b].stable[i] == 1;
+  }
+  if (n == 0) {
+    post_put(out, "<li>The sweeps have no %s point.</li>\n", flip ? "flip" : "Neimark-Sacker");
+    return;
+  }
+  extent(r, false, value);
+  extent(r, true, frequency);
+  post_put(out,
+           "<li>At each point %s: the motion %s on one side. Such points are found from %s = %s to "
+           "%s%s%s, at %s to %s\u00a0Hz.</li>\n",
+           flip ? "a Floquet multiplier is −1" : "a pair of Floquet multipliers has modulus 1",
+           flip ? "doubles its period" : "is modulated", analysis->abscissa.name,
+           post_plain(a[0], value[0], 6), post_plain(a[1], value[1], 6), unit[0] ? "\u00a0" : "",
+           unit, post_plain(a[2], frequency[0], 6), post_plain(a[3], frequency[1], 6));
+  post_put(out,
+           "<li>At %d of %d points no other multiplier is outside the unit circle: they border the "
+           "stable motions.</li>\n",
+           border, n);
+}
+
+/* Why each curve of such points ends. */
+static void put_ends(const mhb_response *r, post_buffer *out) {
+  char a[2][POST_NUMBER];
+  for (int b = 0; b < r->n_branches; b++) {
+    const mhb_branch *branch = &r->branch[b];
+    if (branch->n_points == 0 || !branch->reason) continue;
+    post_put(out, "<li>Curve %d, from %s to %s%s%s: ", b + 1, post_plain(a[0], branch->value[0], 6),
+             post_plain(a[1], branch->value[branch->n_points - 1], 6),
+             mhb_parameter_unit(r->parameter)[0] ? "\u00a0" : "", mhb_parameter_unit(r->parameter));
+    post_put(out, "%s.</li>\n", branch->reason);
+  }
+}
+
 void post_tracked_findings(const post_analysis *analysis, post_buffer *out) {
   const mhb_response *r = analysis->response;
   const mhb_optimum  *o = &r->optimum;
   char                a[POST_NUMBER], error[POST_NUMBER];
   if (!r->track) return;
+  if (r->tracks_multiplier) {
+    put_crossings(analysis, out);
+    put_ends(r, out);
+    return;
+  }
   if (o->kind != MHB_OPTIMUM_NONE) {
     post_put(out, "<li>The highest peak is least at ");
     put_value(analysis, analysis->abscissa.name, out);

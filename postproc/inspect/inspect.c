@@ -129,25 +129,33 @@ static void put_range(const post_analysis *analysis, post_buffer *out) {
 }
 
 static void sum_up_branches(const post_analysis *analysis, post_buffer *out) {
-  const mhb_response *r         = analysis->response;
-  int                 nonlinear = 0, linear = 0, cut = 0, folds = 0, last = analysis->n_ranks - 1;
+  const mhb_response *r = analysis->response;
+  int nonlinear = 0, linear = 0, tracked = 0, cut = 0, folds = 0, last = analysis->n_ranks - 1;
   for (int b = 0; b < r->n_branches; b++) {
     mhb_branch_kind kind = r->branch[b].kind;
     nonlinear += kind == MHB_BRANCH_NONLINEAR;
     linear += kind == MHB_BRANCH_OPEN || kind == MHB_BRANCH_STUCK;
+    tracked += kind == MHB_BRANCH_TRACKED;
     cut += !r->branch[b].complete;
     folds += analysis->curve[b].n_folds;
   }
-  put_count(out, nonlinear, "nonlinear curve");
+  if (tracked > 0) {
+    put_count(out, tracked, "curve");
+    post_put(out, " of tracked %s points", r->track ? r->track : "");
+  } else {
+    put_count(out, nonlinear, "nonlinear curve");
+  }
   if (last >= 0) {
     post_put(out, ", n0 ");
     put_span(out, analysis->group[0].n0, analysis->group[last].n0, "N");
   }
-  post_put(out, "; ");
-  put_count(out, linear, "linear limit");
-  if (r->n_branches > nonlinear + linear) {
+  if (tracked == 0) {
     post_put(out, "; ");
-    put_count(out, r->n_branches - nonlinear - linear, "curve");
+    put_count(out, linear, "linear limit");
+  }
+  if (r->n_branches > nonlinear + linear + tracked) {
+    post_put(out, "; ");
+    put_count(out, r->n_branches - nonlinear - linear - tracked, "curve");
     post_put(out, " by time integration");
   }
   post_put(out, "; ");

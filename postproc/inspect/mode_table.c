@@ -3,7 +3,9 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "mesh/base/constants.h"
 #include "modal/hdf5/h5.h"
+#include "mhb/structure/gyroscopic.h"
 #include "postproc/draw/number_format.h"
 
 enum { AT_FIRST = 24 };
@@ -67,6 +69,22 @@ static void put_table(const modal_model *m, const shares *s, bool all, post_buff
   if (s->mass > 0) put_sums(m, s, out);
 }
 
+/* Frequencies with Coriolis terms, where the file has them. */
+static shb_status put_coriolis(const modal_model *m, bool all, post_buffer *out) {
+  const modal_wave wave  = modal_wave_real(m);
+  const int        shown = all || m->n_modes <= AT_FIRST ? m->n_modes : AT_FIRST;
+  mhb_gyroscopic g;
+  if (!m->coriolis) return SHB_OK;
+  shb_status status = mhb_gyroscopic_of_wave(&wave, &g);
+  if (status == SHB_OK) post_put(out, "  with Coriolis terms\n");
+  for (int i = 0; status == SHB_OK && i < shown; i++) {
+    char hz[POST_NUMBER];
+    post_put(out, "  %5d %12s\n", i + 1, post_plain(hz, g.omega[g.n + i] / SHB_TWO_PI, 6));
+  }
+  mhb_gyroscopic_free(&g);
+  return status;
+}
+
 /* How the file's check for missing modes was made; nothing if the file does not say. */
 static shb_status put_check(hid_t file, post_buffer *out) {
   char  *by = NULL, below[POST_NUMBER], number[POST_NUMBER];
@@ -97,6 +115,7 @@ shb_status post_mode_table(hid_t file, const modal_model *model, bool all, post_
   shares     s      = {0};
   shb_status status = read_shares(file, model, &s);
   if (status == SHB_OK) put_table(model, &s, all, out);
+  if (status == SHB_OK) status = put_coriolis(model, all, out);
   if (status == SHB_OK) status = put_check(file, out);
   free(s.translation);
   free(s.rotation);

@@ -85,6 +85,14 @@ static void put_stability(const mhb_response *response, const mhb_branch *branch
                                        "undecided", "neighbours",  "folds"};
   static const char *const loss[]   = {"", "fold", "flip", "Neimark-Sacker"};
   int                      kept     = response->n_multipliers;
+  const bool               flip     = response->track && strcmp(response->track, "flip") == 0;
+  if (branch->kind == MHB_BRANCH_TRACKED && branch->multiplier) {
+    post_put(
+        out, ",multipliers,%s",
+        branch->stable[point] == 0 ? "" : loss[flip ? MHB_LOSS_FLIP : MHB_LOSS_NEIMARK_SACKER]);
+    put_number(out, cabs(branch->multiplier[point]));
+    return;
+  }
   if (branch->kind != MHB_BRANCH_NONLINEAR) {
     post_put(out, ",,,");
     return;

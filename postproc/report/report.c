@@ -126,12 +126,19 @@ static void put_keys(const post_analysis *analysis, post_buffer *out) {
   post_put(out, "</ul>\n");
 }
 
+/* Of the main chart. */
+static const char *tracked_title(const mhb_response *r) {
+  if (!r->track) return "Forced response";
+  if (strcmp(r->track, "fold") == 0) return "Tracked folds";
+  if (strcmp(r->track, "flip") == 0) return "Tracked flips";
+  return r->tracks_multiplier ? "Tracked Neimark-Sacker points" : "Tracked peaks";
+}
+
 static void put_main(const post_analysis *analysis, const char *case_name, post_buffer *out) {
   char frequency[POST_PLACE], harmonic[32];
   post_harmonic_name(analysis->response, harmonic);
   post_put(out, "<section id=\"chart\">\n<h2>%s%s</h2>\n<div class=\"card\"><figure>\n",
-           analysis->response->track ? "Tracked peaks" : "Forced response",
-           post_frequency_text(analysis, frequency));
+           tracked_title(analysis->response), post_frequency_text(analysis, frequency));
   put_tools(analysis->response, out);
   post_put(out, "<div class=\"chart\">\n");
   post_chart_response(analysis, case_name, out);

@@ -6,6 +6,7 @@
 
 #include "mesh/base/constants.h"
 #include "mhb/continuation/linear_resonances.h"
+#include "mhb/structure/gyroscopic.h"
 #include "modal/model/nodal_diameters.h"
 #include "postproc/draw/number_format.h"
 #include "postproc/draw/plot.h"
@@ -36,6 +37,24 @@ static const modal_model *model_at(const modal_model *model, const mhb_settings 
   return at < 0 ? NULL : &disc->model[at];
 }
 
+/* Frequencies of the open families at a nodal diameter, Hz. With Coriolis terms they are those of
+ * the wave that runs to the right, as an excitation of that order does. */
+static shb_status find_open(const modal_model *own, const mhb_settings *settings, int diameter,
+                            int n, double *open) {
+  modal_wave       wave;
+  mhb_gyroscopic g;
+  int              missing;
+  for (int i = 0; i < n; i++) open[i] = own ? own->frequency[i] : NAN;
+  if (!own || !own->coriolis) return SHB_OK;
+  if (!settings->nodal_diameters ||
+      !modal_nodal_diameters_wave(settings->nodal_diameters, diameter, &wave, &missing))
+    wave = modal_wave_real(own);
+  shb_status status = mhb_gyroscopic_of_wave(&wave, &g);
+  for (int i = 0; i < n && status == SHB_OK; i++) open[i] = g.omega[g.n + i] / SHB_TWO_PI;
+  mhb_gyroscopic_free(&g);
+  return status;
+}
+
 shb_status post_safe_compute(const modal_model *model, const mhb_settings *settings,
                              const double range[2], double speed, post_safe *s) {
   *s = (post_safe){.blades       = settings->blades,
@@ -52,9 +71,10 @@ shb_status post_safe_compute(const modal_model *model, const mhb_settings *setti
   SHB_CHECK(status == SHB_OK, SHB_ERR_IO, "not enough memory for the SAFE diagram");
   for (int d = 0; d < diameters && status == SHB_OK; d++) {
     const modal_model *own = model_at(model, settings, d);
-    for (int i = 0; i < n; i++) s->open[d * n + i] = own ? own->frequency[i] : NAN;
+    status                 = find_open(own, settings, d, n, s->open + d * n);
     for (int i = 0; i < n; i++) s->stuck[d * n + i] = NAN;
-    if (own) status = mhb_stuck_frequencies(own, settings, d, n, s->stuck + d * n);
+    if (own && status == SHB_OK)
+      status = mhb_stuck_frequencies(own, settings, d, n, s->stuck + d * n);
   }
   find_driven(model, s);
   s->n_families = n;
@@ -70,15 +90,18 @@ void post_safe_free(post_safe *s) {
 /* ---------------------------------------------------------------- diagram */
 
 static void draw_family(const post_safe *s, const post_plot *plot, int family, bool stuck) {
-  const int n = s->blades / 2 + 1;
-  double    x[n], y[n];
-  for (int d = 0; d < n; d++) {
-    x[d] = d;
-    y[d] = (stuck ? s->stuck : s->open)[d * s->n_families + family];
+  const int most = s->blades / 2 + 1;
+  double    x[most], y[most];
+  int       n = 0;
+  for (int d = 0; d < most; d++) {
+    const double f = (stuck ? s->stuck : s->open)[d * s->n_families + family];
+    if (!(f == f)) continue; /* a diameter that the file of a disc lacks */
+    x[n]   = d;
+    y[n++] = f;
   }
   plot_line(plot, stuck ? "line limit stuck" : "line limit open", n, x, y, NULL);
-  for (int d = 0; d < n; d++)
-    if (y[d] <= plot->y.hi) plot_dot(plot, "dot family", d, y[d], 2.2);
+  for (int i = 0; i < n; i++)
+    if (y[i] <= plot->y.hi) plot_dot(plot, "dot family", x[i], y[i], 2.2);
 }
 
 /* The range of the curves at the diameter of each driven harmonic; rings where it holds a
@@ -156,7 +179,7 @@ void post_safe_section(const post_safe *s, post_buffer *out) {
            "the excitation drives; "
            "rings: its resonances there.%s</p>\n"
            "<div class=\"card\"><figure><div class=\"chart\">\n",
-           s->disc ? "The blades share a flexible disc; gaps are diameters that the file lacks."
+           s->disc ? "The blades share a flexible disc; dots: the nodal diameters of the file."
                    : "The root is clamped, so that open blades do not know each other.",
            s->speed > 0 ? " Thin zigzag: every engine order at the speed of the rotor." : "");
   plot_svg_open(out, "safe", WIDTH, HEIGHT, "SAFE diagram",

@@ -7,11 +7,13 @@
  * Every row is one curve of a ring of N blades with 7 harmonics at one preload. Deviations are 1 %.
  * Engine order N/8 keeps the inter-blade phase. The columns: points; ms of processor time a point;
  * the same a blade, and over that of the first row. Then points a minute and core; the wave's time.
- * Then come the residual and an error. It is the distance of the ring without deviations from the
- * travelling wave, relative. One thread computes, since waiting threads count as processor time.
+ * Then come the residual, an error and the memory of a curve, MiB. The error is the distance of the
+ * ring without deviations from the travelling wave, relative. One thread computes, since waiting
+ * threads count as processor time.
  * Baseline: the wave. Goals: 20 ms a point at 40 blades; a cost linear in N; 500 points a minute
  * and core; error below 1e-10. The exit code depends on the error alone. */
 #include <cblas.h>
+#include <malloc.h>
 #include <math.h>
 #include <omp.h>
 #include <stdio.h>
@@ -19,7 +21,8 @@
 #include <string.h>
 
 #include "mesh/base/constants.h"
-#include "mhb/balance/balance.h"
+#include "mhb/balance/truncation_error.h"
+#include "mhb/continuation/balance_curve.h"
 #include "mhb/mistuning/deviations.h"
 #include "mhb/mistuning/mistuned_ring.h"
 #include "tests/bench/z_notch_settings.h"
@@ -100,7 +103,7 @@ static double distance_from_wave(const mhb_response *wave, const mhb_settings *s
         x[row * b->nb + (k ? 2 * k - 1 : 0)] = creal(u);
         if (k) x[row * b->nb + 2 * k] = cimag(u);
       }
-    mhb_balance_evaluate(b, x, SHB_TWO_PI * branch->frequency[p], r, NULL, NULL);
+    mhb_balance_linearise(b, x, SHB_TWO_PI * branch->frequency[p], r, NULL); /* as points are */
     for (int i = 0; i < b->n; i++) {
       away += r[i] * r[i];
       size += x[i] * x[i];
@@ -110,6 +113,29 @@ static double distance_from_wave(const mhb_response *wave, const mhb_settings *s
   free(x);
   mhb_balance_destroy(b);
   return worst;
+}
+
+static double allocated(void) {
+  const struct mallinfo2 m = mallinfo2();
+  return (double)(m.uordblks + m.hblkhd) / 1048576;
+}
+
+/* MiB of what a curve of the ring needs: its receptance, balance, system, points and estimate. */
+static double memory_of(const mhb_mistuned_ring *ring, const mhb_settings *s) {
+  const double    before = allocated();
+  double          taken  = INFINITY;
+  mhb_balance    *b;
+  mhb_truncation *t     = NULL;
+  mhb_arclength  *curve = NULL;
+  if (mhb_balance_create(&ring->whole, s, &b) != SHB_OK) return taken;
+  if (mhb_truncation_create(b, &t) == SHB_OK &&
+      mhb_balance_curve_create(b, s->frequency[0], s->frequency[1], &curve) == SHB_OK) {
+    taken = allocated() - before;
+    mhb_arclength_destroy(curve);
+  }
+  mhb_truncation_destroy(t);
+  mhb_balance_destroy(b);
+  return taken;
 }
 
 static shb_status row(const modal_model *blade, const mhb_settings *asked, int N, double *first,
@@ -133,12 +159,12 @@ static shb_status row(const modal_model *blade, const mhb_settings *asked, int N
   s.ring = NULL;
   SHB_TRY(mhb_mistuned_ring_create(blade, &s, zero, 1, &ring));
   s.ring            = ring;
-  const double away = distance_from_wave(wave, &s, ring);
-  const double ms   = 1e3 * seconds / points;
+  const double away = distance_from_wave(wave, &s, ring), memory = memory_of(ring, &s);
+  const double ms = 1e3 * seconds / points;
   if (*first <= 0) *first = ms / N;
-  printf("%5d %7d %9.2f %12.3f %9.2f %9.0f %12.3f %10.1e %10.1e  %s\n", N, points, ms, ms / N,
+  printf("%5d %7d %9.2f %12.3f %9.2f %9.0f %12.3f %10.1e %10.1e %7.1f  %s\n", N, points, ms, ms / N,
          ms / N / *first, 6e4 / ms, 1e3 * of_wave / wave->branch[0].n_points, residual, away,
-         branch->reason ? branch->reason : "");
+         memory, branch->reason ? branch->reason : "");
   *good = *good && away < GOAL;
   mhb_mistuned_ring_destroy(ring);
   mhb_response_destroy(curve);
@@ -163,7 +189,7 @@ int main(int argc, char **argv) {
   setvbuf(stdout, NULL, _IOLBF, 0);
   puts(
       "    N  points  ms/point  ms/point/N  to first  a minute  wave ms/point  residual  from "
-      "wave");
+      "wave     MiB");
   for (int i = 0; i < n; i++)
     if (row(&blade, &s, blades[i], &first, &good) != SHB_OK) {
       fprintf(stderr, "%s\n", shb_message());

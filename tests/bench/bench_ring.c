@@ -15,6 +15,8 @@
 #include "mesh/base/clock.h"
 #include "mesh/base/constants.h"
 #include "mhb/integration/integrator.h"
+#include "mhb/mistuning/deviations.h"
+#include "mhb/mistuning/mistuned_ring.h"
 #include "mhb/ring/ring_step.h"
 #include "tests/support/random_model.h"
 
@@ -52,7 +54,7 @@ static void twenty_modes(modal_model *model) {
 
 static shb_status make(const modal_model *model, const mhb_settings *s, double omega, int steps,
                        mhb_ring_model **m, mhb_ring *ring) {
-  double complex none[3] = {0};
+  double complex none[3 * 64] = {0};
   SHB_TRY(mhb_ring_model_create(model, s, s->n0[0], omega, m));
   SHB_TRY(mhb_ring_model_set(*m, omega, steps));
   SHB_TRY(mhb_ring_create(*m, ring));
@@ -127,6 +129,21 @@ static double apart(const double *a, const double *b, int n) {
   return sqrt(difference / size);
 }
 
+/* ms a period of 256 steps where blades differ by a percent. */
+static double different(const modal_model *model, const mhb_settings *s, double omega, int runs) {
+  double             delta[64], ms = NAN;
+  int                modes;
+  mhb_mistuned_ring *ring;
+  mhb_settings       own = *s;
+  if (mhb_deviations_random(0.01, 7, 0, s->blades, delta) != SHB_OK ||
+      mhb_mistuned_ring_create(model, s, delta, 1, &ring) != SHB_OK)
+    return NAN;
+  own.ring = ring;
+  ms       = milliseconds(&ring->whole, &own, omega, 256, runs, &modes);
+  mhb_mistuned_ring_destroy(ring);
+  return ms;
+}
+
 static int table(const modal_model *model, const mhb_settings *s, double omega, int runs) {
   static const int steps[] = {64, 128, 256, 512, 1024};
   double           fine[6 * 64], end[6 * 64], slow_ms, at_256 = NAN;
@@ -145,6 +162,10 @@ static int table(const modal_model *model, const mhb_settings *s, double omega, 
            slow_ms / ms);
     if (steps[i] == 256) at_256 = error;
   }
+  double own_ms = different(model, s, omega, runs),
+         ms     = milliseconds(model, s, omega, 256, runs, &modes);
+  printf("%-28s %10.4f %10s %8.0f\n", "256 steps, different blades", own_ms, "", slow_ms / own_ms);
+  printf("different over equal blades: %.2f\n", own_ms / ms);
   int good = at_256 < 5e-3;
   printf("\nerror at 256 steps below 5e-3: %s\n", good ? "yes" : "NO");
   return !good;

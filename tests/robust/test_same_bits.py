@@ -36,6 +36,21 @@ def threads_change_nothing():
     print(f'1, 2, 3 threads: {len(first)} datasets alike to the last bit')
 
 
+def threads_change_no_mode():
+    write('blade.yaml', BLADE.replace('SIZE', '14 mm'))
+    run(program('mesh'), '--quiet', 'blade.yaml')
+    first = None
+    for threads in 1, 2, 3:
+        ENVIRONMENT['OMP_NUM_THREADS'] = str(threads)
+        run(program('modal'), '--quiet', '--force', 'blade.yaml')
+        found = numbers('blade.modal.h5')
+        first = first or found
+        different = [name for name in first.keys() | found.keys()
+                     if first.get(name) != found.get(name)]
+        assert len(found) > 20 and not different, (threads, different)
+    print(f'modal stage, 1, 2, 3 threads: {len(first)} datasets alike to the last bit')
+
+
 def frequencies(ranks):
     run('mpiexec', '-n', str(ranks), '--oversubscribe', program('modal'), '--quiet', '--force',
         'blade.yaml')
@@ -57,4 +72,5 @@ def ranks_change_the_last_digits():
 
 with bring_your_own(SCENE):
     threads_change_nothing()
+    threads_change_no_mode()
     ranks_change_the_last_digits()

@@ -15,6 +15,30 @@ if(SHROUDHB_PYTHON)
   set(CONFIGURATION CONFIGURATIONS nightly)
   shb_robust_test(kills_many kills ${SCENE} 170)
   unset(CONFIGURATION)
+  # the programs of the stages in one, each main under a name of its own
+  set(COMMANDS ${PROJECT_SOURCE_DIR}/cases/commands)
+  add_executable(stage_server robust/stage_server.c)
+  target_link_libraries(stage_server PRIVATE shb_cases_commands shb_mesh shb_modal)
+  foreach(stage mesh modal mhb post integrate)
+    target_sources(stage_server PRIVATE ${COMMANDS}/shroudhb_${stage}.c)
+    set_property(SOURCE ${COMMANDS}/shroudhb_${stage}.c
+      APPEND PROPERTY COMPILE_OPTIONS -Dmain=${stage}_main -Wno-missing-prototypes)
+  endforeach()
+  add_test(NAME robust.damaged COMMAND ${SHROUDHB_PYTHON} -B ${ROBUST}/test_damaged.py
+    $<TARGET_FILE:stage_server> ${SCENE} 40)
+  add_test(NAME robust.damaged_many CONFIGURATIONS nightly COMMAND ${SHROUDHB_PYTHON} -B
+    ${ROBUST}/test_damaged.py $<TARGET_FILE:stage_server> ${SCENE} 2000)
+  if(NOT SHROUDHB_SANITIZE AND NOT SHROUDHB_FUZZ AND NOT SHROUDHB_TSAN) # their heap is another
+    add_executable(repeated_sweep robust/repeated_sweep.c ${COMMANDS}/shroudhb_mhb.c)
+    target_link_libraries(repeated_sweep PRIVATE shb_cases_commands)
+    set(REPEATED ${ROBUST}/test_repeated.py $<TARGET_FILE:repeated_sweep>
+      $<TARGET_FILE_DIR:shroudhb> ${SCENE})
+    add_test(NAME robust.repeated COMMAND ${SHROUDHB_PYTHON} -B ${REPEATED} 50 3)
+    add_test(NAME robust.repeated_many CONFIGURATIONS nightly
+      COMMAND ${SHROUDHB_PYTHON} -B ${REPEATED} 1000 1000)
+    set_tests_properties(robust.repeated robust.repeated_many PROPERTIES SKIP_RETURN_CODE 77)
+  endif()
+  set_tests_properties(robust.damaged robust.damaged_many PROPERTIES SKIP_RETURN_CODE 77)
   if(SHROUDHB_TSAN) # the target thread_test builds what the test needs
     add_executable(race robust/race.c)
     target_link_libraries(race PRIVATE OpenMP::OpenMP_C)

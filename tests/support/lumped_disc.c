@@ -52,6 +52,11 @@ lumped_disc lumped_disc_of(double coupling, double ground) {
   return d;
 }
 
+double lumped_disc_coriolis(const lumped_disc *d, int i, int j) {
+  static const double cross[3][3] = {{0, 0, 1}, {0, 0, 0}, {-1, 0, 0}}; /* axial x */
+  return i / 3 == j / 3 ? 2 * d->spin * d->mass[i] * cross[i % 3][j % 3] : 0;
+}
+
 /* ---- a sector at a phase ---- */
 
 typedef struct {
@@ -86,6 +91,23 @@ static double complex *take_complex(size_t n) {
 /* Dof of contact dof c: right, then left. */
 static int contact_dof(int c) {
   return DISC_RIGHT + c;
+}
+
+/* phi^H G phi of the lowest modes; nothing without spin. */
+static void set_coriolis(const lumped_disc *d, const sector_modes *s, int m, modal_model *re,
+                         modal_model *im) {
+  if (d->spin == 0) return;
+  re->coriolis = take((size_t)(m * m));
+  if (im) im->coriolis = take((size_t)(m * m));
+  for (int i = 0; i < m; i++)
+    for (int j = 0; j < m; j++) {
+      double complex sum = 0;
+      for (int a = 0; a < D; a++)
+        for (int b = 0; b < D; b++)
+          sum += conj(s->shape[a][i]) * lumped_disc_coriolis(d, a, b) * s->shape[b][j];
+      re->coriolis[i * m + j] = creal(sum);
+      if (im) im->coriolis[i * m + j] = cimag(sum);
+    }
 }
 
 static void set_modes(const sector_modes *s, int m, modal_model *re, modal_model *im,
@@ -235,6 +257,7 @@ void lumped_disc_waves(const lumped_disc *d, int modes, modal_nodal_diameters *o
     solve_sector(d, SHB_TWO_PI * n / N, &s);
     out->diameter[n] = n;
     set_modes(&s, modes, &out->model[n], complex_too ? &out->imaginary[n] : NULL, d->damping);
+    set_coriolis(d, &s, modes, &out->model[n], complex_too ? &out->imaginary[n] : NULL);
     set_load(d, &s, modes, false, &out->model[n]);
     if (complex_too) set_load(d, &s, modes, true, &out->backward[n]);
   }
@@ -247,6 +270,7 @@ void lumped_disc_blade(const lumped_disc *d, int modes, modal_model *out) {
   *out = (modal_model){0};
   solve_sector(&alone, 0, &s);
   set_modes(&s, modes, out, NULL, d->damping);
+  set_coriolis(d, &s, modes, out, NULL);
   set_load(d, &s, modes, false, out);
 }
 
@@ -254,6 +278,19 @@ void lumped_disc_blade(const lumped_disc *d, int modes, modal_model *out) {
 
 static double ring_shape(const double *Q, int sector, int dof, int mode) {
   return Q[(size_t)mode * DISC_ALL + (size_t)(sector * D + dof)];
+}
+
+static void set_ring_coriolis(const lumped_disc *d, const double *Q, modal_model *out) {
+  const int n = DISC_ALL;
+  if (d->spin == 0) return;
+  out->coriolis = take((size_t)(n * n));
+  for (int i = 0; i < n; i++)
+    for (int j = 0; j < n; j++)
+      for (int b = 0; b < N; b++)
+        for (int k = 0; k < D; k++)
+          for (int l = k - k % 3; l < k - k % 3 + 3; l++)
+            out->coriolis[i * n + j] +=
+                ring_shape(Q, b, k, i) * lumped_disc_coriolis(d, k, l) * ring_shape(Q, b, l, j);
 }
 
 void lumped_disc_ring(const lumped_disc *d, int engine_order, modal_model *out) {
@@ -295,6 +332,7 @@ void lumped_disc_ring(const lumped_disc *d, int engine_order, modal_model *out) 
           out->modal_force[h * n + m] += ring_shape(K, b, i, m) * d->load[h][i] *
                                          cexp(-I * SHB_TWO_PI * h * engine_order * b / N);
   }
+  set_ring_coriolis(d, K, out);
   free(K);
 }
 

@@ -25,6 +25,7 @@ typedef struct {
   double         next[DISC_DOFS][DISC_DOFS]; /* B */
   double         mass[DISC_DOFS];            /* diagonal */
   double         damping;                    /* s: C = damping K */
+  double         spin; /* rad/s about the axial direction: 2 spin [e]x of every mass; 0: none */
   double complex load[DISC_LOADS][DISC_DOFS];
 } lumped_disc;
 
@@ -37,6 +38,9 @@ lumped_disc lumped_disc_spinning(double speed);
 
 /* n of them over 0 to 1 rad/s, with the lowest modes and overlaps. */
 void lumped_disc_speeds(int n, int modes, modal_sector_speeds *out);
+
+/* Element of the Coriolis matrix of a sector, kg/s. */
+double lumped_disc_coriolis(const lumped_disc *disc, int i, int j);
 
 /* Nodal diameters 0..N/2 with the lowest modes, and residual terms of the others. */
 void lumped_disc_waves(const lumped_disc *disc, int modes, modal_nodal_diameters *out);

@@ -1,5 +1,6 @@
 /* The factor: CHOLMOD against MUMPS and the matrix itself, indefinite matrices, lack of memory. */
 #include <math.h>
+#include <omp.h>
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -96,6 +97,51 @@ static void columns_solve_the_system(void **state) {
     MatDestroy(&X);
   }
   fem_factor_destroy(&factor);
+}
+
+/* Solutions of one, four and seventy columns. */
+static void solve_with(const body *b, int threads, double *out) {
+  const int   count[] = {1, 4, 70};
+  fem_factor *factor;
+  bool        definite;
+  omp_set_num_threads(threads);
+  assert_int_equal(fem_factor_create(b->system.K, 0, &factor), 0);
+  assert_int_equal(fem_factor_update(factor, b->system.K, &definite), 0);
+  for (int i = 0; i < 3; i++) {
+    const size_t  size = 3 * (size_t)b->system.n_free * (size_t)count[i];
+    const double *x;
+    Mat           B = dense(b, count[i]), X = dense(b, count[i]);
+    assert_int_equal(fem_factor_solve_many(factor, B, X), 0);
+    check_below(backward_error(b, X, B), 1e-15, "backward error");
+    assert_int_equal(MatDenseGetArrayRead(X, &x), 0);
+    memcpy(out, x, size * sizeof *x);
+    out += size;
+    MatDenseRestoreArrayRead(X, &x);
+    MatDestroy(&B);
+    MatDestroy(&X);
+  }
+  fem_factor_destroy(&factor);
+}
+
+/* A mesh with wide panels, several subtrees and panels in none. */
+static void threads_change_no_bit(void **state) {
+  (void)state;
+  const int    most     = omp_get_max_threads();
+  const double size[3]  = {.2, .06, .05};
+  const int    cells[3] = {12, 7, 6};
+  body         b        = {.mesh = make_box(size, cells)};
+  assert_int_equal(fem_system_create(PETSC_COMM_SELF, &b.mesh, &steel, FEM_STANDARD, &b.system), 0);
+  const size_t count = 75 * 3 * (size_t)b.system.n_free;
+  double      *one = malloc(count * sizeof *one), *other = malloc(count * sizeof *one);
+  for (int threads = 1; threads <= 3; threads++) {
+    solve_with(&b, threads, threads == 1 ? one : other);
+    if (threads > 1) assert_memory_equal(one, other, count * sizeof *one);
+  }
+  omp_set_num_threads(most);
+  free(one);
+  free(other);
+  fem_system_destroy(&b.system);
+  mesh_fe_free(&b.mesh);
 }
 
 /* One vector, with MUMPS on one rank too, and after the matrix has changed. */
@@ -211,6 +257,7 @@ int main(void) {
       cmocka_unit_test_setup_teardown(columns_solve_the_system, create, destroy),
       cmocka_unit_test_setup_teardown(both_programs_agree, create, destroy),
       cmocka_unit_test_setup_teardown(indefinite_matrices_are_told, create, destroy),
+      cmocka_unit_test(threads_change_no_bit),
       cmocka_unit_test(memory_is_foreseen),
       cmocka_unit_test_setup_teardown(too_little_memory_is_one_line, create, destroy)};
   if (PetscInitialize(NULL, NULL, NULL, NULL)) return 1;

@@ -31,6 +31,13 @@ static void library_aborts(void) {
   abort();
 }
 
+/* The C library tells it, and aborts. */
+static void heap_is_damaged(void) {
+  char *volatile inside = (char *)malloc(64) + 8;
+  fprintf(stderr, "spoken\n");
+  free(inside);
+}
+
 static int deeper(volatile char *above) {
   volatile char here[4096];
   here[0] = above ? above[0] : 1;
@@ -95,6 +102,16 @@ static void a_crash_is_one_line(void **state) {
   }
 }
 
+static void the_program_may_speak_and_the_c_library_may_not(void **state) {
+  (void)state;
+  skip_with_sanitizer();
+  char text[500];
+  int  end = guarded(heap_is_damaged, false, text);
+  assert_true(WIFEXITED(end));
+  assert_int_equal(WEXITSTATUS(end), SHB_ERR_INPUT);
+  assert_string_equal(text, "spoken\nshroudhb: error: a.msh: is damaged\n");
+}
+
 static void it_ends(void **state) {
   (void)state;
   skip_with_sanitizer();
@@ -131,6 +148,7 @@ static void temporary_files_are_removed(void **state) {
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(a_crash_is_one_line),
+      cmocka_unit_test(the_program_may_speak_and_the_c_library_may_not),
       cmocka_unit_test(it_ends),
       cmocka_unit_test(temporary_files_are_removed),
   };

@@ -5,6 +5,7 @@
 #include "mesh/base/constants.h"
 #include "mhb/branches/forced_response.h"
 #include "mhb/branches/lasting_motion.h"
+#include "mhb/mistuning/mistuned_ring.h"
 #include "tests/support/check.h"
 #include "tests/support/files.h"
 #include "tests/support/random_model.h"
@@ -271,6 +272,42 @@ static void a_resumed_run_completes_it(void **state) {
   mhb_response_destroy(r);
 }
 
+/* A ring of different blades: judged, and what takes over where its motion is unstable. */
+static void different_blades_have_it_too(void **state) {
+  static const double delta[6] = {0.003, -0.002, 0.001, 0, -0.004, 0.002};
+  (void)state;
+  modal_model        model;
+  mhb_mistuned_ring *ring;
+  mhb_response      *r, *read;
+  mhb_settings       s    = settings_of();
+  int                n    = 0;
+  const char        *path = scratch("different.h5");
+  model_of(&model);
+  s.n_preloads = 1;
+  assert_ok(mhb_mistuned_ring_create(&model, &s, delta, 1, &ring));
+  s.ring = ring;
+  assert_ok(mhb_forced_response(&ring->whole, &s, path, &from, NULL, &r));
+  const mhb_branch *b = &r->branch[2];
+  print_message("\"%s\"\n", b->lasting);
+  for (int i = 0; i < b->n_points; i++) {
+    n += is_modulated(b, i);
+    if (!b->lasting_kind[i]) continue;
+    assert_true(is_modulated(b, i));
+    assert_true(b->lasting_worst[i] > .5 && b->lasting_mean[i] > .5);
+    print_message("%.4f rad/s: kind %d, mean %.4f, worst %.4f\n", SHB_TWO_PI * b->frequency[i],
+                  b->lasting_kind[i], b->lasting_mean[i], b->lasting_worst[i]);
+  }
+  assert_true(n > 2);
+  assert_in_range(n_computed(b), 1, 4);
+  assert_true(b->lasting_curve.n >= 2);
+  assert_ok(mhb_response_read(path, &read));
+  assert_same_lasting(b, &read->branch[2]);
+  mhb_response_destroy(read);
+  mhb_response_destroy(r);
+  mhb_mistuned_ring_destroy(ring);
+  modal_model_free(&model);
+}
+
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(auto_computes_few_points_and_a_sweep),
@@ -280,6 +317,7 @@ int main(void) {
       cmocka_unit_test(an_interrupted_branch_is_completed),
       cmocka_unit_test(the_sweep_covers_points_that_were_not_judged),
       cmocka_unit_test(a_resumed_run_completes_it),
+      cmocka_unit_test(different_blades_have_it_too),
   };
   return cmocka_run_group_tests(tests, scratch_make, scratch_remove);
 }

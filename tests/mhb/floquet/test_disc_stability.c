@@ -18,15 +18,21 @@ typedef struct {
   mhb_settings          settings; /* of one sector */
 } sector;
 
-static void sector_create(int engine_order, int modes, double coupling, double load, double n0,
-                          sector *s) {
-  s->disc = lumped_disc_of(coupling, 1.7);
+static void sector_create_spinning(int engine_order, int modes, double coupling, double load,
+                                   double n0, double spin, sector *s) {
+  s->disc      = lumped_disc_of(coupling, 1.7);
+  s->disc.spin = spin;
   lumped_disc_waves(&s->disc, modes, &s->waves);
   s->settings                 = lumped_disc_settings(engine_order, FEW);
   s->settings.n_preloads      = 1;
   s->settings.n0[0]           = n0;
   s->settings.scale           = load;
   s->settings.nodal_diameters = &s->waves;
+}
+
+static void sector_create(int engine_order, int modes, double coupling, double load, double n0,
+                          sector *s) {
+  sector_create_spinning(engine_order, modes, coupling, load, n0, 0, s);
 }
 
 /* all[3 N][2 m + 1] <- the motion of one contact in every sector, b E k/N of a turn later. */
@@ -48,6 +54,7 @@ typedef struct {
   int         engine_order;
   double      w, load, n0; /* rad/s, -, N */
   mhb_verdict verdict;
+  double      spin; /* rad/s, with Coriolis terms */
 } place;
 
 /* Multipliers of the wave by nodal diameters, and of the ring of all sectors at the same motion. */
@@ -63,7 +70,7 @@ static comparison compare(const place *at, int substeps) {
   sector                s;
   modal_model           ring;
   periodic              wave, whole;
-  sector_create(at->engine_order, DISC_DOFS, 0.8, at->load, at->n0, &s);
+  sector_create_spinning(at->engine_order, DISC_DOFS, 0.8, at->load, at->n0, at->spin, &s);
   lumped_disc_ring(&s.disc, at->engine_order, &ring);
   const mhb_settings of_ring = lumped_disc_ring_settings(&s.settings);
   periodic_create(&s.waves.model[0], &s.settings, at->w, NULL, &wave);
@@ -81,18 +88,21 @@ static comparison compare(const place *at, int substeps) {
 }
 
 static void multipliers_are_those_of_the_ring(void **state) {
-  static const place places[] = {{3, 0.93, 5, 0.4, MHB_STABLE},  {1, 0.86, 5, 0.4, MHB_STABLE},
-                                 {2, 0.93, 5, 0.4, MHB_STABLE},  {4, 0.93, 5, 0.4, MHB_STABLE},
-                                 {6, 0.93, 12, 0.1, MHB_STABLE}, {11, 0.80, 12, 0.1, MHB_UNSTABLE}};
+  static const place places[] = {
+      {3, 0.93, 5, 0.4, MHB_STABLE, 0},    {1, 0.86, 5, 0.4, MHB_STABLE, 0},
+      {2, 0.93, 5, 0.4, MHB_STABLE, 0},    {4, 0.93, 5, 0.4, MHB_STABLE, 0},
+      {6, 0.93, 12, 0.1, MHB_STABLE, 0},   {11, 0.80, 12, 0.1, MHB_UNSTABLE, 0},
+      {3, 0.93, 5, 0.4, MHB_STABLE, 0.1},  {5, 0.93, 5, 0.4, MHB_STABLE, 0.1},
+      {4, 0.93, 5, 0.4, MHB_STABLE, -0.1}, {11, 0.80, 12, 0.1, MHB_UNSTABLE, 0.05}};
   (void)state;
   for (size_t i = 0; i < sizeof places / sizeof *places; i++) {
     const place     *at = &places[i];
     const comparison c  = compare(at, SUBSTEPS);
     print_message(
-        "E = %d, %.2f rad/s: largest %.8f, of the ring %.8f; %d multipliers, apart %.1e; "
+        "E = %d, %.2f rad/s, spin %g: largest %.8f, of the ring %.8f; %d multipliers, apart %.1e; "
         "slipping %.2f, open %.2f\n",
-        at->engine_order, at->w, c.mine.largest, c.wanted.largest, c.mine.n, c.apart, c.share[1],
-        c.share[2]);
+        at->engine_order, at->w, at->spin, c.mine.largest, c.wanted.largest, c.mine.n, c.apart,
+        c.share[1], c.share[2]);
     assert_int_equal(c.mine.verdict, at->verdict);
     assert_int_equal(c.wanted.verdict, at->verdict);
     assert_int_equal(c.mine.n, c.wanted.n);
@@ -107,7 +117,7 @@ static void multipliers_are_those_of_the_ring(void **state) {
 /* Both integrate with the same sub-steps but over other intervals: what is between them is the
  * error of the sub-steps, of fourth order. */
 static void the_distance_is_that_of_the_substeps(void **state) {
-  const place  at     = {4, 0.93, 5, 0.4, MHB_STABLE};
+  const place  at     = {4, 0.93, 5, 0.4, MHB_STABLE, 0};
   const double coarse = compare(&at, 64).apart, fine = compare(&at, 256).apart;
   (void)state;
   print_message("apart %.1e with 64 sub-steps, %.1e with 256\n", coarse, fine);
@@ -116,15 +126,17 @@ static void the_distance_is_that_of_the_substeps(void **state) {
 
 /* Stuck or open throughout: eigenvalues of the linear structure. */
 static void linear_limits_are_those_of_the_ring(void **state) {
-  static const place places[] = {{3, 0.93, 0.01, 0.4, MHB_STABLE},
-                                 {5, 0.93, 0.01, -0.4, MHB_STABLE}};
+  static const place places[] = {{3, 0.93, 0.01, 0.4, MHB_STABLE, 0},
+                                 {5, 0.93, 0.01, -0.4, MHB_STABLE, 0},
+                                 {3, 0.93, 0.01, 0.4, MHB_STABLE, 0.1},
+                                 {5, 0.93, 0.01, -0.4, MHB_STABLE, -0.1}};
   (void)state;
-  for (int i = 0; i < 2; i++) {
+  for (int i = 0; i < 4; i++) {
     const comparison c = compare(&places[i], SUBSTEPS);
-    print_message("%s: apart %.1e\n", i ? "open" : "stuck", c.apart);
+    print_message("%s, spin %g: apart %.1e\n", i % 2 ? "open" : "stuck", places[i].spin, c.apart);
     assert_int_equal(c.mine.n, 2 * N * DISC_DOFS);
     assert_below(c.apart, 1e-11);
-    assert_near(c.share[i ? 2 : 0], 1, 0);
+    assert_near(c.share[i % 2 ? 2 : 0], 1, 0);
   }
 }
 
@@ -146,7 +158,7 @@ static mhb_multipliers of_sector(const place *at, const modal_model *model,
 /* A disc that couples nothing gives the clamped blade. */
 static void an_uncoupled_disc_is_clamped_blades(void **state) {
   static double complex one[MOST], all[MOST];
-  const place           places[] = {{3, 0.93, 5, 0.4, MHB_STABLE}, {2, 0.93, 12, 0.1, MHB_STABLE}};
+  const place places[] = {{3, 0.93, 5, 0.4, MHB_STABLE, 0}, {2, 0.93, 12, 0.1, MHB_STABLE, 0}};
   (void)state;
   for (int i = 0; i < 2; i++)
     for (int modes = 6; modes <= DISC_DOFS; modes += 6) {
@@ -186,7 +198,7 @@ static void all_nodal_diameters_are_needed(void **state) {
 /* Modes that answer statically, because of the number of states or in the file. */
 static void higher_modes_may_answer_statically(void **state) {
   static double complex copy[MOST];
-  const place           at = {3, 0.93, 5, 0.4, MHB_STABLE};
+  const place           at = {3, 0.93, 5, 0.4, MHB_STABLE, 0};
   mhb_multipliers       out[3];
   (void)state;
   for (int i = 0; i < 3; i++) {

@@ -20,13 +20,19 @@ typedef struct {
   mhb_settings          settings; /* of one sector */
 } sector;
 
-static void sector_create(int engine_order, int harmonics, double load, sector *s) {
-  s->disc = lumped_disc_of(0.8, 1.7);
+static void sector_create_spinning(int engine_order, int harmonics, double load, double spin,
+                                   sector *s) {
+  s->disc      = lumped_disc_of(0.8, 1.7);
+  s->disc.spin = spin;
   lumped_disc_waves(&s->disc, DISC_DOFS, &s->waves);
   s->settings                 = lumped_disc_settings(engine_order, harmonics);
   s->settings.n_preloads      = 1;
   s->settings.scale           = load;
   s->settings.nodal_diameters = &s->waves;
+}
+
+static void sector_create(int engine_order, int harmonics, double load, sector *s) {
+  sector_create_spinning(engine_order, harmonics, load, 0, s);
 }
 
 /* all[pair][3][2 m + 1] <- the motion x[3][2 m + 1] of one contact in every sector. Sector b lags
@@ -82,8 +88,8 @@ static double residual(const modal_model *ring, const mhb_settings *settings, do
   return sqrt(left / size);
 }
 
-static void the_ring_has_the_same_solution(void **state) {
-  (void)state;
+/* spin: with Coriolis terms. */
+static void compare_solutions(double spin) {
   static const int order[] = {1, 4, 6, 11}; /* N/2; above it and above N the wave runs back */
   for (int i = 0; i < 4; i++) {
     const int     E = order[i];
@@ -91,7 +97,7 @@ static void the_ring_has_the_same_solution(void **state) {
     modal_model   ring;
     periodic      one;
     static double x[3 * N * (2 * FEW + 1)];
-    sector_create(E, FEW, 5, &s);
+    sector_create_spinning(E, FEW, 5, spin, &s);
     lumped_disc_ring(&s.disc, E, &ring);
     const mhb_settings of_ring = lumped_disc_ring_settings(&s.settings);
     periodic_create(&s.waves.model[0], &s.settings, 0.93, NULL, &one);
@@ -99,8 +105,9 @@ static void the_ring_has_the_same_solution(void **state) {
     const double left = residual(&ring, &of_ring, x);
     expand(FEW, -E, one.x, x);
     const double turned = residual(&ring, &of_ring, x);
-    print_message("E = %d: %.1e, slipping for %.2f of the period; turned the other way %.1e\n", E,
-                  left, slipping(&one), turned);
+    print_message(
+        "E = %d, spin %g: %.1e, slipping for %.2f of the period; turned the other way %.1e\n", E,
+        spin, left, slipping(&one), turned);
     assert_below(left, 1e-8);
     assert_true(slipping(&one) > 0.1);
     if (E % (N / 2) != 0) assert_true(turned > 0.1);
@@ -108,6 +115,16 @@ static void the_ring_has_the_same_solution(void **state) {
     modal_model_free(&ring);
     modal_nodal_diameters_free(&s.waves);
   }
+}
+
+static void the_ring_has_the_same_solution(void **state) {
+  (void)state;
+  compare_solutions(0);
+}
+
+static void with_coriolis_terms_too(void **state) {
+  (void)state;
+  compare_solutions(0.1);
 }
 
 /* x[3 N][2 m + 1] <- the motion of all contacts at a point. */
@@ -319,6 +336,7 @@ static void all_nodal_diameters_are_needed(void **state) {
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(the_ring_has_the_same_solution),
+      cmocka_unit_test(with_coriolis_terms_too),
       cmocka_unit_test(time_integration_ends_on_it),
       cmocka_unit_test(sectors_in_one_are_the_ring),
       cmocka_unit_test(terms_are_those_of_the_nodal_diameters),

@@ -25,7 +25,7 @@ static mhb_lasting_series make(made_up *x, double m, double noise, double spread
     x->spread[i] = spread * pow(factor, i);
   }
   for (int i = 0; i < PEAKS; i++) x->peak[i] = m * (1 + (w - 1) * i / (PEAKS - 1));
-  return (mhb_lasting_series){BLOCKS, PEAKS, x->mean, x->spread, x->peak};
+  return (mhb_lasting_series){BLOCKS, PEAKS, x->mean, x->spread, x->peak, false};
 }
 
 typedef struct {

@@ -8,7 +8,7 @@
 
 enum { N = DISC_SECTORS, D = DISC_DOFS, ALL = DISC_ALL, TOP = 9 };
 
-/* K - w^2 M + j w C of all sectors, column-major, factored. */
+/* K - w^2 M + j w (C + G) of all sectors, column-major, factored. */
 static void ring_matrix(const lumped_disc *d, double w, double complex *A, int *pivot) {
   const double complex factor = 1 + I * w * d->damping;
   memset(A, 0, sizeof *A * ALL * ALL);
@@ -21,6 +21,10 @@ static void ring_matrix(const lumped_disc *d, double w, double complex *A, int *
         A[(here + i) * ALL + next + j] += factor * d->next[i][j];
       }
   for (int i = 0; i < ALL; i++) A[i * ALL + i] -= w * w * d->mass[i % D];
+  for (int b = 0; b < N; b++)
+    for (int i = 0; i < D; i++)
+      for (int j = 0; j < D; j++)
+        A[(b * D + j) * ALL + b * D + i] += I * w * lumped_disc_coriolis(d, i, j);
   assert_true(mhb_factor_complex(ALL, A, pivot));
 }
 
@@ -108,11 +112,12 @@ static double largest(const lumped_disc *d, const modal_nodal_diameters *waves, 
   return worst;
 }
 
-/* All modes: every harmonic, forward and backward, also of subharmonics. */
-static void the_sum_of_modes_is_the_ring(void **state) {
-  (void)state;
-  const lumped_disc     d = lumped_disc_of(0.8, 1.7);
+/* All modes: every harmonic, forward and backward, also of subharmonics. spin: with Coriolis
+ * terms. */
+static void sum_of_modes(double spin) {
+  lumped_disc           d = lumped_disc_of(0.8, 1.7);
   modal_nodal_diameters waves;
+  d.spin = spin;
   lumped_disc_waves(&d, D, &waves);
   for (int E = 0; E <= 11; E++) {
     mhb_settings s = lumped_disc_settings(E, TOP);
@@ -123,6 +128,34 @@ static void the_sum_of_modes_is_the_ring(void **state) {
   mhb_settings s = lumped_disc_settings(5, TOP);
   s.subharmonics = 3;
   assert_below(largest(&d, &waves, s, TOP, 1.31), 1e-11);
+  modal_nodal_diameters_free(&waves);
+}
+
+static void the_sum_of_modes_is_the_ring(void **state) {
+  (void)state;
+  sum_of_modes(0);
+}
+
+static void coriolis_terms_are_those_of_the_ring(void **state) {
+  (void)state;
+  sum_of_modes(0.4);
+  sum_of_modes(-0.4);
+}
+
+/* The sense of rotation matters, and so do Coriolis terms at all. */
+static void the_sense_of_rotation_is_seen(void **state) {
+  (void)state;
+  lumped_disc           d = lumped_disc_of(0.8, 1.7), other;
+  modal_nodal_diameters waves;
+  d.spin = 0.1;
+  lumped_disc_waves(&d, D, &waves);
+  for (int turn = -1; turn < 1; turn++) {
+    other          = d;
+    other.spin     = turn * d.spin;
+    const double e = largest(&other, &waves, lumped_disc_settings(3, TOP), TOP, 0.93);
+    print_message("spin %g in place of %g: %.1e\n", other.spin, d.spin, e);
+    assert_true(e > 1e-2);
+  }
   modal_nodal_diameters_free(&waves);
 }
 
@@ -196,19 +229,24 @@ static void wrong_signs_are_seen(void **state) {
   modal_nodal_diameters_free(&waves);
 }
 
-/* Slopes by the frequency against differences. */
-static void slopes_are_those_of_differences(void **state) {
-  (void)state;
-  const lumped_disc     d = lumped_disc_of(0.8, 1.7);
+static void scale_damping(modal_nodal_diameters *waves, double factor) {
+  for (int n = 0; n < waves->n; n++)
+    for (int i = 0; i < waves->model[n].n_modes; i++) waves->model[n].damping_ratio[i] *= factor;
+}
+
+/* Slopes by the frequency, and by the damping, against differences. */
+static void compare_slopes(double spin) {
+  lumped_disc           d = lumped_disc_of(0.8, 1.7);
   modal_nodal_diameters waves;
   mhb_settings          s = lumped_disc_settings(3, TOP);
   mhb_receptance       *r;
   const double complex  p[3] = {0.3 - 0.2 * I, 0.7 + 0.1 * I, -0.4 * I}, no[3] = {0};
+  d.spin = spin;
   lumped_disc_waves(&d, 5, &waves);
   s.nodal_diameters = &waves;
   assert_ok(mhb_receptance_create(&waves.model[0], &s, TOP, &r));
   for (int k = 1; k <= TOP; k++) {
-    double complex u[2][3], q[2][3], slope[3], change[3], wanted[3];
+    double complex u[2][3], q[2][3], slope[3], change[3], wanted[3], probe[3];
     const double   h = 1e-6, omega = 0.31;
     for (int i = 0; i < 2; i++) {
       mhb_receptance_set_frequency(r, omega + (i ? h : -h));
@@ -224,9 +262,31 @@ static void slopes_are_those_of_differences(void **state) {
     mhb_receptance_probe_change(r, k, p, no, 1, 0, change);
     for (int i = 0; i < 3; i++) wanted[i] = (q[1][i] - q[0][i]) / (2 * h);
     assert_below(worse(0, change, wanted, 3), 1e-7);
+    mhb_receptance_by_damping(r, k, p, slope, probe);
+    for (int i = 0; i < 2; i++) {
+      const double factor = i ? 1 + h : 1 - h;
+      scale_damping(&waves, factor);
+      mhb_receptance_set_frequency(r, omega + 1); /* anew */
+      mhb_receptance_update(r, k);
+      mhb_receptance_set_frequency(r, omega);
+      mhb_receptance_update(r, k);
+      mhb_receptance_motion(r, k, p, u[i]);
+      mhb_receptance_probe(r, k, p, q[i]);
+      scale_damping(&waves, 1 / factor);
+    }
+    for (int i = 0; i < 3; i++) wanted[i] = (u[1][i] - u[0][i]) / (2 * h);
+    assert_below(worse(0, slope, wanted, 3), 1e-6);
+    for (int i = 0; i < 3; i++) wanted[i] = (q[1][i] - q[0][i]) / (2 * h);
+    assert_below(worse(0, probe, wanted, 3), 1e-6);
   }
   mhb_receptance_destroy(r);
   modal_nodal_diameters_free(&waves);
+}
+
+static void slopes_are_those_of_differences(void **state) {
+  (void)state;
+  compare_slopes(0);
+  compare_slopes(0.4);
 }
 
 /* Uncoupled discs: the clamped blade. */
@@ -275,6 +335,8 @@ static void what_is_missing_is_told(void **state) {
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(the_sum_of_modes_is_the_ring),
+      cmocka_unit_test(coriolis_terms_are_those_of_the_ring),
+      cmocka_unit_test(the_sense_of_rotation_is_seen),
       cmocka_unit_test(residual_terms_have_sixth_order),
       cmocka_unit_test(fewer_modes_are_the_ring),
       cmocka_unit_test(wrong_signs_are_seen),

@@ -108,29 +108,15 @@ static void earlier_results_are_tried(void **state) {
   assert_refused(h5_check_earlier(DAMAGED), SHB_ERR_IO, "heap.h5: is damaged");
 }
 
-/* HDF5 crashes over the format of this file. */
-static void a_crash_is_one_line(void **state) {
+/* HDF5 crashes over the format of the first file, and goes round for ever over the second. */
+static void a_file_that_hdf5_cannot_bear_is_one_line(void **state) {
   (void)state;
-#ifdef __SANITIZE_ADDRESS__
-  skip(); /* there is no guard */
-#endif
-  int  ends[2], end = 0;
-  char text[600] = "";
-  assert_int_equal(pipe(ends), 0);
-  const pid_t child = fork();
-  if (child == 0) {
-    hid_t file;
-    for (int i = 1; i < 32; i++) signal(i, SIG_DFL); /* those of the test framework */
-    dup2(ends[1], STDERR_FILENO);
-    if (h5_open(DAMAGED, &file) == SHB_OK) h5_check_format(file, "shroudhb modal", 9);
-    _exit(99);
-  }
-  close(ends[1]);
-  assert_true(read(ends[0], text, sizeof text - 1) > 0);
-  close(ends[0]);
-  assert_int_equal(waitpid(child, &end, 0), child);
-  assert_true(WIFEXITED(end) && WEXITSTATUS(end) == SHB_ERR_INPUT);
-  assert_has(text, "heap.h5: is damaged: HDF5 crashed while it was read; write or copy it again\n");
+  hid_t file;
+  for (int again = 0; again < 2; again++)
+    assert_refused(h5_open(DAMAGED, &file), SHB_ERR_INPUT,
+                   "heap.h5: is damaged: HDF5 crashed while it was read; write or copy it again");
+  assert_refused(h5_open(ENDLESS, &file), SHB_ERR_INPUT,
+                 "endless.h5: is damaged: HDF5 reads it without an end; write or copy it again");
 }
 
 int main(void) {
@@ -139,7 +125,7 @@ int main(void) {
       cmocka_unit_test(other_programs_read_and_edit_it),
       cmocka_unit_test(a_file_that_cannot_be_opened_is_not_taken_for_another),
       cmocka_unit_test(earlier_results_are_tried),
-      cmocka_unit_test(a_crash_is_one_line),
+      cmocka_unit_test(a_file_that_hdf5_cannot_bear_is_one_line),
   };
   return cmocka_run_group_tests(tests, scratch_make, scratch_remove);
 }
