@@ -1,5 +1,7 @@
-/* Sparse supernodal Cholesky factor on one rank, on all threads. CHOLMOD orders by nested dissection
- * and analyses; numbers and solves are those of supernodal_factor and supernodal_solve.
+/* Sparse supernodal Cholesky factor on one rank, on all threads.
+ *
+ * CHOLMOD orders by nested dissection and analyses. Numbers and solves are those of
+ * supernodal_factor and supernodal_solve.
  *
  * The matrix is not copied. The numbers do not depend on the number of threads. A solve takes
  * several right-hand sides: eight cost twice as much as one. */

@@ -65,9 +65,8 @@ void       mhb_truncation_destroy(mhb_truncation *truncation);
  * its vibration. Of first order also where the Newton step does not exist (at a fold). */
 double mhb_truncation_error(mhb_truncation *truncation, const double *x);
 
-/* change[doubled->n] <- (I + R J)^-1 change, the change of the solution by one of the motion. Of the
- * last estimate. false: it failed. By Broyden's step: harmonics up to m to a hundredth, the others
- * stay. */
+/* change[doubled->n] <- (I + R J)^-1 change at the point of the last estimate. false: it failed. By
+ * Broyden's step: harmonics up to m to a hundredth, the others stay. */
 bool mhb_truncation_solve(mhb_truncation *truncation, double *change);
 
 /* How much of a change of the solution, step[doubled->n], is left by the curvature of the residual:

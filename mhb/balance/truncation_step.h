@@ -1,5 +1,5 @@
-/* Distance of a solution with m harmonics from that with 2m, without a Jacobian of the latter: for
- * rings of different blades and for many pairs.
+/* Distance of a solution with m harmonics from that with 2m, without a Jacobian of the latter. It
+ * serves rings of different blades, and many pairs.
  *
  * The balance with 2m harmonics is solved by Broyden's method from u. Its first matrix has two
  * parts. Harmonics up to m: the Jacobian with m harmonics. A harmonic k above: I + R_k D alone, D
@@ -51,8 +51,8 @@ void       mhb_truncation_step_destroy(mhb_truncation_step *step);
 int mhb_truncation_step_find(mhb_truncation_step *step, mhb_ring_system *factors, const double *x,
                              const double *r, const double *feedback, double *out);
 
-/* The same with the factors of the last step: harmonics up to m of change[doubled->n] <- (I + R
- * J)^-1 change of the balance with m harmonics; those above stay. 0: it failed. */
+/* Harmonics up to m of change[doubled->n] <- (I + R J)^-1 change, by the factors of the last step.
+ * Those above stay. 0: it failed. */
 int mhb_truncation_step_solve(mhb_truncation_step *step, double *change);
 
 #endif

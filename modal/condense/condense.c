@@ -11,10 +11,9 @@
 #include "modal/common/phases.h"
 #include "modal/condense/residual_modes.h"
 
-/* BATCH: right-hand sides per solve, at most; BATCH_NUMBERS: numbers in one matrix of them, at most.
- * More save no time but need memory. MAX_COLUMNS: columns of
- * which residual modes are made at most, all at once. MAX_NUMBERS: numbers in their vectors, at
- * most. */
+/* Most of each. BATCH: right-hand sides per solve. BATCH_NUMBERS: numbers in a matrix of them. More
+ * save no time but need memory. MAX_COLUMNS: columns of which residual modes are made, all at once.
+ * MAX_NUMBERS: numbers in their vectors. */
 enum {
   BATCH         = 80,
   LEAST_BATCH   = 40,

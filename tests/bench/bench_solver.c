@@ -1,5 +1,5 @@
-/* Factor and solves of the stiffness matrix of the z-notch blade, ten-node tetrahedra, by number of
- * threads: seconds by the clock, and the backward error of the solutions.
+/* Factor and solves of the stiffness matrix of the z-notch blade, ten-node tetrahedra. Rows by
+ * number of threads: seconds by the clock, and the backward error of the solutions.
  *
  *   bench_solver RUNG...    10k 43k 170k, by nodes
  *   bench_solver --quick    2k: fails if threads change a bit, or an error is above 1e-15

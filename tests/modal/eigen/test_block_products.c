@@ -1,4 +1,4 @@
-/* Products of tall blocks: plain sums, every remainder of rows and columns, any number of threads. */
+/* Products of tall blocks: plain sums, remainders of rows and columns, any number of threads. */
 #include <math.h>
 #include <omp.h>
 #include <setjmp.h>
