@@ -310,7 +310,7 @@ static shb_status locate(mhb_branch_stability *w, int i) {
   if (!mhb_arclength_set_tangent(curve, chord, &curve->current) ||
       !mhb_arclength_set_tangent(curve, chord, &curve->next) ||
       !mhb_arclength_locate(curve, excess_test, &s, w->at[i - 1].complex_excess,
-                            w->at[i].complex_excess, &at) ||
+                            w->at[i].complex_excess, 0, &at) ||
       !(fabs(s.at.complex_excess) < ON_CIRCLE))
     return SHB_OK;
   mhb_harmonic_levels_errors(w->tracer->levels, &curve->trial);

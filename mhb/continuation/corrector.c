@@ -5,6 +5,8 @@
 
 /* Chord steps: from this residual on, and only as long as each gains a decade. */
 static const double CHORD_FROM = 1e-2, CHORD_GAIN = 0.1, PROMISE = 3;
+/* Of a costly system three corrections gain this at least, or the step is given up. */
+static const double LEAST_GAIN = 0.1;
 enum { MAX_CORRECTIONS = 12, MAX_HALVINGS = 3, MAX_CHORD_STEPS = 4 };
 
 double mhb_arclength_size(const mhb_arclength *curve) {
@@ -90,6 +92,10 @@ static int alternates(const double *seen, int last) {
   return 1;
 }
 
+static bool gains_little(const double *seen, int last) {
+  return last >= 3 && seen[last] > LEAST_GAIN * seen[last - 3];
+}
+
 static int correct(mhb_arclength *curve, const double *normal, double clip,
                    mhb_curve_point *point) {
   double unit = mhb_arclength_unit(curve), before = INFINITY, cut = 0;
@@ -101,6 +107,7 @@ static int correct(mhb_arclength *curve, const double *normal, double clip,
     bool stagnates = point->residual > 0.5 * before;
     if (stagnates && point->residual < curve->roundoff_level) return 1;
     before = seen[point->iterations] = point->residual;
+    if (curve->system->costly && gains_little(seen, point->iterations)) return 0;
     if (alternates(seen, point->iterations)) return 0;
     if (point->iterations == MAX_CORRECTIONS || !factor_bordered(curve, unit, normal, point) ||
         !solve_for_correction(curve, unit, point))

@@ -31,13 +31,14 @@ void mhb_curve_point_destroy(mhb_curve_system *system, mhb_curve_point *point) {
 }
 
 static shb_status fill(mhb_arclength *curve) {
-  size_t one    = (size_t)curve->n + 1;
-  curve->chord  = calloc(one, sizeof(double));
-  curve->column = calloc(one, sizeof(double));
-  curve->row    = calloc(one, sizeof(double));
-  curve->delta  = calloc(one, sizeof(double));
-  SHB_CHECK(curve->chord && curve->column && curve->row && curve->delta, SHB_ERR_IO,
-            "out of memory for a curve of %d unknowns", curve->n);
+  size_t one            = (size_t)curve->n + 1;
+  curve->chord          = calloc(one, sizeof(double));
+  curve->former_tangent = calloc(one, sizeof(double));
+  curve->column         = calloc(one, sizeof(double));
+  curve->row            = calloc(one, sizeof(double));
+  curve->delta          = calloc(one, sizeof(double));
+  SHB_CHECK(curve->chord && curve->former_tangent && curve->column && curve->row && curve->delta,
+            SHB_ERR_IO, "out of memory for a curve of %d unknowns", curve->n);
   SHB_TRY(mhb_curve_point_create(curve->system, &curve->current));
   SHB_TRY(mhb_curve_point_create(curve->system, &curve->next));
   for (int i = 0; i < 3; i++) SHB_TRY(mhb_curve_point_create(curve->system, &curve->bracket[i]));
@@ -74,6 +75,7 @@ void mhb_arclength_destroy(mhb_arclength *curve) {
   mhb_curve_point_destroy(curve->system, &curve->trial);
   for (int i = 0; i < 3; i++) mhb_curve_point_destroy(curve->system, &curve->bracket[i]);
   free(curve->chord);
+  free(curve->former_tangent);
   free(curve->column);
   free(curve->row);
   free(curve->delta);

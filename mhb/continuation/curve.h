@@ -34,6 +34,7 @@ struct mhb_curve_system {
   bool   relative; /* a change of the value is compared with the value itself, not with the range */
   bool   plain;    /* where no ordinary step converges it is the user who tries others */
   bool   smooth;   /* the residual is accurate enough for chord steps */
+  bool   costly;   /* a correction that gains little is given up: a shorter step costs less */
   int    row_length; /* x is [n / row_length][row_length]; a finer system of the same curve has as
                       * many rows, longer ones, that begin with the same unknowns */
   int    copies;     /* time-shifted copies of a solution, itself included; 1: none */
@@ -96,6 +97,8 @@ struct mhb_arclength {
   mhb_curve_point trial;          /* a point located on it */
   mhb_curve_point bracket[3];     /* of a search on it: both ends, and a former one */
   double         *chord;          /* [n + 1] direction of a step or a search */
+  double         *former_tangent; /* [n + 1] where the last step of a costly system began */
+  double          former_step;    /* its length in y; 0: there was none */
   double         *column, *row, *delta; /* [n + 1] of the bordered system */
 };
 

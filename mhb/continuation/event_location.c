@@ -24,7 +24,8 @@ typedef struct {
   const mhb_curve_point *end[2];
   double                 at[2], g[2];
   double                 relative_value; /* the chord's change of the value, relative */
-  int                    guess;          /* which one converged last */
+  int                    guesses; /* that are tried: one, where the event need not be exact */
+  int                    guess;   /* which one converged last */
 } search;
 
 static void swap_points(mhb_curve_point *a, mhb_curve_point *b) {
@@ -93,7 +94,7 @@ static double place_of_trial(const search *s) {
 static int solve_at(search *s, double *at) {
   mhb_arclength *curve   = s->curve;
   int            rounded = -1;
-  for (int i = 0; i < GUESSES; i++) {
+  for (int i = 0; i < s->guesses; i++) {
     int which = (s->guess + i) % GUESSES;
     if (!correct_guess(s, *at, which)) continue;
     double place = which < 3 ? *at : place_of_trial(s);
@@ -199,7 +200,7 @@ static bool locate_at_kink(search *s, mhb_test_function g, void *context) {
 /* ---- the search ---- */
 
 bool mhb_arclength_locate(mhb_arclength *curve, mhb_test_function g, void *context,
-                          double at_current, double at_next, double *fraction) {
+                          double at_current, double at_next, double exact, double *fraction) {
   for (int i = 0; i < curve->n; i++) curve->chord[i] = curve->next.x[i] - curve->current.x[i];
   curve->chord[curve->n] = curve->next.value - curve->current.value;
   double change          = fabs(curve->chord[curve->n]);
@@ -207,7 +208,8 @@ bool mhb_arclength_locate(mhb_arclength *curve, mhb_test_function g, void *conte
                             .end            = {&curve->current, &curve->next},
                             .at             = {0, 1},
                             .g              = {at_current, at_next},
-                            .relative_value = change / mhb_arclength_size(curve)};
+                            .relative_value = change / mhb_arclength_size(curve),
+                            .guesses        = exact > 0 ? 1 : GUESSES};
   int    last_side = -1, kinks = 0;
   for (int i = 0; i < MAX_STEPS; i++) {
     double at = (s.at[0] * s.g[1] - s.at[1] * s.g[0]) / (s.g[1] - s.g[0]);
@@ -232,7 +234,7 @@ bool mhb_arclength_locate(mhb_arclength *curve, mhb_test_function g, void *conte
     if (side == last_side) s.g[1 - side] *= 0.5;
     s.g[side] = value;
     left      = fmin(s.at[1 - side] > at ? s.at[1 - side] - at : at - s.at[1 - side], moved);
-    if (left < CHORD_FOUND ||
+    if (left < fmax(exact, CHORD_FOUND) ||
         (i > 2 && left * s.relative_value < VALUE_FOUND && left < VALUE_LAST_RESORT))
       return true;
     set_end(&s, side, at);

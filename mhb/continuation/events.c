@@ -90,7 +90,8 @@ static void swap(mhb_curve_point *a, mhb_curve_point *b) {
 static bool find(mhb_arclength *curve, const mhb_event_test *t, double *place) {
   if (!changes_sign(t)) return false;
   if (t->is_near && !t->is_near(curve, t->value_current, t->value_next, t->context)) return false;
-  return mhb_arclength_locate(curve, t->g, t->context, t->value_current, t->value_next, place) &&
+  return mhb_arclength_locate(curve, t->g, t->context, t->value_current, t->value_next, t->exact,
+                              place) &&
          (!t->accept || t->accept(curve, &curve->trial, t->context));
 }
 

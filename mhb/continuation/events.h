@@ -43,8 +43,9 @@ typedef struct {
   bool (*is_near)(mhb_arclength *curve, double at_current, double at_next, void *context);
   /* Whether the located point is the event; NULL: always. */
   bool (*accept)(mhb_arclength *curve, const mhb_curve_point *point, void *context);
-  int     special;                   /* of the recorded point: MHB_FOLD, MHB_PEAK, ... */
-  mhb_end end;                       /* of the segment; MHB_END_NONE: it goes on */
+  double  exact;   /* where the event need not be exact: its error, relative to the chord; else 0 */
+  int     special; /* of the recorded point: MHB_FOLD, MHB_PEAK, ... */
+  mhb_end end;     /* of the segment; MHB_END_NONE: it goes on */
   double  value_current, value_next; /* of g at the ends of the step */
 } mhb_event_test;
 

@@ -129,6 +129,13 @@ typedef struct {
   bool             verified;     /* a sweep at the optimum has no higher peak */
 } mhb_optimum;
 
+/* What following peaks took; processor seconds of all threads. Not in the file. */
+typedef struct {
+  int    sweeps;  /* in outline, the first ones and further ones */
+  double seeds;   /* s, the first sweeps */
+  double further; /* s, sweeps beyond ends of branches and at the optimum */
+} mhb_tracking_cost;
+
 /* Of a main curve of a ring of different blades: peaks of its output and of the tuned ring's. */
 typedef struct {
   double factor;          /* worst over tuned; 0: not computed */
@@ -225,6 +232,7 @@ typedef struct {
   bool    tracks_multiplier; /* these are flips or Neimark-Sacker points */
   int     output_harmonic;   /* of the excitation: of the amplitude of outputs; 0, 1: the first */
   mhb_optimum               optimum;
+  mhb_tracking_cost         cost;    /* of mhb.track */
   mhb_samples              *samples; /* of a mistuned ring; NULL: none were drawn */
   const modal_contact_face *face;    /* that the maps are written on; NULL: no maps; not owned */
 } mhb_response;

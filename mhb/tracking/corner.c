@@ -17,8 +17,14 @@ static const double OMEGA_STEP = 1e-5, VALUE_STEP = 1e-3;
 /* Brackets of omega and of q end at these lengths, relative. */
 static const double EXACT_OMEGA = 1e-14, EXACT_PEAK = 1e-11, EXACT_VALUE = 1e-9;
 
-/* How far a root is sought from its guess, and how near to it a seed lies, relative. */
-static const double REACH = 0.02, AT_SEED = 1e-5;
+/* The same where the slipping side, known less well, ends the peak. */
+static const double EXACT_END = 1e-6;
+
+/* How far a root is sought from its guess, relative. */
+static const double REACH = 0.02;
+
+/* The secant method's first step, and its longest, relative. */
+static const double SECANT = 1e-6, NEARBY = 2e-3;
 
 /* The slipping side is judged at the first of these distances from the corner, relative, at which
  * Newton's method converges to SETTLED. There the amplitude differs from that of the corner by no
@@ -34,7 +40,8 @@ static const double STRAIGHT = 3e-5;
  * are iterated to SETTLED_MEANS. */
 static const double BALANCED = 1e-5, SETTLED_MEANS = 1e-12;
 
-enum { GRID = 96, MOST_MEANS = 100, LEAST_PARTS = 32 };
+/* A grid of phases resolves the highest harmonic of the stuck motion by so many points. */
+enum { PER_PERIOD = 24, MOST_GRID = 96, MOST_MEANS = 100, LEAST_PARTS = 32, MOST_SECANTS = 8 };
 
 /* ---- two discs that touch ---- */
 
@@ -75,21 +82,32 @@ static forces forces_at(const mhb_balance *b, const double *x, double t) {
 }
 
 static double distance(const forces *a, const forces *b, double mu) {
-  return 0.5 * (hypot(a->f[0] - b->f[0], a->f[1] - b->f[1]) - mu * (a->n + b->n));
+  const double d[2] = {a->f[0] - b->f[0], a->f[1] - b->f[1]};
+  return 0.5 * (sqrt(d[0] * d[0] + d[1] * d[1]) - mu * (a->n + b->n));
+}
+
+/* The highest harmonic of a stuck motion: that of the load. 1 at least. */
+static int highest_harmonic(const mhb_balance *b, const double *x) {
+  int most = 1;
+  for (int axis = 0; axis < 3; axis++)
+    for (int k = b->m; k > most; k--)
+      if (x[axis * b->nb + 2 * k - 1] != 0 || x[axis * b->nb + 2 * k] != 0) most = k;
+  return most;
 }
 
 /* The phases of the largest distance on a grid. */
 static void search_times(const mhb_balance *b, const double *x, double time[2]) {
-  forces at[GRID];
-  double best = -INFINITY;
-  for (int i = 0; i < GRID; i++) at[i] = forces_at(b, x, SHB_TWO_PI * i / GRID);
-  for (int i = 0; i < GRID; i++)
+  forces    at[MOST_GRID];
+  double    best = -INFINITY;
+  const int fine = PER_PERIOD * highest_harmonic(b, x), n = fine < MOST_GRID ? fine : MOST_GRID;
+  for (int i = 0; i < n; i++) at[i] = forces_at(b, x, SHB_TWO_PI * i / n);
+  for (int i = 0; i < n; i++)
     for (int j = 0; j < i; j++) {
       double d = distance(&at[i], &at[j], b->law[0].mu);
       if (d <= best) continue;
       best    = d;
-      time[0] = SHB_TWO_PI * i / GRID;
-      time[1] = SHB_TWO_PI * j / GRID;
+      time[0] = SHB_TWO_PI * i / n;
+      time[1] = SHB_TWO_PI * j / n;
     }
 }
 
@@ -214,12 +232,35 @@ static double condition(const stuck_curve *s, double omega, double value) {
   return slope;
 }
 
+/* The root by the secant method, from a guess so near that it converges at once. */
+static bool solve_near(const stuck_curve *s, double value, int sense, double first, double *omega) {
+  const double exact = (s->stuck ? EXACT_PEAK : EXACT_OMEGA) * *omega;
+  double       from = *omega, f = first, at = from * (1 + SECANT), most = INFINITY;
+  for (int i = 0; i < MOST_SECANTS; i++) {
+    const double g = condition(s, at, value), slope = (g - f) / (at - from);
+    if (sense != 0 && !(sense * slope > 0)) return false;
+    const double step = -g / slope;
+    if (!isfinite(step) || fabs(step) > 0.5 * most) return false;
+    most = i > 0 ? fabs(step) : fmin(NEARBY * *omega, 4 * fabs(step));
+    if (fabs(step) > NEARBY * *omega) return false;
+    from = at;
+    f    = g;
+    at += step;
+    if (fabs(step) <= exact || g == 0) {
+      *omega = at;
+      return true;
+    }
+  }
+  return false;
+}
+
 /* The root of the condition nearest to *omega at which it has the sign of sense above. 0: either
  * sense. */
 static bool solve(const stuck_curve *s, double value, int sense, double *omega) {
   double centre = *omega, at[2] = {centre, centre}, f[2], first = condition(s, centre, value);
   f[0] = f[1] = first;
   if (!isfinite(first)) return false;
+  if (solve_near(s, value, sense, first, omega)) return true;
   for (double away = 1e-8; away < REACH; away *= 3)
     for (int side = 0; side < 2; side++) {
       double to = centre * (side ? 1 + away : 1 - away), g = condition(s, to, value);
@@ -275,6 +316,8 @@ typedef struct {
 typedef struct {
   double value, omega, amplitude, slope; /* slope: dA/dq along the curve */
   double rate;                           /* domega/dq, 0 of a stuck peak */
+  double margin; /* it is 0 where the peak moves to the other side of the corner, and < 0 beyond;
+                  * NAN: not known */
 } place;
 
 /* Amplitude of the slipping side beside a corner whose motion is in s.x, or NAN. The nearest
@@ -300,7 +343,8 @@ static double slipping_side(tracer *t, const place *at) {
 static bool is_peak(tracer *t, place *at, mhb_end *why) {
   const mhb_tracking *tracking = t->s.tracking;
   double              a[2], h[2];
-  *why = MHB_END_TURNED;
+  *why       = MHB_END_TURNED;
+  at->margin = NAN;
   if (!solve(&t->s, at->value, t->sense, &at->omega)) return false;
   gradient(&t->s, at->omega, at->value, 0, &a[0], &h[0]);
   gradient(&t->s, at->omega, at->value, 1, &a[1], &h[1]);
@@ -312,9 +356,10 @@ static bool is_peak(tracer *t, place *at, mhb_end *why) {
   if (fabs(at->slope) * (tracking->high - tracking->low) < 1e-9 * at->amplitude) at->slope = 0;
   *why = MHB_END_FREQUENCY;
   if (at->omega < tracking->frequency[0] || at->omega > tracking->frequency[1]) return false;
-  *why = MHB_END_CORNER;
-  if (t->s.stuck) return state.onset < 0;
-  if (a[0] * h[0] <= 0) return false; /* it rises into the stuck side */
+  *why       = MHB_END_CORNER;
+  at->margin = t->s.stuck ? -state.onset : a[0] * copysign(1, h[0]);
+  if (at->margin <= 0) return false; /* it slips; the amplitude rises into the stuck side */
+  if (t->s.stuck) return true;
   *why         = MHB_END_TURNED;
   double aside = slipping_side(t, at);
   return aside < at->amplitude;
@@ -364,17 +409,27 @@ static place predicted(const place *from, double value) {
   return to;
 }
 
-/* The last value at which there is a peak, between one with and one without. */
-static place last_peak(tracer *t, place with, double without, mhb_end *why) {
-  mhb_end reason;
-  while (fabs(without - with.value) > EXACT_VALUE * fmax(fabs(with.value), fabs(without))) {
-    place middle = predicted(&with, 0.5 * (with.value + without));
-    if (is_peak(t, &middle, &reason)) {
+/* The last value at which there is a peak, between one with and one without: a root where the
+ * margin is known, else by bisection. */
+static place last_peak(tracer *t, place with, const place *beyond, mhb_end *why) {
+  double   without = beyond->value, exact = fmax(fabs(with.value), fabs(without));
+  mhb_end  reason;
+  shb_root root;
+  bool     known =
+      with.margin > 0 && beyond->margin < 0 &&
+      shb_root_start(&root, with.value, with.margin, without, beyond->margin, EXACT_VALUE * exact);
+  while (fabs(without - with.value) > (known ? EXACT_VALUE : EXACT_END) * exact) {
+    place middle    = predicted(&with, known ? shb_root_next(&root) : 0.5 * (with.value + without));
+    const bool peak = is_peak(t, &middle, &reason);
+    known           = known && peak == (middle.margin > 0) && middle.margin != 0;
+    if (known) shb_root_found(&root, middle.value, middle.margin);
+    if (peak) {
       with = middle;
     } else {
       without = middle.value;
       *why    = reason;
     }
+    if (known && shb_root_done(&root)) break;
   }
   return with;
 }
@@ -421,7 +476,10 @@ static shb_status trace_half(tracer *t, place from, int direction, mhb_end *end)
       step = 0.5 * fabs(to.value - from.value);
       continue;
     }
-    if (!peak) to = last_peak(t, from, to.value, &why);
+    if (!peak) {
+      const place beyond = to;
+      to                 = last_peak(t, from, &beyond, &why);
+    }
     SHB_TRY(record_optimum(t, &from, &to, &balanced));
     if (to.value != from.value) SHB_TRY(record(t, &to, MHB_ORDINARY, &balanced));
     if (!peak) *end = why;
@@ -442,10 +500,9 @@ static bool start(tracer *t, const mhb_tracking_seed *seed, place *at) {
     t->s.stuck = stuck;
     t->sense   = stuck ? -1 : 0;
     if (!solve(&t->s, at->value, t->sense, &at->omega)) continue;
-    if (fabs(at->omega / seed->omega - 1) > AT_SEED) continue;
     gradient(&t->s, at->omega, at->value, 0, &a, &h);
     if (!stuck) t->sense = h > 0 ? 1 : -1;
-    if (is_peak(t, at, &unused)) return true;
+    if (is_peak(t, at, &unused) && mhb_is_seeded(seed, at->omega, at->amplitude)) return true;
   }
   return false;
 }

@@ -17,7 +17,10 @@ static const double MULTIPLIER_WEIGHT = 0.01;
 
 /* A point is a solution of the balance from this relative distance on. */
 static const double ON_SURFACE = 1e-12;
-enum { MAX_NEWTON = 25, MAX_HALVINGS = 8 };
+
+/* Newton's method for a peak at a value is given up if three iterations gain less than this. */
+static const double SLOW_GAIN = 0.5;
+enum { MAX_NEWTON = 25, MAX_HALVINGS = 8, MAX_HALVINGS_OF_PEAK = 3 };
 
 struct mhb_peak_system {
   mhb_curve_system  base; /* first: its functions get it back */
@@ -357,12 +360,16 @@ static bool newton_step(mhb_curve_system *system, const mhb_curve_point *point, 
 
 static mhb_reason solve_at_value(mhb_curve_system *system, double tolerance,
                                  mhb_curve_point *point) {
-  int    one = of(system)->n + 1;
-  double delta[one + 1], from[one];
+  int    one = of(system)->n + 1, most = system->costly ? MAX_HALVINGS_OF_PEAK : MAX_HALVINGS;
+  double delta[one + 1], from[one], seen[MAX_NEWTON];
   linearise(system, point);
   double residual = mhb_norm(point->r, one);
   for (point->iterations = 0; point->iterations < MAX_NEWTON; point->iterations++) {
     if (residual <= tolerance * mhb_norm(point->x, one)) return MHB_CONVERGED;
+    seen[point->iterations] = residual;
+    if (system->costly && point->iterations >= 3 &&
+        residual > SLOW_GAIN * seen[point->iterations - 3])
+      return MHB_NO_DESCENT;
     if (!newton_step(system, point, delta)) return MHB_SINGULAR;
     memcpy(from, point->x, sizeof from);
     double before = residual, part = 1;
@@ -371,7 +378,7 @@ static mhb_reason solve_at_value(mhb_curve_system *system, double tolerance,
       linearise(system, point);
       residual = mhb_norm(point->r, one);
       if (residual < LEAST_GAIN * before) break;
-      if (halvings == MAX_HALVINGS) return MHB_NO_DESCENT;
+      if (halvings == most) return MHB_NO_DESCENT;
     }
   }
   return MHB_MAX_ITERATIONS;
@@ -447,6 +454,7 @@ shb_status mhb_peak_system_create(mhb_balance *balance, mhb_tracked_point kind, 
   s->base           = (mhb_curve_system){.n                  = balance->n + 1,
                                          .least              = mhb_parameter_least(parameter),
                                          .plain              = kind != MHB_TRACK_FOLD,
+                                         .costly             = kind == MHB_TRACK_PEAK,
                                          .row_length         = balance->n + 1,
                                          .copies             = 1,
                                          .copy               = copy,

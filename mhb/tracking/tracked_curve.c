@@ -27,6 +27,21 @@ static const double NEAR_ZERO = 0.05;
 static const double NEIGHBOUR = 2e-2;
 enum { MOST_KINKS = 12, MOST_REFINEMENTS = 2 };
 
+/* Error of an inflection's place on its step. The parameter has its extremum there: its own error
+ * is of the order of the square. */
+static const double AT_INFLECTION = 1e-4;
+
+/* Residual of points, relative to the motion. An amplitude differs by less from that of its peak
+ * (docs/evidence.md). */
+static const double SETTLED = 1e-9;
+
+/* A peak is that of a seed whose frequency and amplitude it has to within this: the first in units
+ * of the seed's reach. */
+static const double ROOM = 1.5, AS_SEEN = 0.05;
+
+/* Longest step of a peak. */
+static const double LONGEST_STEP = 0.15;
+
 typedef struct {
   mhb_segment_host    host; /* first: its functions get it back */
   mhb_balance        *balance;
@@ -204,8 +219,11 @@ static int make_tests(tracer *t, mhb_event_test test[MOST_TESTS]) {
                                  .accept    = mhb_curve_return_arrived,
                                  .end       = MHB_END_CLOSED};
   if (peak)
-    test[n++] = (mhb_event_test){
-        .name = "inflection", .g = mhb_fold_test, .special = MHB_FOLD, .end = MHB_END_TURNED};
+    test[n++] = (mhb_event_test){.name    = "inflection",
+                                 .g       = mhb_fold_test,
+                                 .exact   = AT_INFLECTION,
+                                 .special = MHB_FOLD,
+                                 .end     = MHB_END_TURNED};
   if (peak)
     test[n++] = (mhb_event_test){.name      = "inflection, not located",
                                  .g         = turned,
@@ -335,11 +353,32 @@ shb_status mhb_join_halves(mhb_response *response, int branch, const mhb_respons
   return SHB_OK;
 }
 
+bool mhb_is_seeded(const mhb_tracking_seed *seed, double omega, double amplitude) {
+  if (seed->reach == 0) return true;
+  return fabs(omega / seed->omega - 1) <= ROOM * seed->reach &&
+         fabs(amplitude / seed->amplitude - 1) <= AS_SEEN;
+}
+
+/* z <- the peak near a seed. False: there is none. */
+static bool settle(tracer *t, const mhb_tracking_seed *seed, double *z) {
+  mhb_arclength    *curve  = t->host.curve;
+  mhb_curve_system *system = curve->system;
+  mhb_curve_point  *point  = &curve->trial;
+  mhb_peak_system_pack(system, seed->x, seed->omega, point->x);
+  point->value = seed->value;
+  if (system->solve_at_value(system, curve->tolerance, point) != MHB_CONVERGED) return false;
+  mhb_peak_report report = mhb_peak_system_report(system, point);
+  memcpy(z, point->x, sizeof(double) * ((size_t)t->balance->n + 1));
+  return report.curvature < 0 &&
+         mhb_is_seeded(seed, mhb_peak_system_omega(system, z), report.amplitude);
+}
+
 static shb_status trace_both(tracer *t, const mhb_tracking_seed *seed, double *z,
                              mhb_response *response, int branch, bool *found,
                              mhb_tracking_end *end) {
   int down, up;
   mhb_peak_system_pack(t->host.curve->system, seed->x, seed->omega, z);
+  if (t->tracking->kind == MHB_TRACK_PEAK && !settle(t, seed, z)) return SHB_OK;
   SHB_TRY(trace_half(t, z, seed->value, -1, &down, &end->low));
   if (end->low == MHB_END_CLOSED) { /* the other way round it is the same curve */
     end->high = MHB_END_CLOSED;
@@ -362,8 +401,13 @@ static shb_status make_curve(tracer *t, double length) {
   if (tracking->low <= 0)
     mhb_peak_system_passes_zero(mhb_peak_system_base(system),
                                 NEAR_ZERO * (tracking->high - tracking->low));
-  return mhb_arclength_create(mhb_peak_system_base(system), tracking->low, tracking->high,
-                              &t->host.curve);
+  SHB_TRY(mhb_arclength_create(mhb_peak_system_base(system), tracking->low, tracking->high,
+                               &t->host.curve));
+  if (tracking->kind == MHB_TRACK_PEAK) {
+    t->host.curve->tolerance = SETTLED;
+    t->host.curve->longest   = LONGEST_STEP;
+  }
+  return SHB_OK;
 }
 
 shb_status mhb_trace_tracked(mhb_balance *balance, const mhb_tracking *tracking,

@@ -23,7 +23,13 @@ typedef struct {
   const double *x;     /* [n] motion of the balance */
   double        omega; /* rad/s */
   double        value; /* of the parameter */
+  double        reach; /* of a peak: its frequency is within this of omega, relative; 0: not known,
+                        * and any peak will do */
+  double        amplitude; /* of a peak, with reach: that of the output, about */
 } mhb_tracking_seed;
+
+/* Whether a peak is that of a seed. */
+bool mhb_is_seeded(const mhb_tracking_seed *seed, double omega, double amplitude);
 
 /* Where a curve ends. */
 typedef struct {

@@ -4,13 +4,14 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "mesh/base/clock.h"
 #include "mesh/base/constants.h"
 #include "mhb/branches/forced_response.h"
-#include "mhb/branches/record.h"
 #include "mhb/response/describe.h"
 #include "mhb/response/publisher.h"
 #include "mhb/tracking/corner.h"
 #include "mhb/tracking/optimum.h"
+#include "mhb/tracking/sweep_peak.h"
 #include "mhb/tracking/tracked_curve.h"
 
 /* A seed lies on a curve if its frequency is within this of the curve's, relative. The curve is
@@ -20,8 +21,9 @@ static const double ON_CURVE = 5e-4;
 /* Relative rounding of a value. */
 static const double ROUNDED = 1e-12;
 
-/* Peaks below this share of the highest at the same value of the parameter are not followed. */
-static const double MINOR = 0.4;
+/* Peaks below this share of the highest of a sweep are not followed: they are not the highest near
+ * by. Where they become the highest further on, another sweep has them. */
+static const double MINOR = 0.85;
 
 /* Sweeps at the ends of branches are this far beyond them, relative to the parameter. */
 static const double BEYOND = 2e-3;
@@ -35,8 +37,14 @@ static const double HIGHEST = 0.999;
 /* Beyond the end of a branch another one is as high from this share of its amplitude on. */
 static const double AS_HIGH = 0.97;
 
-/* A peak of a sweep is higher than the optimum if it exceeds it by this, relative. */
-static const double HIGHER = 1e-4;
+/* A peak of a sweep in outline may be higher than the optimum from this share of it on. */
+static const double MAY_BE_HIGHER = 0.98;
+
+/* A peak of an outline is that of a curve within reach whose amplitude it has to within this. */
+static const double SAME_HEIGHT = 0.03;
+
+/* Tolerance of the contact law in outlines. */
+static const double OUTLINE = 1e-3;
 
 enum { N_SWEEPS = 5, MOST_FURTHER_SWEEPS = 30, MOST_HARMONICS = 31, LEAST_HARMONICS = 7 };
 
@@ -55,7 +63,7 @@ typedef struct {
   mhb_response       *response;
   mhb_publisher       publisher;
   shb_progress       *progress;
-  int                 n_lost;  /* highest peaks of sweeps that led to no curve */
+  int                 n_lost;  /* highest peaks, or flips and the like, that led to no curve */
   double              lost_at; /* the first one's parameter */
 } tracking_run;
 
@@ -125,9 +133,10 @@ static mhb_settings settings_at(const mhb_settings *settings, mhb_parameter para
   return s;
 }
 
-/* A frequency sweep at a value of the parameter, curves only.
- *   coarse  in  with the fewest harmonics, where the case leaves their number to the program */
-static shb_status sweep_at(const tracking_run *run, double value, bool coarse,
+/* A frequency sweep at a value of the parameter, curves only. Where the case leaves the number of
+ * harmonics to the program, it has the fewest. A sweep that locates peaks has as many as needed.
+ *   outline  in  its curves in outline */
+static shb_status sweep_at(const tracking_run *run, double value, bool outline,
                            mhb_response **response) {
   mhb_settings s = settings_at(run->asked, run->tracking.parameter, value);
   s.parameter    = MHB_IN_FREQUENCY;
@@ -137,7 +146,9 @@ static shb_status sweep_at(const tracking_run *run, double value, bool coarse,
   s.lasting       = MHB_LASTING_NEVER;
   s.search.starts = 0;
   s.resume        = false;
-  if (coarse && s.motion_tolerance > 0) {
+  s.outline       = outline;
+  if (outline) s.tolerance = fmax(s.tolerance, OUTLINE);
+  if ((outline || run->tracking.kind != MHB_TRACK_PEAK) && s.motion_tolerance > 0) {
     s.harmonics        = least_harmonics(&s) * s.subharmonics;
     s.motion_tolerance = 0;
   }
@@ -149,29 +160,58 @@ static shb_status sweep_at(const tracking_run *run, double value, bool coarse,
 
 /* ---- seeds ---- */
 
-/* The highest amplitude of the output in a sweep. */
-static double highest(const tracking_run *run, const mhb_response *r) {
-  double most = 0;
-  for (int b = 0; b < r->n_branches; b++)
-    for (int i = 0; i < r->branch[b].n_points && r->branch[b].kind == MHB_BRANCH_NONLINEAR; i++)
-      most = fmax(most, mhb_response_amplitude(r, &r->branch[b], i, run->tracking.output));
-  return most;
+/* The peaks of a sweep that may be followed, and its highest amplitude. */
+typedef struct {
+  mhb_response   *sweep;
+  bool            outline;
+  double          value; /* of the parameter */
+  double          most;
+  int             n;
+  mhb_sweep_peak *peak; /* [n] */
+} sweep_peaks;
+
+static void sweep_peaks_free(sweep_peaks *s) {
+  mhb_response_destroy(s->sweep);
+  free(s->peak);
+  *s = (sweep_peaks){0};
 }
 
-/* Whether a point is to be followed; most: the highest amplitude of its sweep. */
-static bool is_seed(const tracking_run *run, const mhb_response *r, const mhb_branch *branch, int i,
-                    double most) {
+/* The point to be followed at a point of the sweep. */
+static bool is_seed(const tracking_run *run, const sweep_peaks *s, const mhb_branch *branch, int i,
+                    mhb_sweep_peak *peak) {
   const int        output    = run->tracking.output;
   static const int special[] = {[MHB_TRACK_PEAK]           = MHB_PEAK,
                                 [MHB_TRACK_FOLD]           = MHB_FOLD,
                                 [MHB_TRACK_FLIP]           = MHB_FLIP,
                                 [MHB_TRACK_NEIMARK_SACKER] = MHB_NEIMARK_SACKER};
-  if (run->tracking.kind != MHB_TRACK_PEAK)
-    return branch->special[i] == special[run->tracking.kind];
-  if (branch->special[i] != MHB_PEAK || i == 0 || i == branch->n_points - 1) return false;
-  double a = mhb_response_amplitude(r, branch, i, output);
-  return a >= MINOR * most && a >= mhb_response_amplitude(r, branch, i - 1, output) &&
-         a >= mhb_response_amplitude(r, branch, i + 1, output);
+  if (!s->outline && branch->special[i] != special[run->tracking.kind]) return false;
+  if (run->tracking.kind == MHB_TRACK_PEAK)
+    return i > 0 && i < branch->n_points - 1 &&
+           mhb_sweep_peak_at(s->sweep, branch, i, output, s->outline, peak);
+  *peak = (mhb_sweep_peak){.branch    = branch,
+                           .point     = i,
+                           .frequency = branch->frequency[i],
+                           .amplitude = mhb_response_amplitude(s->sweep, branch, i, output),
+                           .weight    = {0, 1, 0}};
+  return true;
+}
+
+/* Find the peaks of the sweep. */
+static shb_status find_peaks(const tracking_run *run, sweep_peaks *s) {
+  const mhb_response *r = s->sweep;
+  int                 n = 0;
+  for (int b = 0; b < r->n_branches; b++) n += r->branch[b].n_points;
+  s->peak = malloc((size_t)(n + 1) * sizeof *s->peak);
+  SHB_CHECK(s->peak, SHB_ERR_IO, "out of memory");
+  for (int b = 0; b < r->n_branches; b++) {
+    const mhb_branch *branch = &r->branch[b];
+    for (int i = 0; i < branch->n_points && branch->kind == MHB_BRANCH_NONLINEAR; i++) {
+      s->most = fmax(s->most, mhb_response_amplitude(r, branch, i, run->tracking.output));
+      if (is_seed(run, s, branch, i, &s->peak[s->n])) s->n++;
+    }
+  }
+  for (int i = 0; i < s->n; i++) s->most = fmax(s->most, s->peak[i].amplitude);
+  return SHB_OK;
 }
 
 /* Frequency between points i and i + 1 of a branch, by the cubic through them and those beside.
@@ -193,9 +233,10 @@ static double between(const mhb_branch *branch, int i, double value, bool cubic)
   return sum;
 }
 
-/* Frequency of a tracked branch at a value of the parameter; NAN beyond its ends. At a place that
- * the curve passes twice, the one nearest to a frequency. */
-static double frequency_at(const mhb_branch *branch, double value, double near) {
+/* Frequency and amplitude of a tracked branch at a value of the parameter; NAN beyond its ends. At
+ * a place that the curve passes twice, the ones nearest to a frequency. */
+static double frequency_at(const tracking_run *run, const mhb_branch *branch, double value,
+                           double near, double *amplitude) {
   double best = NAN;
   for (int i = 0; i + 1 < branch->n_points; i++) {
     double from = branch->value[i], to = branch->value[i + 1];
@@ -203,16 +244,26 @@ static double frequency_at(const mhb_branch *branch, double value, double near) 
     if (from == to || value < fmin(from, to) - slack || value > fmax(from, to) + slack) continue;
     for (int cubic = 0; cubic < 2; cubic++) { /* the line is better at a kink */
       double f = between(branch, i, value, cubic);
-      if (isnan(best) || fabs(f - near) < fabs(best - near)) best = f;
+      if (!isnan(best) && fabs(f - near) >= fabs(best - near)) continue;
+      double a[2];
+      for (int end = 0; end < 2; end++)
+        a[end] = mhb_response_amplitude(run->response, branch, i + end, run->tracking.output);
+      best       = f;
+      *amplitude = a[0] + (value - from) / (to - from) * (a[1] - a[0]);
     }
   }
   return best;
 }
 
-static bool is_known(const tracking_run *run, double value, double frequency) {
+/* Whether a tracked curve passes a peak of a sweep. */
+static bool is_known(const tracking_run *run, double value, const mhb_sweep_peak *peak) {
   for (int b = 0; b < run->response->n_branches; b++) {
-    double f = frequency_at(&run->response->branch[b], value, frequency);
-    if (fabs(f - frequency) <= ON_CURVE * frequency) return true;
+    double a = 0;
+    double f = frequency_at(run, &run->response->branch[b], value, peak->frequency, &a);
+    if (fabs(f - peak->frequency) <= ON_CURVE * peak->frequency) return true;
+    if (fabs(f - peak->frequency) <= peak->reach * peak->frequency &&
+        fabs(a / peak->amplitude - 1) <= SAME_HEIGHT)
+      return true;
   }
   return false;
 }
@@ -230,25 +281,31 @@ static const char *end_text(mhb_end end) {
 
 /* Follow a point of a sweep with m harmonics, into a new branch.
  *   good  out  whether there is a curve, and its truncation error is within the tolerance */
-static shb_status follow_with(tracking_run *run, const mhb_branch *from, int point, double value,
-                              int m, bool *found, bool *good) {
+static shb_status follow_with(tracking_run *run, const mhb_sweep_peak *peak, double value, int m,
+                              bool *found, bool *good) {
   mhb_balance     *balance;
   mhb_tracking_end end;
   int              index;
   mhb_settings     settings = run->settings;
   mhb_tracking     tracking = run->tracking;
   bool             judge    = run->asked->harmonics == 0;
+  *found                    = false;
   settings.harmonics        = m;
   tracking.tolerance        = judge && m < MOST_HARMONICS ? run->asked->motion_tolerance : 0;
   SHB_TRY(mhb_response_branch(run->response, MHB_BRANCH_TRACKED, &index));
   run->response->branch[index].n_harmonics = m;
   SHB_TRY(mhb_balance_create(run->model, &settings, &balance));
-  double    *x      = calloc((size_t)balance->n, sizeof *x);
+  double    *x      = calloc(2 * (size_t)balance->n, sizeof *x);
   shb_status status = x ? SHB_OK : shb_fail(SHB_ERR_IO, __FILE__, __LINE__, "out of memory");
   if (status == SHB_OK) {
-    const mhb_tracking_seed seed = {x, SHB_TWO_PI * from->frequency[point], value};
-    mhb_recorded_motion(from, point, balance, x);
-    status = mhb_trace_corner(balance, &run->tracking, &seed, run->response, index, found, &end);
+    const mhb_tracking_seed seed = {.x         = x,
+                                    .omega     = SHB_TWO_PI * peak->frequency,
+                                    .value     = value,
+                                    .reach     = peak->reach,
+                                    .amplitude = peak->amplitude};
+    mhb_sweep_peak_motion(peak, balance, x, x + balance->n);
+    if (peak->sticks)
+      status = mhb_trace_corner(balance, &run->tracking, &seed, run->response, index, found, &end);
     if (status == SHB_OK && !*found)
       status = mhb_trace_tracked(balance, &tracking, &seed, run->response, index, found, &end);
   }
@@ -266,43 +323,43 @@ static shb_status follow_with(tracking_run *run, const mhb_branch *from, int poi
   return SHB_OK;
 }
 
-/* Follow a point of a sweep with the fewest harmonics that suffice along all of its curve. One that
- * cannot be followed is lost; it counts if it is the highest of its sweep. */
-static shb_status follow(tracking_run *run, const mhb_branch *from, int point, double value,
-                         bool high) {
+/* Follow a peak of a sweep with the fewest harmonics that suffice along all of its curve.
+ * *lost: it cannot be followed. */
+static shb_status follow(tracking_run *run, const mhb_sweep_peak *peak, double value, bool *lost) {
   int  fixed = run->asked->harmonics, m = fixed > 0 ? fixed : least_harmonics(run->asked);
   bool found = false, good = false;
+  *lost = false;
   for (;; m = 2 * m + 1) {
     bool last = fixed > 0 || m >= MOST_HARMONICS;
-    SHB_TRY(follow_with(run, from, point, value, m, &found, &good));
+    SHB_TRY(follow_with(run, peak, value, m, &found, &good));
     if (good || (last && found) || shb_interrupted()) return SHB_OK;
     drop_last(run->response);
     if (last) break;
   }
-  if (high && run->n_lost++ == 0) run->lost_at = value;
+  *lost = true;
   return SHB_OK;
 }
 
-/* Follow the peaks of a sweep that are not known; most: its highest amplitude. */
-static shb_status follow_all(tracking_run *run, const mhb_response *sweep, double value,
-                             double most) {
-  for (int b = 0; b < sweep->n_branches; b++) {
-    const mhb_branch *branch = &sweep->branch[b];
-    for (int i = 0; i < branch->n_points && branch->kind == MHB_BRANCH_NONLINEAR; i++) {
-      if (!is_seed(run, sweep, branch, i, most) || is_known(run, value, branch->frequency[i]))
-        continue;
-      bool high = mhb_track_by_multiplier(run->response->track) ||
-                  mhb_response_amplitude(sweep, branch, i, run->tracking.output) >= HIGHEST * most;
-      SHB_TRY(follow(run, branch, i, value, high));
-      if (shb_interrupted()) return SHB_OK;
-    }
+/* Follow the points of a sweep that are not known.
+ *   lost  out  how many could not be followed; of peaks and folds those as high as the highest */
+static shb_status follow_all(tracking_run *run, const sweep_peaks *s, int *lost) {
+  *lost = 0;
+  for (int i = 0; i < s->n && !shb_interrupted(); i++) {
+    const mhb_sweep_peak *peak = &s->peak[i];
+    bool                  gone;
+    if (run->tracking.kind == MHB_TRACK_PEAK && peak->amplitude < MINOR * s->most) continue;
+    if (is_known(run, s->value, peak)) continue;
+    SHB_TRY(follow(run, peak, s->value, &gone));
+    bool counts =
+        mhb_track_by_multiplier(run->response->track) || peak->amplitude >= HIGHEST * s->most;
+    *lost += gone && counts;
   }
   return SHB_OK;
 }
 
 /* ---- the work ---- */
 
-static shb_status make_response(tracking_run *run, mhb_response *const sweep[N_SWEEPS]) {
+static shb_status make_response(tracking_run *run, const mhb_response *sweep) {
   int fixed                      = run->asked->harmonics;
   run->settings.harmonics        = fixed > 0 ? fixed : MOST_HARMONICS;
   run->settings.motion_tolerance = 0;
@@ -316,22 +373,58 @@ static shb_status make_response(tracking_run *run, mhb_response *const sweep[N_S
   run->response->output     = strdup(output_name(run));
   SHB_CHECK(run->response->track && run->response->output, SHB_ERR_IO, "out of memory");
   run->response->tracks_multiplier = mhb_track_by_multiplier(run->response->track);
-  run->response->psi               = sweep[0]->psi;
-  run->response->phi               = sweep[0]->phi;
+  run->response->psi               = sweep->psi;
+  run->response->phi               = sweep->phi;
   return mhb_response_describe(run->response, run->model, &run->settings);
 }
 
+/* The peaks of a sweep at a value. Other points need a sweep that is more than an outline. */
+static shb_status find_seeds(const tracking_run *run, double value, bool outline, sweep_peaks *s) {
+  *s                = (sweep_peaks){.value = value, .outline = outline};
+  shb_status status = sweep_at(run, value, outline, &s->sweep);
+  if (status == SHB_OK) status = find_peaks(run, s);
+  if (status != SHB_OK) sweep_peaks_free(s);
+  return status;
+}
+
+/* Follow the points of a sweep that are not known yet. If the highest peak of an outline cannot be
+ * followed, a sweep that locates it is made.
+ *   lost  out  that did not help; how many are lost, as for follow_all */
+static shb_status follow_seeds(tracking_run *run, const sweep_peaks *outline, int *lost) {
+  SHB_TRY(follow_all(run, outline, lost));
+  if (*lost == 0 || shb_interrupted()) return SHB_OK;
+  if (outline->outline) {
+    sweep_peaks located;
+    SHB_TRY(find_seeds(run, outline->value, false, &located));
+    shb_status status = follow_all(run, &located, lost);
+    sweep_peaks_free(&located);
+    if (status != SHB_OK) return status;
+  }
+  if (*lost > 0 && run->n_lost == 0) run->lost_at = outline->value;
+  run->n_lost += run->response->tracks_multiplier ? *lost : *lost > 0;
+  return SHB_OK;
+}
+
 /* A sweep at a value, and the curves through its peaks that are not known yet.
- *   most  out  highest amplitude of the sweep, m */
-static shb_status sweep_and_follow(tracking_run *run, double value, bool coarse, double *most) {
-  mhb_response *sweep = NULL;
+ *   higher  inout  an amplitude; out: the sweep has a peak above it that is on no curve, or that
+ *                  could not be followed */
+static shb_status sweep_and_follow(tracking_run *run, double value, double amplitude,
+                                   bool *higher) {
+  sweep_peaks seeds;
   shb_progress_show(run->progress, 90, "sweep at %s %.6g %s",
                     mhb_parameter_name(run->tracking.parameter), value,
                     mhb_parameter_unit(run->tracking.parameter));
-  shb_status status = sweep_at(run, value, coarse, &sweep);
-  if (status == SHB_OK) *most = highest(run, sweep);
-  if (status == SHB_OK) status = follow_all(run, sweep, value, *most);
-  mhb_response_destroy(sweep);
+  run->response->cost.sweeps++;
+  double started = shb_processor_seconds();
+  SHB_TRY(find_seeds(run, value, true, &seeds));
+  run->response->cost.further += shb_processor_seconds() - started;
+  int        lost;
+  shb_status status = follow_seeds(run, &seeds, &lost);
+  *higher           = lost > 0;
+  for (int i = 0; i < seeds.n; i++)
+    *higher = *higher || (seeds.peak[i].amplitude > amplitude * MAY_BE_HIGHER &&
+                          !is_known(run, value, &seeds.peak[i]));
+  sweep_peaks_free(&seeds);
   return status;
 }
 
@@ -358,14 +451,15 @@ static shb_status chain(tracking_run *run, int *budget) {
     for (int end = 0; end < 2 && *budget > 0 && !shb_interrupted(); end++) {
       const mhb_branch *branch = &run->response->branch[b]; /* it moves when others are added */
       int               point  = end ? branch->n_points - 1 : 0;
-      double            most, value = branch->value[point];
+      double            value  = branch->value[point];
+      bool              unused;
       if (!mhb_is_highest(&run->tracking, run->response, b, point, NEARLY_HIGHEST)) continue;
       if (value <= run->tracking.low || value >= run->tracking.high) continue;
       value += (end ? BEYOND : -BEYOND) * fabs(value);
       if (value <= run->tracking.low || value >= run->tracking.high) continue;
       if (goes_on(run, b, point, value)) continue;
       --*budget;
-      SHB_TRY(sweep_and_follow(run, value, true, &most));
+      SHB_TRY(sweep_and_follow(run, value, INFINITY, &unused));
     }
   }
   return SHB_OK;
@@ -373,40 +467,48 @@ static shb_status chain(tracking_run *run, int *budget) {
 
 /* The optimum, until a sweep there finds no peak that is higher. */
 static shb_status verified_optimum(tracking_run *run, int *budget) {
+  mhb_optimum *optimum = &run->response->optimum;
+  double       swept   = NAN;
+  bool         higher  = false;
   while (!shb_interrupted()) {
-    double most;
-    int    before = run->response->n_branches;
+    int before = run->response->n_branches;
     SHB_TRY(mhb_find_optimum(run->model, &run->settings, &run->tracking, run->response));
-    mhb_optimum *optimum = &run->response->optimum;
-    if (optimum->kind == MHB_OPTIMUM_NONE || (*budget)-- <= 0) return SHB_OK;
-    SHB_TRY(sweep_and_follow(run, optimum->value, false, &most));
-    optimum->verified = most <= optimum->amplitude * (1 + HIGHER);
-    if (optimum->verified || run->response->n_branches == before) return SHB_OK;
+    if (optimum->kind == MHB_OPTIMUM_NONE) return SHB_OK;
+    optimum->verified = optimum->value == swept && !higher; /* its new curves are below it */
+    if (optimum->verified || (*budget)-- <= 0) return SHB_OK;
+    SHB_TRY(sweep_and_follow(run, optimum->value, optimum->amplitude, &higher));
+    swept             = optimum->value;
+    optimum->verified = run->response->n_branches == before && !higher;
+    if (run->response->n_branches == before) return SHB_OK;
     SHB_TRY(chain(run, budget));
   }
   return SHB_OK;
 }
 
-static shb_status run_all(tracking_run *run, mhb_response *sweep[N_SWEEPS]) {
-  double value[N_SWEEPS];
+static shb_status run_all(tracking_run *run, sweep_peaks seeds[N_SWEEPS]) {
+  const bool outline = run->tracking.kind == MHB_TRACK_PEAK;
+  double     value[N_SWEEPS], started = shb_processor_seconds();
   seed_values(&run->tracking, value);
   shb_progress_show(run->progress, 0, "sweeps at %d values of %s", N_SWEEPS,
                     mhb_parameter_name(run->tracking.parameter));
 #pragma omp parallel for schedule(dynamic, 1)
   for (int i = 0; i < N_SWEEPS; i++) {
-    shb_status status = shb_interrupted() ? SHB_OK : sweep_at(run, value[i], true, &sweep[i]);
+    shb_status status = shb_interrupted() ? SHB_OK : find_seeds(run, value[i], outline, &seeds[i]);
     mhb_publisher_lock(&run->publisher, true);
     mhb_publisher_note(&run->publisher, status);
     mhb_publisher_lock(&run->publisher, false);
   }
   SHB_TRY(mhb_publisher_status(&run->publisher));
   if (shb_interrupted()) return SHB_OK;
-  SHB_TRY(make_response(run, sweep));
+  SHB_TRY(make_response(run, seeds[0].sweep));
+  run->response->cost =
+      (mhb_tracking_cost){.sweeps = N_SWEEPS, .seeds = shb_processor_seconds() - started};
   for (int i = 0; i < N_SWEEPS && !shb_interrupted(); i++) {
     shb_progress_show(run->progress, 20 + 80. * i / N_SWEEPS, "following from %s %.6g %s",
                       mhb_parameter_name(run->tracking.parameter), value[i],
                       mhb_parameter_unit(run->tracking.parameter));
-    SHB_TRY(follow_all(run, sweep[i], value[i], highest(run, sweep[i])));
+    int unused;
+    SHB_TRY(follow_seeds(run, &seeds[i], &unused));
   }
   int budget = MOST_FURTHER_SWEEPS;
   if (run->tracking.kind == MHB_TRACK_PEAK) {
@@ -420,9 +522,9 @@ static shb_status run_all(tracking_run *run, mhb_response *sweep[N_SWEEPS]) {
 shb_status mhb_tracked_response(const modal_model *model, const mhb_settings *settings,
                                 const char *path, const shb_provenance *provenance,
                                 shb_progress *progress, mhb_response **out) {
-  int           output;
-  mhb_response *sweep[N_SWEEPS] = {NULL};
-  *out                          = NULL;
+  int         output;
+  sweep_peaks seeds[N_SWEEPS] = {{0}};
+  *out                        = NULL;
   SHB_TRY(mhb_output_named(model, settings->output, &output));
   SHB_CHECK(
       !mhb_track_by_multiplier(mhb_track_word(settings->track)) || mhb_judges_stability(settings),
@@ -436,9 +538,9 @@ shb_status mhb_tracked_response(const modal_model *model, const mhb_settings *se
                       .tracking = tracking_of(settings, output),
                       .progress = progress};
   mhb_publisher_start(&run.publisher, path, provenance);
-  shb_status status = run_all(&run, sweep);
+  shb_status status = run_all(&run, seeds);
   mhb_publisher_stop(&run.publisher);
-  for (int i = 0; i < N_SWEEPS; i++) mhb_response_destroy(sweep[i]);
+  for (int i = 0; i < N_SWEEPS; i++) sweep_peaks_free(&seeds[i]);
   if (status != SHB_OK) {
     mhb_response_destroy(run.response);
     return status;

@@ -29,6 +29,10 @@
 /* Goal of the errors of amplitude and frequency, relative. */
 static const double GOAL = 1e-6;
 
+/* A sweep has a peak that no branch has if it is higher than all by this, relative. Branches are
+ * linear between their points. */
+static const double LACKING = 5e-3;
+
 enum { PRELOADS = 10, SWEEPS = 3, BY_TRACK = 30 };
 
 static shb_status sweep(const modal_model *model, const mhb_settings *tracking, double n0, int m,
@@ -79,6 +83,32 @@ static int point_near(const mhb_branch *b, double n0) {
   return best;
 }
 
+/* Amplitude of a branch at a preload, linear between its points; 0 beyond its ends. */
+static double at_preload(const mhb_response *t, const mhb_branch *b, double n0) {
+  for (int i = 0; i + 1 < b->n_points; i++) {
+    double from = b->n0[i], to = b->n0[i + 1], low = mhb_response_output(t, b, i);
+    if (n0 < from || n0 > to || !(to > from)) continue;
+    return low + (n0 - from) / (to - from) * (mhb_response_output(t, b, i + 1) - low);
+  }
+  return 0;
+}
+
+/* The highest of all branches at a preload. */
+static double highest_branch(const mhb_response *t, double n0) {
+  double most = 0;
+  for (int k = 0; k < t->n_branches; k++) most = fmax(most, at_preload(t, &t->branch[k], n0));
+  return most;
+}
+
+/* The highest point of a sweep. */
+static double highest_point(const mhb_response *r) {
+  double most = 0;
+  for (int b = 0; b < r->n_branches; b++)
+    for (int i = 0; i < r->branch[b].n_points && r->branch[b].kind == MHB_BRANCH_NONLINEAR; i++)
+      most = fmax(most, mhb_response_output(r, &r->branch[b], i));
+  return most;
+}
+
 static shb_status compare(const modal_model *model, const mhb_settings *s, const mhb_response *t,
                           int preloads, int *fault) {
   double ratio = s->range[1] / s->range[0], seconds = 0;
@@ -96,12 +126,13 @@ static shb_status compare(const modal_model *model, const mhb_settings *s, const
       SHB_TRY(sweep(model, s, branch->n0[i], branch->n_harmonics, &seconds, &r));
       bool   found = nearest_peak(r, branch->frequency[i], &f, &a);
       double of_a = found ? fabs(here / a - 1) : NAN, of_f = fabs(f / branch->frequency[i] - 1);
-      bool   good = of_a <= GOAL && of_f <= GOAL;
-      printf("%3d %12.6f %12.6f %12.5e %10.1e %10.1e %10.3f%s\n", branch->n_harmonics,
+      bool   good  = of_a <= GOAL && of_f <= GOAL;
+      bool   lacks = highest_point(r) > highest_branch(t, branch->n0[i]) * (1 + LACKING);
+      printf("%3d %12.6f %12.6f %12.5e %10.1e %10.1e %10.3f%s%s\n", branch->n_harmonics,
              branch->n0[i], branch->frequency[i], here, of_a, of_f, seconds - spent,
-             good ? "" : "  BAD");
+             good ? "" : "  BAD", lacks ? "  the sweep has a higher peak: BAD" : "");
       fflush(stdout);
-      *fault += !good;
+      *fault += !good + lacks;
       mhb_response_destroy(r);
     }
   }
@@ -136,15 +167,29 @@ static shb_status three_sweeps(const modal_model *model, const mhb_settings *s, 
   return SHB_OK;
 }
 
+/* The least and the largest share that a branch has of the highest peak at its points. */
+static void shares(const mhb_response *t, const mhb_branch *b, double share[2]) {
+  share[0] = INFINITY;
+  share[1] = 0;
+  for (int i = 0; i < b->n_points; i++) {
+    double here = mhb_response_output(t, b, i) / highest_branch(t, b->n0[i]);
+    share[0]    = fmin(share[0], here);
+    share[1]    = fmax(share[1], here);
+  }
+}
+
 static void list(const mhb_response *t) {
   double seconds = 0;
   for (int b = 0; b < t->n_branches; b++) {
     const mhb_branch *k    = &t->branch[b];
     double            here = 0;
     for (int i = 0; i < k->n_points; i++) here += k->seconds[i];
+    double share[2];
+    shares(t, k, share);
     seconds += here;
-    printf("branch %d: m %d, %d points, %.6g to %.6g N, %.3f s (%s)\n", b, k->n_harmonics,
-           k->n_points, k->n0[0], k->n0[k->n_points - 1], here, k->reason);
+    printf("branch %d: m %d, %d points, %.6g to %.6g N, %.2f to %.2f of the highest, %.3f s (%s)\n",
+           b, k->n_harmonics, k->n_points, k->n0[0], k->n0[k->n_points - 1], share[0], share[1],
+           here, k->reason);
   }
   printf("following: %d points, %d iterations, %.3f s\n", points_of(t), iterations_of(t), seconds);
 }
@@ -163,9 +208,14 @@ static shb_status run(const modal_model *model, const mhb_settings *s, int prelo
          t->optimum.frequency[0], t->optimum.verified);
   status = compare(model, s, t, preloads, fault);
   if (status == SHB_OK) status = three_sweeps(model, s, &sweeps);
-  if (status == SHB_OK)
-    printf("\ntracking %.3f s, three sweeps %.3f s: ratio %.2f\n", tracking, sweeps,
+  if (status == SHB_OK) {
+    const mhb_tracking_cost *c = &t->cost;
+    printf("\ncost in sweeps: seeds %.2f, further outlines %.2f (%d outlines), curves %.2f\n",
+           c->seeds / sweeps * SWEEPS, c->further / sweeps * SWEEPS, c->sweeps,
+           (tracking - c->seeds - c->further) / sweeps * SWEEPS);
+    printf("tracking %.3f s, three sweeps %.3f s: ratio %.2f\n", tracking, sweeps,
            tracking / sweeps);
+  }
   mhb_response_destroy(t);
   return status;
 }

@@ -77,7 +77,7 @@ static walked walk(mhb_balance *residual, double low, double high, int direction
     w.worst  = fmax(w.worst, path->next.residual);
     double a = path->current.tangent[path->n], b = path->next.tangent[path->n];
     if (a * b < 0 && w.n_folds < MAX_FOLDS) {
-      assert_int_equal(mhb_arclength_locate(path, turning, NULL, a, b, &at), 1);
+      assert_int_equal(mhb_arclength_locate(path, turning, NULL, a, b, 0, &at), 1);
       w.fold[w.n_folds++] = path->trial.value;
     }
     mhb_arclength_advance(path);

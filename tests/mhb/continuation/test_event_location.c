@@ -29,7 +29,7 @@ static double fold_test(mhb_arclength *curve, const mhb_curve_point *point, void
 /* Locate g between the ends of the curve's step. */
 static bool locate(mhb_arclength *curve, mhb_test_function g, void *context, double *fraction) {
   return mhb_arclength_locate(curve, g, context, g(curve, &curve->current, context),
-                              g(curve, &curve->next, context), fraction);
+                              g(curve, &curve->next, context), 0, fraction);
 }
 
 /* A step on the circle from one angle to another, rad. */

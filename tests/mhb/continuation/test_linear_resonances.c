@@ -302,7 +302,7 @@ static void jumps_are_located(void **state) {
     double width = path->next.value - path->current.value;
     for (int j = 1; j < 20; j++) {
       double place = path->current.value + 0.05 * j * width;
-      assert_int_equal(mhb_arclength_locate(path, jumping, &place, -1e3, 1, &at), 1);
+      assert_int_equal(mhb_arclength_locate(path, jumping, &place, -1e3, 1, 0, &at), 1);
       if (!(fabs(path->trial.value - place) < 1e-5 * width))
         fail_msg("told as located %.1e of the step away", (path->trial.value - place) / width);
     }

@@ -69,7 +69,7 @@ static double highest_point(const fixture *f, double n0, double *frequency, doub
 static void follow(fixture *f, double n0, mhb_tracking_end *end) {
   double            x[N], frequency = 0;
   bool              found;
-  mhb_tracking_seed seed = {x, 0, n0};
+  mhb_tracking_seed seed = {.x = x, .value = n0};
   highest_point(f, n0, &frequency, x);
   seed.omega = SHB_TWO_PI * frequency;
   assert_ok(

@@ -59,7 +59,7 @@ static void each_tracked_peak_is_that_of_a_sweep(void **state) {
                                 .high       = 1.5,
                                 .frequency  = {0.5, 2},
                                 .max_points = 2000};
-  mhb_tracking_seed seed     = {x, SHB_TWO_PI * f, 0.2};
+  mhb_tracking_seed seed     = {.x = x, .omega = SHB_TWO_PI * f, .value = 0.2};
   mhb_tracking_end  end;
   r            = mhb_response_create(1, model.n_probes, H);
   r->parameter = MHB_IN_N0;
