@@ -22,14 +22,14 @@ typedef struct {
   double                 *x, *p;       /* [3][2 last + 1] motion and force of one pair, real form */
   double complex         *force, *u;   /* [k - first][n] p_k N, u_k m */
   double complex         *D, *W;       /* [pair][3][3] */
-  double complex         *A, *c;   /* matrix [n][n] or [modes][modes] and c [n] of one harmonic */
-  double complex         *y;       /* [modes] */
-  double complex         *V, *f;   /* [n][modes] D W B; [n] D W c */
-  double complex         *C;       /* [modes][modes] B^H V */
-  int                    *pivot;   /* [n or modes] */
-  mhb_receptance_product *product; /* of many pairs: harmonics first..last */
-  double                 *change;  /* [columns of the product or of the balance] in real form */
-  double                 *motion;  /* [columns of the product] R p_k */
+  double complex         *A, *c;     /* matrix [n][n] or [modes][modes] and c [n] of one harmonic */
+  double complex         *y;         /* [modes] */
+  double complex         *V, *f;     /* [n][modes] D W B; [n] D W c */
+  double complex         *C;         /* [modes][modes] B^H V */
+  int                    *pivot;     /* [n or modes] */
+  mhb_receptance_product *product;   /* of many pairs: harmonics first..last */
+  double                 *change;    /* [columns of the product or of the balance] in real form */
+  double                 *motion;    /* [columns of the product] R p_k */
   double complex         *stiffness; /* [modes][modes] L^-1 with Coriolis terms, else NULL */
   shb_arena               arena;
 } mhb_higher_harmonics;

@@ -275,7 +275,7 @@ shb_status mhb_ring_linear_limit(const mhb_ring_receptance *ring, const mhb_law 
                                  const mhb_pair_kind *kind, double complex *u) {
   mhb_ring_condensation *c;
   SHB_TRY(mhb_ring_condensation_create(ring, k, &c));
-  double complex *q       = calloc((size_t)(ring->blades * ring->n), sizeof *q);
+  double complex *q       = calloc((size_t)ring->blades * (size_t)ring->n, sizeof *q);
   const int       regular = q && mhb_ring_condensation_factor(c, law, kind, k);
   if (regular) {
     mhb_ring_condensation_forward(c, k, u);

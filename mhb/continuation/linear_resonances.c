@@ -98,7 +98,7 @@ static int couple(const stuck_modes *w, int k) {
   const size_t          m = (size_t)r->n_modes;
   const double complex *G = r->part->G + (size_t)k * m * m;
   double                loss[m];
-  mhb_gyroscopic      g;
+  mhb_gyroscopic        g;
   memset(loss, 0, sizeof loss);
   for (size_t i = 0; i < m * m; i++) w->M[i] = conj(w->M[i]); /* by rows */
   const int found = mhb_gyroscopic_solve(r->n_modes, w->M, G, loss, &g) == SHB_OK;

@@ -59,7 +59,7 @@ static void set_coupled(mhb_disc_propagation *d, double h) {
   const size_t             n = (size_t)s->n;
   for (int diameter = 0; diameter < s->diameters; diameter++)
     for (int i = 0; i < halves(s, diameter) * s->modes; i++) {
-      const size_t          at  = (size_t)(2 * diameter * s->modes + i);
+      const size_t          at  = 2 * (size_t)diameter * (size_t)s->modes + (size_t)i;
       const double complex *out = c->shape + at * n, *in = c->force + at * n;
       double complex       *C = d->block + (size_t)diameter * n * n;
       d->growth[at]           = expm1_complex(c->pole[at] * h);
@@ -258,7 +258,7 @@ MHB_HOT static void advance_coupled(mhb_disc_propagation *d, int diameter, mhb_c
   const int             first = mhb_disc_modes_first(s, diameter, &count);
   const mhb_columns    *p     = d->force + first * n;
   for (int a = 0; a < count * m; a++) {
-    const size_t          at  = (size_t)(2 * diameter * m + a);
+    const size_t          at  = 2 * (size_t)diameter * (size_t)m + (size_t)a;
     const double complex *in  = s->coupled->force + at * (size_t)n;
     const double complex *out = s->coupled->shape + at * (size_t)n;
     const double          gr = creal(d->gain[at]), gi = cimag(d->gain[at]);

@@ -13,7 +13,7 @@ shb_status mhb_disc_table_create(modal_sector_speeds *speeds, const char *path, 
   d->n             = speeds->n;
   d->diameter      = speeds->diameter;
   speeds->diameter = NULL;
-  d->table         = calloc((size_t)d->n, sizeof *d->table);
+  d->table         = calloc((size_t)d->n, sizeof(void *));
   shb_status status =
       d->table ? mhb_speed_tables_create(d->n, speeds->at, path, engine_order, frequency, d->table)
                : shb_fail(SHB_ERR_IO, __FILE__, __LINE__, "out of memory");

@@ -42,9 +42,9 @@ typedef struct mhb_disc_modes {
   double         *fourier;     /* [N][N] real coordinates of z by y */
   modal_wave     *wave;        /* [diameter] and the phase of the next blade */
   double complex *phase;
-  mhb_modal_part *part; /* run-up: of the models at one speed; else NULL */
-  mhb_coupled_modes *coupled;  /* with Coriolis terms, else NULL */
-  shb_arena       arena;
+  mhb_modal_part *part;       /* run-up: of the models at one speed; else NULL */
+  mhb_coupled_modes *coupled; /* with Coriolis terms, else NULL */
+  shb_arena          arena;
 } mhb_disc_modes;
 
 /* The lowest modes of each nodal diameter of settings->nodal_diameters, which must hold all of

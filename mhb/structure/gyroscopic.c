@@ -10,9 +10,9 @@
 static shb_status allocate(int n, mhb_gyroscopic *out) {
   const size_t m = (size_t)n;
   *out           = (mhb_gyroscopic){.n     = n,
-                                      .omega = malloc((2 * m + 1) * sizeof *out->omega),
-                                      .decay = malloc((2 * m + 1) * sizeof *out->decay),
-                                      .shape = malloc((2 * m * m + 1) * sizeof *out->shape)};
+                                    .omega = malloc((2 * m + 1) * sizeof *out->omega),
+                                    .decay = malloc((2 * m + 1) * sizeof *out->decay),
+                                    .shape = malloc((2 * m * m + 1) * sizeof *out->shape)};
   SHB_CHECK(out->omega && out->decay && out->shape, SHB_ERR_IO,
             "out of memory for %d gyroscopic modes", n);
   return SHB_OK;
@@ -50,7 +50,7 @@ static bool factor(int n, const double complex *K, double complex *L) {
 }
 
 shb_status mhb_gyroscopic_solve(int n, const double complex *K, const double complex *G,
-                                  const double *loss, mhb_gyroscopic *out) {
+                                const double *loss, mhb_gyroscopic *out) {
   const size_t m = (size_t)n;
   SHB_TRY(allocate(n, out));
   double complex *L = malloc((m * m + 1) * sizeof *L), *A = malloc((4 * m * m + 1) * sizeof *A);

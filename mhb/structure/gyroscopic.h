@@ -26,7 +26,7 @@ typedef struct {
  *   out   out freed by the caller in any case
  * Errors: SHB_ERR_IO no memory; SHB_NOT_CONVERGED K not positive definite, or no solution. */
 shb_status mhb_gyroscopic_solve(int n, const double complex *K, const double complex *G,
-                                  const double *loss, mhb_gyroscopic *out);
+                                const double *loss, mhb_gyroscopic *out);
 
 /* The same of the modes kept of a wave. Without Coriolis terms G is zero. */
 shb_status mhb_gyroscopic_of_wave(const modal_wave *wave, mhb_gyroscopic *out);

@@ -116,8 +116,7 @@ shb_status mhb_modal_part_create(const modal_model *model, mhb_relative relative
 void mhb_modal_part_destroy(mhb_modal_part *b) {
   if (!b) return;
   mhb_residual_terms_destroy(b->residual_terms);
-  for (int k = 0; b->gyroscopic && k <= b->n_harmonics; k++)
-    mhb_gyroscopic_free(&b->gyroscopic[k]);
+  for (int k = 0; b->gyroscopic && k <= b->n_harmonics; k++) mhb_gyroscopic_free(&b->gyroscopic[k]);
   shb_arena_free(&b->arena);
   free(b);
 }

@@ -14,9 +14,9 @@
 
 #include "mesh/base/arena.h"
 #include "mesh/base/status.h"
+#include "mhb/structure/gyroscopic.h"
 #include "mhb/structure/relative_motion.h"
 #include "mhb/structure/residual_terms.h"
-#include "mhb/structure/gyroscopic.h"
 
 typedef struct {
   const modal_model    *model; /* of all harmonics, or of the mean */
@@ -27,7 +27,7 @@ typedef struct {
   double complex       *B;                           /* [k][n][modes] */
   double complex       *F;                           /* [k][modes] */
   double complex       *G; /* [k][modes][modes]; NULL: without Coriolis terms, as the next */
-  mhb_gyroscopic     *gyroscopic; /* [k] the modes that G couples */
+  mhb_gyroscopic       *gyroscopic; /* [k] the modes that G couples */
   double             *split; /* [k][2 (re, im)][n + 1][modes] B, then F: for the loops over modes */
   int                *driven; /* [k] whether the load has this harmonic */
   mhb_residual_terms *residual_terms;

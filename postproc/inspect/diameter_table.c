@@ -35,9 +35,9 @@ static shb_status turning(hid_t file, char **side) {
  * Positive frequencies belong to the wave that runs to the right. */
 static shb_status put_waves(const modal_nodal_diameters *d, int at, bool left, int rows,
                             post_buffer *out) {
-  modal_wave       wave;
+  modal_wave     wave;
   mhb_gyroscopic g;
-  int              missing;
+  int            missing;
   if (!modal_nodal_diameters_wave(d, d->diameter[at], &wave, &missing)) return SHB_OK;
   shb_status status = mhb_gyroscopic_of_wave(&wave, &g);
   for (int m = 0; status == SHB_OK && m < rows; m++) {

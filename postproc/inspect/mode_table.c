@@ -4,8 +4,8 @@
 #include <string.h>
 
 #include "mesh/base/constants.h"
-#include "modal/hdf5/h5.h"
 #include "mhb/structure/gyroscopic.h"
+#include "modal/hdf5/h5.h"
 #include "postproc/draw/number_format.h"
 
 enum { AT_FIRST = 24 };
@@ -73,7 +73,7 @@ static void put_table(const modal_model *m, const shares *s, bool all, post_buff
 static shb_status put_coriolis(const modal_model *m, bool all, post_buffer *out) {
   const modal_wave wave  = modal_wave_real(m);
   const int        shown = all || m->n_modes <= AT_FIRST ? m->n_modes : AT_FIRST;
-  mhb_gyroscopic g;
+  mhb_gyroscopic   g;
   if (!m->coriolis) return SHB_OK;
   shb_status status = mhb_gyroscopic_of_wave(&wave, &g);
   if (status == SHB_OK) post_put(out, "  with Coriolis terms\n");

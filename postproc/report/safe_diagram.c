@@ -41,9 +41,9 @@ static const modal_model *model_at(const modal_model *model, const mhb_settings 
  * the wave that runs to the right, as an excitation of that order does. */
 static shb_status find_open(const modal_model *own, const mhb_settings *settings, int diameter,
                             int n, double *open) {
-  modal_wave       wave;
+  modal_wave     wave;
   mhb_gyroscopic g;
-  int              missing;
+  int            missing;
   for (int i = 0; i < n; i++) open[i] = own ? own->frequency[i] : NAN;
   if (!own || !own->coriolis) return SHB_OK;
   if (!settings->nodal_diameters ||

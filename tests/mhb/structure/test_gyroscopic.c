@@ -13,7 +13,7 @@ static void two_degrees_of_freedom(void **state) {
   const double         a = 2.385, b = 3.11, g = 0.77, half = (a * a + b * b + g * g) / 2;
   const double complex K[] = {a * a, 0, 0, b * b}, G[] = {0, -g, g, 0};
   const double         loss[2] = {0, 0};
-  mhb_gyroscopic     of;
+  mhb_gyroscopic       of;
   assert_ok(mhb_gyroscopic_solve(2, K, G, loss, &of));
   for (int i = 0; i < 2; i++) {
     const double wanted = sqrt(half + (i ? 1 : -1) * sqrt(half * half - a * a * b * b));
@@ -30,7 +30,7 @@ static void shapes_and_decay(void **state) {
   (void)state;
   const double         w0 = 1.7, g = 0.9, c = 0.03, loss[2] = {c, c};
   const double complex K[] = {w0 * w0, 0, 0, w0 * w0}, G[] = {0, -g, g, 0};
-  mhb_gyroscopic     of;
+  mhb_gyroscopic       of;
   assert_ok(mhb_gyroscopic_solve(2, K, G, loss, &of));
   for (int i = 0; i < 4; i++) {
     const double          w    = of.omega[i];
@@ -63,9 +63,9 @@ static void one_mode_of_a_wave(void **state) {
   double shape            = 1;
   imaginary[1].right      = &shape;
   for (int wave = 1; wave <= 3; wave += 2) {
-    modal_wave       w;
+    modal_wave     w;
     mhb_gyroscopic of;
-    int              missing;
+    int            missing;
     assert_true(modal_nodal_diameters_wave(&d, wave, &w, &missing));
     assert_ok(mhb_gyroscopic_of_wave(&w, &of));
     const double shift = wave == 1 ? -0.3 : 0.3; /* j G = -+ 0.6 */
@@ -80,7 +80,7 @@ static void a_stiffness_that_is_not_positive(void **state) {
   (void)state;
   const double complex K[] = {-1}, G[] = {0};
   const double         loss[1] = {0};
-  mhb_gyroscopic     of;
+  mhb_gyroscopic       of;
   assert_refused(mhb_gyroscopic_solve(1, K, G, loss, &of), SHB_NOT_CONVERGED, "not positive");
   mhb_gyroscopic_free(&of);
 }

@@ -11,9 +11,9 @@
 
 #include "mesh/base/constants.h"
 #include "mesh/core/cyclic_sides.h"
+#include "mhb/structure/gyroscopic.h"
 #include "modal/common/session.h"
 #include "modal/cyclic/wave_coriolis.h"
-#include "mhb/structure/gyroscopic.h"
 #include "tests/support/fem.h"
 
 enum { SECTORS = 36, MODES = 12 };
@@ -109,11 +109,11 @@ static void waves_lie_apart_as_bryan_says(void **state) {
     const double bryan = 4 * n * omega / (n * n + 1.);
     double       off[3];
     for (int k = 0; k < 3; k++) {
-      ring             r;
-      wave_modes       modes;
-      double complex   G[MODES * MODES];
-      double           loss[MODES]      = {0};
-      double complex   K[MODES * MODES] = {0};
+      ring           r;
+      wave_modes     modes;
+      double complex G[MODES * MODES];
+      double         loss[MODES]      = {0};
+      double complex K[MODES * MODES] = {0};
       mhb_gyroscopic g;
       ring_create(radius * 0.1 / (1 << k), omega, &r);
       solve(&r, n, FEM_TURNS_LEFT, &modes, G);
