@@ -254,11 +254,11 @@ static void too_little_memory_is_one_line(void **state) {
 
 int main(void) {
   const struct CMUnitTest tests[] = {
+      cmocka_unit_test(memory_is_foreseen), /* first: it measures the peak of the process */
       cmocka_unit_test_setup_teardown(columns_solve_the_system, create, destroy),
       cmocka_unit_test_setup_teardown(both_programs_agree, create, destroy),
       cmocka_unit_test_setup_teardown(indefinite_matrices_are_told, create, destroy),
       cmocka_unit_test(threads_change_no_bit),
-      cmocka_unit_test(memory_is_foreseen),
       cmocka_unit_test_setup_teardown(too_little_memory_is_one_line, create, destroy)};
   if (PetscInitialize(NULL, NULL, NULL, NULL)) return 1;
   int failures = cmocka_run_group_tests(tests, NULL, NULL);
