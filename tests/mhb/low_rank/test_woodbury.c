@@ -13,6 +13,7 @@
 
 #include "mesh/base/constants.h"
 #include "mhb/balance/balance.h"
+#include "mhb/low_rank/lone_harmonics.h"
 #include "mhb/low_rank/woodbury.h"
 #include "mhb/numerics/vector.h"
 #include "tests/bench/shroud_face.h"
@@ -265,8 +266,76 @@ static void solution_is_that_of_the_whole(void **state) {
   modal_model_free(&model);
 }
 
+/* |(I + X K X^H D) x_k - rhs_k|/|rhs_k| of a harmonic, D of each pair, X and K of the basis. */
+static double residual_of(const solver *v, int k, const double complex (*D)[9], const double *x,
+                          const double *rhs) {
+  const mhb_contact_basis *basis = v->woodbury->basis;
+  const int                n3 = 3 * v->b->n_pairs, nb = v->b->nb, wide = 2 * basis->rank[k];
+  double                   p[2 * n3], y[wide], left = 0, all = 0;
+  memset(y, 0, sizeof y);
+  for (int i = 0; i < n3; i++) {
+    double complex sum = 0;
+    for (int c = 0; c < 3; c++) {
+      const double *u = x + (i - i % 3 + c) * nb + 2 * k - 1;
+      sum += D[i / 3][3 * (i % 3) + c] * CMPLX(u[0], u[1]);
+    }
+    p[2 * i]     = creal(sum);
+    p[2 * i + 1] = cimag(sum);
+  }
+  for (int row = 0; row < 2 * n3; row++)
+    for (int j = 0; j < wide; j++) y[j] += basis->X[k][row * wide + j] * p[row];
+  for (int row = 0; row < 2 * n3; row++) {
+    const int at  = row / 2 * nb + 2 * k - 1 + row % 2;
+    double    sum = x[at] - rhs[at];
+    for (int j = 0; j < wide; j++)
+      for (int l = 0; l < wide; l++)
+        sum += basis->X[k][row * wide + j] * basis->K[k][j * wide + l] * y[l];
+    left += sum * sum;
+    all += rhs[at] * rhs[at];
+  }
+  return sqrt(left / all);
+}
+
+/* Harmonics that do not couple, with the receptance of the basis. */
+static void lone_harmonics_are_those_of_the_basis(void **state) {
+  (void)state;
+  modal_model  model;
+  mhb_settings s     = random_settings(M);
+  solver       v     = {0};
+  const double omega = 1.2;
+  random_model(12, WITH_LEFT | WITH_NORMALS | WITH_AREAS, 5, &model);
+  open_solver(&model, &s, 1, 1.4, &v);
+  const mhb_balance *b = v.b;
+  double             rhs[b->n], x[b->n];
+  double complex     D[b->n_pairs][9];
+  memset(D, 0, sizeof D);
+  for (int a = 0; a < b->n_pairs; a++) {
+    D[a][0] = CMPLX(b->law[a].kv, .02 * b->law[a].kv);
+    D[a][4] = CMPLX(.6 * b->law[a].ku[0], .1 * b->law[a].ku[0]);
+    D[a][8] = .7 * b->law[a].ku[2];
+    D[a][5] = .05 * b->law[a].ku[2];
+  }
+  random_vector(b->n, 1, 7, rhs);
+  memcpy(x, rhs, sizeof rhs);
+  mhb_receptance_at(b->receptance, omega, b->m);
+  assert_true(mhb_lone_harmonics_factor(v.woodbury, b->law, 1, (const double complex(*)[9])D));
+  mhb_lone_harmonics_solve(v.woodbury, 1, (const double complex(*)[9])D, x);
+  for (int i = 0; i < b->n; i += b->nb) assert_near(x[i], rhs[i], 0); /* k = 0 stays */
+  for (int k = 1; k <= b->m; k++) {
+    const double before = residual_of(&v, k, (const double complex(*)[9])D, rhs, rhs),
+                 after  = residual_of(&v, k, (const double complex(*)[9])D, x, rhs);
+    print_message("harmonic %d, %d columns: residual %.1e, %.1e without\n", k,
+                  v.woodbury->basis->rank[k], after, before);
+    assert_true(before > 1e-6 || v.woodbury->basis->rank[k] == 0);
+    assert_below(after, 1e-13 * (1 + before));
+  }
+  close_solver(&v);
+  modal_model_free(&model);
+}
+
 int main(void) {
   const struct CMUnitTest tests[] = {
+      cmocka_unit_test(lone_harmonics_are_those_of_the_basis),
       cmocka_unit_test(products_are_those_of_R),
       cmocka_unit_test(load_without_R),
       cmocka_unit_test(solution_is_that_of_the_whole),
