@@ -69,7 +69,9 @@ static void interfaces_are_told_apart(void **state) {
 static void derive(const char *name, const char *script) {
   char command[8 * SCRATCH_PATH];
   snprintf(command, sizeof command,
-           "cd '%s' && sed -e 's/^name: .*/name: %s/' -e '/n0/s/-200 N, 20 N, 60 N, 1 kN/60 N/' "
+           "cd '%s' && sed -e 's/^name: .*/name: %s/' -e 's/harmonics: auto/harmonics: 7/' -e '/^  "
+           "tolerance/d' -e "
+           "'/n0/s/-200 N, 20 N, 60 N, 1 kN/60 N/' "
            "-e '%s' case.yaml > %s.yaml && '%s' run --quiet %s.yaml >/dev/null",
            folder, name, script, name, SHROUDHB, name);
   assert_int_equal(system(command), 0);
@@ -83,7 +85,7 @@ static mhb_response *read_response(const char *name) {
   return response;
 }
 
-/* A snubber too far apart to touch gives the curve of the shroud alone. */
+/* A snubber too far apart to touch gives the curve of the shroud alone, with as many harmonics. */
 static void an_interface_that_stays_open_is_not_there(void **state) {
   (void)state;
   derive("far", "/snubber,/s/n0: .*]/n0: -100 kN/");
@@ -97,8 +99,8 @@ static void an_interface_that_stays_open_is_not_there(void **state) {
                   peak[i].frequency);
   }
   assert_int_equal(response[0]->n_interfaces, 2);
-  assert_within(peak[0].amplitude, peak[1].amplitude, 1e-4);
-  assert_within(peak[0].frequency, peak[1].frequency, 1e-4);
+  assert_within(peak[0].amplitude, peak[1].amplitude, 1e-8);
+  assert_within(peak[0].frequency, peak[1].frequency, 1e-8);
   for (int i = 0; i < 2; i++) mhb_response_destroy(response[i]);
 }
 
