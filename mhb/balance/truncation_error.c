@@ -177,14 +177,16 @@ static void evaluate_above(mhb_truncation *t) {
 
 /* The same without linearising the doubled balance. false: it failed. */
 static bool set_broyden_step(mhb_truncation *t) {
-  mhb_truncation_step *by = t->broyden;
+  mhb_truncation_step *by    = t->broyden;
+  const size_t         bytes = sizeof(double) * (size_t)t->doubled->n;
   if (!t->higher) return mhb_truncation_step_find(by, t->factors, t->x, NULL, NULL, t->step);
   evaluate_above(t);
+  memcpy(t->trial, t->doubled->eval->p, bytes); /* the forces at t->x */
   if (!mhb_truncation_step_find(by, NULL, t->x, t->r, NULL, t->step)) return false;
   if (mhb_norm(t->step, t->doubled->n) > FAR * mhb_balance_vibration(t->doubled, t->x))
     return false;
   if (!higher_count(t, t->balance, t->step)) return true;
-  evaluate_above(t);
+  memcpy(t->doubled->eval->p, t->trial, bytes);
   mhb_higher_harmonics_feedback(t->higher, t->doubled, t->balance, t->x, t->feedback);
   return mhb_truncation_step_find(by, NULL, t->x, t->r, t->feedback, t->step);
 }
