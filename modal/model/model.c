@@ -328,30 +328,43 @@ static shb_status read_optional_complex(hid_t at, const char *dataset, h5_shape 
   return h5_exists(at, dataset) ? h5_read_complex(at, dataset, &shape, data) : SHB_OK;
 }
 
+/* How far a matrix is from sign times its conjugate transpose. */
+typedef struct {
+  double largest, worst; /* of its values; of the differences */
+  size_t row, column;    /* where that is */
+} asymmetry;
+
+/*   matrix, im  in  [n][n] real and imaginary part; im NULL: real */
+static asymmetry asymmetry_of(size_t n, const double *matrix, const double *im, double sign) {
+  asymmetry a = {0};
+  for (size_t i = 0; i < n; i++)
+    for (size_t j = 0; j < n; j++) {
+      const size_t here = i * n + j, there = j * n + i;
+      const double off    = matrix[here] - sign * matrix[there];
+      const double across = im ? im[here] + sign * im[there] : 0;
+      a.largest         = fmax(a.largest, im ? hypot(matrix[here], im[here]) : fabs(matrix[here]));
+      const double size = im ? hypot(off, across) : fabs(off);
+      if (size <= a.worst) continue;
+      a.worst  = size;
+      a.row    = i;
+      a.column = j;
+    }
+  return a;
+}
+
 /* Coriolis forces do no work: the matrix must be skew-symmetric to 1e-6 of its largest value, or
  * skew-Hermitian. */
 static shb_status read_coriolis(hid_t at, const char *path, modal_model *model, modal_model *im) {
-  const size_t m       = (size_t)model->n_modes;
-  h5_shape     shape   = H5_SHAPE((hsize_t)m, (hsize_t)m);
-  double       largest = 0, worst = 0;
-  size_t       row = 0, column = 0;
+  const size_t m     = (size_t)model->n_modes;
+  h5_shape     shape = H5_SHAPE((hsize_t)m, (hsize_t)m);
   if (!h5_exists(at, "modes/coriolis")) return SHB_OK;
   SHB_TRY(read_split(at, "modes/coriolis", &shape, &model->coriolis, im ? &im->coriolis : NULL));
-  for (size_t i = 0; i < m; i++)
-    for (size_t j = 0; j < m; j++) {
-      const size_t here = i * m + j, there = j * m + i;
-      const double b = im ? im->coriolis[here] : 0, c = im ? im->coriolis[there] : 0;
-      const double off = hypot(model->coriolis[here] + model->coriolis[there], b - c);
-      largest          = fmax(largest, hypot(model->coriolis[here], b));
-      if (off <= worst) continue;
-      worst  = off;
-      row    = i;
-      column = j;
-    }
-  SHB_CHECK(worst <= 1e-6 * largest, SHB_ERR_INPUT,
+  const asymmetry a = asymmetry_of(m, model->coriolis, im ? im->coriolis : NULL, -1);
+  SHB_CHECK(a.worst <= 1e-6 * a.largest, SHB_ERR_INPUT,
             "%s: /modes/coriolis is not skew-%s: [%zu, %zu] and [%zu, %zu] add up to %.2g of the "
             "largest value; a matrix that does no work is wanted",
-            path, im ? "Hermitian" : "symmetric", row, column, column, row, worst / largest);
+            path, im ? "Hermitian" : "symmetric", a.row, a.column, a.column, a.row,
+            a.worst / a.largest);
   return SHB_OK;
 }
 
@@ -371,24 +384,12 @@ static shb_status read_modes(hid_t at, const char *path, modal_model *model, mod
 /* Reciprocity: the matrix must be symmetric to 1e-6 of its largest value, or Hermitian. */
 static shb_status check_symmetric(const char *path, const char *dataset, const double *matrix,
                                   const double *im, int n) {
-  double largest = 0, worst = 0;
-  int    row = 0, column = 0;
-  for (int i = 0; i < n; i++)
-    for (int j = 0; j < n; j++) {
-      size_t here = (size_t)i * (size_t)n + (size_t)j, there = (size_t)j * (size_t)n + (size_t)i;
-      double a = matrix[here], d = fabs(a - matrix[there]);
-      if (im) d = hypot(d, im[here] + im[there]);
-      largest = fmax(largest, im ? hypot(a, im[here]) : fabs(a));
-      if (d <= worst) continue;
-      worst  = d;
-      row    = i;
-      column = j;
-    }
-  SHB_CHECK(worst <= 1e-6 * largest, SHB_ERR_INPUT,
-            "%s: /%s is not %s: [%d, %d] and [%d, %d] differ by %.2g of the largest value; a "
+  const asymmetry a = asymmetry_of((size_t)n, matrix, im, 1);
+  SHB_CHECK(a.worst <= 1e-6 * a.largest, SHB_ERR_INPUT,
+            "%s: /%s is not %s: [%zu, %zu] and [%zu, %zu] differ by %.2g of the largest value; a "
             "receptance must be %s to 1e-6",
-            path, dataset, im ? "Hermitian" : "symmetric", row, column, column, row,
-            worst / largest, im ? "Hermitian" : "symmetric");
+            path, dataset, im ? "Hermitian" : "symmetric", a.row, a.column, a.column, a.row,
+            a.worst / a.largest, im ? "Hermitian" : "symmetric");
   return SHB_OK;
 }
 
