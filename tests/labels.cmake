@@ -49,6 +49,7 @@ endif()
 set(SLOW_TESTS
   cases.scenes.mistuned_ring cases.scenes.bladed_disc
   mesh.blade.blade mhb.floquet.monodromy mhb.branches.verdicts cases.converge.converge hard.gaps
+  hard.oblique
   bench.elements cases.scenes.optimum_preload fuzz.libfuzzer mhb.tracking.tracked_response
   robust.fail_nth robust.kills robust.damaged)
 

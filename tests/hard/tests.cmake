@@ -11,3 +11,7 @@ foreach(noun three_degree jumps ends friction limits ring resonance balance pair
 endforeach()
 target_sources(test_hard_pairs PRIVATE bench/shroud_face.c)
 shb_test(hard gaps tests_hard)
+shb_test(hard oblique tests_hard PkgConfig::LAPACKE)
+target_sources(test_hard_oblique PRIVATE hard/oblique_cantilever.c hard/rigid_contact.c)
+target_compile_definitions(test_hard_oblique PRIVATE SHROUDHB="$<TARGET_FILE:shroudhb>")
+add_dependencies(test_hard_oblique programs)
