@@ -102,7 +102,7 @@ void rigid_contact_frequencies(const modal_model *model, double *omega) {
   boundary_free(&b);
 }
 
-/* Modes q[m] and forces p[n], first harmonics, of the held blade: Z q = F - B^T p, B q + x = R p. */
+/* First harmonics of the held blade, modes q[m] and forces p[n]: Z q = F - B^T p, B q + x = R p. */
 static void held_motion(const modal_model *model, const boundary *b, double omega,
                         double complex *q, double complex *p) {
   double         *stiffness = malloc(sizeof(double) * (size_t)b->m * (size_t)b->m);

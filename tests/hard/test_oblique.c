@@ -156,8 +156,8 @@ static void march(double omega, int steps, rigid_motion *out) {
   rigid_contact_march(&model, &contact, out);
 }
 
-/* At 0.8 of the second frequency of the held blade half of the strip sticks, a third slips and a
- * sixth is open, on average over time. */
+/* At 0.8 of the second frequency of the held blade. On average half of the strip sticks, a third
+ * slips and a sixth is open. */
 static void towards_rigid(void **state) {
   (void)state;
   static const double stiffness[] = {1e9, 1e10, 1e11};
