@@ -77,9 +77,7 @@ shb_status mhb_balance_product(const mhb_balance *b, mhb_receptance *receptance,
 }
 
 static shb_status create_product(mhb_balance *b) {
-  if (b->n_pairs < MHB_MANY_PAIRS || b->receptance->at || b->receptance->ring ||
-      b->settings->nodal_diameters || b->receptance->factor)
-    return SHB_OK;
+  if (b->n_pairs < MHB_MANY_PAIRS || b->receptance->at || b->receptance->ring) return SHB_OK;
   return mhb_balance_product(b, b->receptance, 0, b->m, &b->product);
 }
 

@@ -124,10 +124,14 @@ static bool make(mhb_stuck_solver *s, int k, double middle, const mhb_law *law,
 /* LU of L^-1 + G, column-major. */
 static bool set_modes(mhb_stuck_solver *s, int k) {
   const int             m = s->modes;
-  const double complex *L = s->receptance->lambda + (size_t)k * (size_t)m;
+  const mhb_receptance *r = s->receptance;
+  const double complex *L = r->lambda + (size_t)k * (size_t)m;
+  if (r->factor) mhb_receptance_dynamic_stiffness(r, k, k * r->omega / r->nu, s->small);
   for (int i = 0; i < m; i++)
-    for (int j = 0; j < m; j++)
-      s->small[j * m + i] = s->of[k].G[i * m + j] + (i == j ? 1 / L[i] : 0);
+    for (int j = 0; j < m; j++) {
+      const double complex inverse = r->factor ? s->small[j * m + i] : i == j ? 1 / L[i] : 0;
+      s->small[j * m + i]          = s->of[k].G[i * m + j] + inverse;
+    }
   return LAPACKE_zgetrf_work(LAPACK_COL_MAJOR, m, m, s->small, m, s->pivot) == 0;
 }
 

@@ -116,12 +116,12 @@ typedef struct {
 } candidates;
 
 static int n_poles(const mhb_receptance *r) {
-  return r->n_modes + r->model->n_residual;
+  return r->n_modes + r->residual_terms->r;
 }
 
 /* Row of [B_k S_k]. */
 static double complex shape(const mhb_receptance *r, int k, int row, int i) {
-  int m = r->n_modes, rest = r->model->n_residual;
+  int m = r->n_modes, rest = r->residual_terms->r;
   return i < m ? r->B[((size_t)k * (size_t)r->n + (size_t)row) * (size_t)m + (size_t)i]
                : r->residual_terms
                      ->S[((size_t)k * (size_t)r->n + (size_t)row) * (size_t)rest + (size_t)(i - m)];
@@ -154,22 +154,25 @@ static int orthonormalise(candidates *c, int n) {
 }
 
 /* 1/(w_i^2 - w^2 + 2 j zeta w_i w), not nearer to an undamped resonance than 1e-4 of it. */
-static double complex receptance_of(const mhb_receptance *r, int i, double w) {
-  double wi = SHB_TWO_PI * r->model->frequency[i], zeta = fmax(r->model->damping_ratio[i], 5e-5);
+static double complex receptance_of(const modal_model *model, int i, double w) {
+  double wi = SHB_TWO_PI * model->frequency[i], zeta = fmax(model->damping_ratio[i], 5e-5);
   return 1.0 / CMPLX(wi * wi - w * w, 2 * zeta * wi * w);
 }
 
 /* Block of H: Q^H D^1/2 R_k D^1/2 Q at w, and its conjugate transpose below it. */
-static void add_frequency(const mhb_receptance *r, candidates *c, const leading *e,
+static void add_frequency(const mhb_receptance *r, int k, candidates *c, const leading *e,
                           const double complex *QE, double w, int block) {
-  int             q = c->kept, poles = n_poles(r);
-  modal_series    series = modal_series_at(r->model, w);
-  double complex *at = c->H + 2 * block * q * q, *below = at + q * q;
-  double          slope;
+  int                q = c->kept, poles = n_poles(r);
+  const modal_model *model  = mhb_receptance_model(r, k);
+  modal_series       series = modal_series_at(model, w);
+  double complex    *at = c->H + 2 * block * q * q, *below = at + q * q;
+  double             slope;
   for (int j = 0; j < poles; j++) {
-    double complex L = j < r->n_modes
-                           ? receptance_of(r, j, w)
-                           : modal_series_mode(r->model, j - r->n_modes, &series, &slope);
+    double complex L = 0; /* beyond the residual modes of the harmonic */
+    if (j < r->n_modes)
+      L = receptance_of(model, j, w);
+    else if (j - r->n_modes < model->n_residual)
+      L = modal_series_mode(model, j - r->n_modes, &series, &slope);
     for (int i = 0; i < q; i++) c->work[i * poles + j] = L * c->G[i * poles + j];
   }
   cblas_zgemm(CblasRowMajor, CblasNoTrans, CblasConjTrans, q, q, poles, &ONE, c->work, poles, c->G,
@@ -188,7 +191,7 @@ static int list_frequencies(const mhb_receptance *r, int k, double low, double h
   double from = k * low / r->nu, to = k * high / r->nu;
   for (int i = 0; i < FREQUENCIES; i++) w[count++] = from + (to - from) * i / (FREQUENCIES - 1);
   for (int i = 0; i < r->n_modes; i++) {
-    double wi = SHB_TWO_PI * r->model->frequency[i];
+    double wi = SHB_TWO_PI * mhb_receptance_model(r, k)->frequency[i];
     if (wi > from && wi < to) w[count++] = wi;
   }
   return count;
@@ -235,7 +238,7 @@ static int decompose(mhb_contact_basis *b, int k, const leading *e, const double
       for (int j = 0; j < poles; j++) c->G[a * poles + j] += x * e->root[i] * shape(r, k, i, j);
       for (int l = 0; l < e->count; l++) QE[a * e->count + l] += x * e->vector[i * e->block + l];
     }
-  for (int i = 0; i < count && ok; i++) add_frequency(r, c, e, QE, w[i], i);
+  for (int i = 0; i < count && ok; i++) add_frequency(r, k, c, e, QE, w[i], i);
   free(QE);
   double rest[q + 1];
   ok = ok && LAPACKE_zgesvd(LAPACK_COL_MAJOR, 'S', 'N', q, 2 * count * q, c->H, q, c->value,
@@ -307,6 +310,22 @@ static void project(const mhb_contact_basis *b, int rank, const double *A, const
     out[i] = CMPLX(part[0][i] + part[1][i], part[2][i] - part[3][i]);
 }
 
+/* out[rank][rank] <- X^H D A D X for a complex A; the columns of D X as two real ones. */
+static int project_wave(const mhb_contact_basis *b, int rank, const double complex *A,
+                        const double *re, const double *im, double complex *out) {
+  const int       n    = b->n;
+  const size_t    all  = (size_t)n * (size_t)rank;
+  double complex *room = calloc(2 * all + MHB_BLAS_ROOM, sizeof *room), *image = room + all;
+  if (!room) return 0;
+  for (size_t i = 0; i < all; i++) room[i] = CMPLX(re[i], im[i]);
+  cblas_zgemm(CblasRowMajor, CblasNoTrans, CblasNoTrans, n, rank, n, &ONE, A, n, room, rank, &ZERO,
+              image, rank);
+  cblas_zgemm(CblasRowMajor, CblasConjTrans, CblasNoTrans, rank, rank, n, &ONE, room, rank, image,
+              rank, &ZERO, out, rank);
+  free(room);
+  return 1;
+}
+
 static const double *matrix_of(const mhb_receptance *r, int i) {
   const mhb_cyclic_flexibility *f = r->residual_terms->contact[i / 3];
   if (!f) return NULL;
@@ -330,21 +349,26 @@ static int make_projections(mhb_contact_basis *b, int k) {
   for (int i = 0; i < MHB_PROJECTIONS && rank > 0; i++)
     if (matrix_of(r, i))
       project(b, rank, matrix_of(r, i), re, im, image, b->projected[k] + (size_t)i * square);
+  int ok = 1;
+  for (int t = 0; t < MODAL_TERMS && rank > 0; t++)
+    if (r->residual_terms->own[t])
+      ok &= project_wave(b, rank, r->residual_terms->own[t] + (size_t)k * (size_t)n * (size_t)n, re,
+                         im, b->projected[k] + (size_t)(3 * t) * square);
   for (int i = 0; i < n; i++)
     for (int a = 0; a < rank; a++) {
       double complex x = CMPLX(re[i * rank + a], -im[i * rank + a]);
       for (int j = 0; j < poles; j++) b->pole[k][a * poles + j] += x * shape(r, k, i, j);
     }
   free(room);
-  return 1;
+  return ok;
 }
 
 /* ---- life cycle ---- */
 
-static int make_all(mhb_contact_basis *b, leading *e, double low, double high, int most) {
-  const mhb_cyclic_flexibility *own = b->receptance->residual_terms->contact[0];
+static int make_all(mhb_contact_basis *b, leading *e, const double *own, double low, double high,
+                    int most) {
   for (b->bound = FIRST_BOUND;; b->bound *= 2) {
-    int ok  = find_leading(e, own ? own->self : NULL, b->bound, most);
+    int ok  = find_leading(e, own, b->bound, most);
     b->size = 0;
     for (int k = 0; k <= b->m && ok; k++) {
       b->rank[k]  = 0;
@@ -360,12 +384,14 @@ static int make_all(mhb_contact_basis *b, leading *e, double low, double high, i
   return 1;
 }
 
-shb_status mhb_contact_basis_create(const mhb_receptance *r, int m, const double *stiffness,
-                                    double low, double high, int most, mhb_contact_basis **out) {
-  mhb_contact_basis *b  = calloc(1, sizeof *b);
-  leading            e  = {.n = r->n, .root = calloc((size_t)r->n, sizeof(double))};
-  size_t             K  = (size_t)m + 1;
-  int                ok = b && e.root;
+shb_status mhb_contact_basis_create(const mhb_receptance_product *product, int m,
+                                    const double *stiffness, double low, double high, int most,
+                                    mhb_contact_basis **out) {
+  const mhb_receptance *r  = product->receptance;
+  mhb_contact_basis    *b  = calloc(1, sizeof *b);
+  leading               e  = {.n = r->n, .root = calloc((size_t)r->n, sizeof(double))};
+  size_t                K  = (size_t)m + 1;
+  int                   ok = b && e.root;
   if (ok) {
     *b           = (mhb_contact_basis){.receptance = r, .n = r->n, .m = m, .omega = NAN};
     b->rank      = shb_arena_take(&b->arena, K, sizeof *b->rank);
@@ -379,7 +405,7 @@ shb_status mhb_contact_basis_create(const mhb_receptance *r, int m, const double
   }
   if (ok) memcpy(b->stiffness, stiffness, sizeof(double) * (size_t)r->n);
   for (int i = 0; ok && i < r->n; i++) e.root[i] = sqrt(stiffness[i]);
-  ok = ok && make_all(b, &e, low, high, most);
+  ok = ok && make_all(b, &e, product->own[0], low, high, most);
   leading_free(&e);
   if (!ok) {
     mhb_contact_basis_destroy(b);
@@ -404,25 +430,37 @@ static double complex entry(const mhb_contact_basis *b, int k, const modal_serie
   double complex        sum    = 0;
   for (int t = 0; t < MODAL_TERMS; t++) {
     const double complex *p = b->projected[k] + (size_t)(3 * t) * square + at;
-    sum += series->weight[t] *
+    sum += series->weight[t] * /* a disc has the first alone */
            (p[0] - creal(r->phase[k]) * p[square] - I * cimag(r->phase[k]) * p[2 * square]);
   }
   return sum;
 }
 
+/* y[poles] <- L X^H D [B S] of column j, conjugate: [B S] L [B S]^H D X. */
+static void set_response(const mhb_contact_basis *b, int k, int j, const double *g,
+                         double complex *y) {
+  const mhb_receptance *r     = b->receptance;
+  const int             modes = r->n_modes, poles = n_poles(r);
+  for (int l = 0; l < poles; l++) y[l] = conj(b->pole[k][j * poles + l]);
+  if (r->factor) mhb_receptance_coupled(r, k, y);
+  for (int l = r->factor ? modes : 0; l < poles; l++)
+    y[l] *= l < modes ? r->lambda[k * modes + l] : g[l - modes];
+}
+
 static void update_harmonic(mhb_contact_basis *b, int k) {
-  const mhb_receptance *r    = b->receptance;
-  int                   rank = b->rank[k], modes = r->n_modes, poles = n_poles(r);
-  modal_series          series = modal_series_at(r->model, k * r->omega / r->nu);
-  double                slope, g[r->model->n_residual + 1];
-  for (int i = 0; i < r->model->n_residual; i++)
-    g[i] = modal_series_mode(r->model, i, &series, &slope);
-  for (int i = 0; i < rank; i++)
-    for (int j = 0; j < rank; j++) {
-      const double complex *x = b->pole[k] + i * poles, *y = b->pole[k] + j * poles;
-      double complex        sum = entry(b, k, &series, (size_t)i * (size_t)rank + (size_t)j);
-      for (int l = 0; l < poles; l++)
-        sum += x[l] * conj(y[l]) * (l < modes ? r->lambda[k * modes + l] : g[l - modes]);
+  const mhb_receptance *r     = b->receptance;
+  const modal_model    *model = mhb_receptance_model(r, k);
+  const int             rank = b->rank[k], poles = n_poles(r), rest = r->residual_terms->r;
+  modal_series          series = modal_series_at(model, k * r->omega / r->nu);
+  double                slope, g[rest + 1];
+  double complex        y[poles + 1];
+  for (int i = 0; i < rest; i++)
+    g[i] = i < model->n_residual ? modal_series_mode(model, i, &series, &slope) : 0;
+  for (int j = 0; j < rank; j++) {
+    set_response(b, k, j, g, y);
+    for (int i = 0; i < rank; i++) {
+      double complex sum = entry(b, k, &series, (size_t)i * (size_t)rank + (size_t)j);
+      for (int l = 0; l < poles; l++) sum += b->pole[k][i * poles + l] * y[l];
       double *to = b->K[k] + i * rank * mhb_basis_parts(k) + j;
       to[0]      = creal(sum);
       if (k == 0) continue;
@@ -430,6 +468,7 @@ static void update_harmonic(mhb_contact_basis *b, int k) {
       to[2 * rank * rank]        = cimag(sum);
       to[2 * rank * rank + rank] = creal(sum);
     }
+  }
 }
 
 void mhb_contact_basis_update(mhb_contact_basis *b) {

@@ -13,7 +13,8 @@
 
 #include "mhb/low_rank/receptance_product.h"
 
-/* Projections a harmonic: self, even, odd of each residual term. */
+/* Projections a harmonic: self, even, odd of each residual term; of a disc the whole term as the
+ * first of them. */
 enum { MHB_PROJECTIONS = 3 * MODAL_TERMS };
 
 typedef struct {
@@ -38,11 +39,11 @@ static inline int mhb_basis_parts(int k) {
   return k ? 2 : 1;
 }
 
-/* For excitation frequencies low..high rad/s. The bound is raised from 0.05, up to 0.8, until size
+/* On the receptance of a product, for excitation frequencies low..high rad/s. The bound is raised from 0.05, up to 0.8, until size
  * is at most `most`.
  *   stiffness  in  [n] D, N/m, > 0
  * SHB_ERR_IO: no memory; SHB_NOT_CONVERGED: no eigenvalues. */
-shb_status mhb_contact_basis_create(const mhb_receptance *receptance, int m,
+shb_status mhb_contact_basis_create(const mhb_receptance_product *product, int m,
                                     const double *stiffness, double low, double high, int most,
                                     mhb_contact_basis **out);
 void       mhb_contact_basis_destroy(mhb_contact_basis *basis);

@@ -2,23 +2,13 @@
 
 #include <cblas.h>
 #include <float.h>
-#include <lapacke.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "mesh/base/constants.h"
+#include "mhb/low_rank/smooth_span.h"
 #include "mhb/numerics/blas_room.h"
-#include "mhb/numerics/random.h"
-
-/* Singular values below it are left out, in the norm of the contact stiffness, where I is 1. */
-static const double NEGLIGIBLE = 1e-12;
-
-/* The same for a product of an iteration. */
-static const double COARSE = 1e-6;
-
-/* Columns of the first sketch, and of the largest one that may be the whole space. */
-enum { FIRST_SKETCH = 128, MOST_WHOLE = 512 };
 
 /* ---- the smooth part ---- */
 
@@ -35,178 +25,100 @@ static int term_of(int i) {
   return i == MHB_SMOOTH_TERMS - 1 ? 2 : i / 2;
 }
 
-/* Factors of the axes in the norm of the contact stiffness, and what a sketch needs. */
-typedef struct {
-  const double *root;                     /* [n] of the stiffness */
-  double        weight[MHB_SMOOTH_TERMS]; /* at the highest frequency */
-  int           columns;
-  double       *Q, *random, *image, *half; /* [n][columns] */
-  double       *small;                     /* [columns][terms * columns] */
-  double       *singular, *left, *work;
-} sketch;
-
-/* to += weight D^1/2 A D^1/2 from, D^1/2 = root; A of n columns. */
-static void add_scaled(const sketch *s, int n, int columns, int term, const double *A,
-                       const double *from, double *to) {
-  for (int i = 0; i < n; i++)
-    for (int j = 0; j < columns; j++) s->half[i * columns + j] = s->root[i] * from[i * columns + j];
-  cblas_dgemm(CblasRowMajor, CblasNoTrans, CblasNoTrans, n, columns, n, s->weight[term], A, n,
-              s->half, columns, 0, s->image, columns);
-  for (int i = 0; i < n; i++)
-    for (int j = 0; j < columns; j++) to[i * columns + j] += s->root[i] * s->image[i * columns + j];
-}
-
-static void sketch_free(sketch *s) {
-  free(s->Q);
-  free(s->random);
-  free(s->image);
-  free(s->half);
-  free(s->small);
-  free(s->singular);
-  free(s->left);
-  free(s->work);
-}
-
-static int sketch_allocate(sketch *s, int n) {
-  size_t q = (size_t)s->columns, rows = (size_t)n;
-  s->Q        = calloc(rows * q, sizeof(double));
-  s->random   = calloc(rows * q, sizeof(double));
-  s->image    = calloc(rows * q, sizeof(double));
-  s->half     = calloc(rows * q, sizeof(double));
-  s->small    = calloc(q * q * MHB_SMOOTH_TERMS, sizeof(double));
-  s->singular = calloc(q, sizeof(double));
-  s->left     = calloc(q * q, sizeof(double));
-  s->work     = calloc(q * q * MHB_SMOOTH_TERMS, sizeof(double));
-  return s->Q && s->random && s->image && s->half && s->small && s->singular && s->left && s->work;
-}
-
-/* Q <- orthonormal basis of the image of all smooth terms. */
-static int find_range(const mhb_receptance_product *p, sketch *s) {
-  int                n = p->n, q = s->columns;
-  unsigned long long seed = 1;
-  for (int t = 0; t < MHB_SMOOTH_TERMS; t++) {
-    const double *A = source_of(p->receptance, t);
-    if (!A) continue;
-    for (int i = 0; i < n * q; i++) s->random[i] = 0.5 * mhb_random(&seed);
-    add_scaled(s, n, q, t, A, s->random, s->Q);
-  }
-  return LAPACKE_dgeqrf(LAPACK_ROW_MAJOR, n, q, s->Q, q, s->singular) == 0 &&
-         LAPACKE_dorgqr(LAPACK_ROW_MAJOR, n, q, q, s->Q, q, s->singular) == 0;
-}
-
-/* Singular vectors of [Q^T A_t Q ...] by all terms: s->left, columns in falling order. */
-static int reduce(const mhb_receptance_product *p, sketch *s) {
-  int n = p->n, q = s->columns, wide = MHB_SMOOTH_TERMS * q;
-  for (int t = 0; t < MHB_SMOOTH_TERMS; t++) {
-    const double *A = source_of(p->receptance, t);
-    memset(s->random, 0, sizeof(double) * (size_t)n * (size_t)q);
-    if (A) add_scaled(s, n, q, t, A, s->Q, s->random);
-    cblas_dgemm(CblasRowMajor, CblasTrans, CblasNoTrans, q, q, n, 1, s->Q, q, s->random, q, 0,
-                s->small + t * q, wide);
-  }
-  memcpy(s->work, s->small, sizeof(double) * (size_t)q * (size_t)wide);
-  double rest[q];
-  return LAPACKE_dgesvd(LAPACK_ROW_MAJOR, 'S', 'N', q, wide, s->work, wide, s->singular, s->left, q,
-                        NULL, wide, rest) == 0;
-}
-
-/* Largest element of (A - U U^+ A U U^+) x over a few random x, in the norm: what U leaves out. */
-static double left_out(const mhb_receptance_product *p, sketch *s, int rank) {
-  enum { PROBES = 4 };
-  int                n = p->n, q = s->columns;
-  unsigned long long seed = 77;
-  double worst = 0, probe[PROBES * n], inside[PROBES * n], image[PROBES * n], small[PROBES * q],
-         back[PROBES * q];
-  for (int t = 0; t < MHB_SMOOTH_TERMS; t++) {
-    const double *A = source_of(p->receptance, t);
-    if (!A) continue;
-    for (int i = 0; i < PROBES * n; i++) probe[i] = 0.5 * mhb_random(&seed);
-    memset(image, 0, sizeof image);
-    add_scaled(s, n, PROBES, t, A, probe, image);
-    cblas_dgemm(CblasRowMajor, CblasTrans, CblasNoTrans, q, PROBES, n, 1, s->Q, q, probe, PROBES, 0,
-                small, PROBES);
-    cblas_dgemm(CblasRowMajor, CblasTrans, CblasNoTrans, rank, PROBES, q, 1, s->left, q, small,
-                PROBES, 0, back, PROBES);
-    cblas_dgemm(CblasRowMajor, CblasNoTrans, CblasNoTrans, q, PROBES, rank, 1, s->left, q, back,
-                PROBES, 0, small, PROBES);
-    cblas_dgemm(CblasRowMajor, CblasNoTrans, CblasNoTrans, n, PROBES, q, 1, s->Q, q, small, PROBES,
-                0, probe, PROBES);
-    memset(inside, 0, sizeof inside);
-    add_scaled(s, n, PROBES, t, A, probe, inside);
-    cblas_dgemm(CblasRowMajor, CblasTrans, CblasNoTrans, q, PROBES, n, 1, s->Q, q, inside, PROBES,
-                0, small, PROBES);
-    cblas_dgemm(CblasRowMajor, CblasTrans, CblasNoTrans, rank, PROBES, q, 1, s->left, q, small,
-                PROBES, 0, back, PROBES);
-    cblas_dgemm(CblasRowMajor, CblasNoTrans, CblasNoTrans, q, PROBES, rank, 1, s->left, q, back,
-                PROBES, 0, small, PROBES);
-    cblas_dgemm(CblasRowMajor, CblasNoTrans, CblasNoTrans, n, PROBES, q, -1, s->Q, q, small, PROBES,
-                1, image, PROBES);
-    for (int i = 0; i < PROBES * n; i++) worst = fmax(worst, fabs(image[i]));
-  }
-  return worst;
-}
-
-/* U = D^-1/2 Q left, and the smooth terms between its columns. */
-static void take_smooth(mhb_receptance_product *p, const sketch *s, int rank) {
-  int     n = p->n, q = s->columns, wide = MHB_SMOOTH_TERMS * q;
-  double *half = s->work;
-  p->n_smooth  = rank;
-  p->U         = shb_arena_take(&p->arena, (size_t)n * (size_t)rank, sizeof(double));
-  p->size      = shb_arena_take(&p->arena, (size_t)rank, sizeof(double));
-  if (!p->U || !p->size) return;
-  memcpy(p->size, s->singular, sizeof(double) * (size_t)rank);
-  cblas_dgemm(CblasRowMajor, CblasNoTrans, CblasNoTrans, n, rank, q, 1, s->Q, q, s->left, q, 0,
-              p->U, rank);
-  for (int i = 0; i < n; i++) cblas_dscal(rank, 1 / s->root[i], p->U + i * rank, 1);
-  for (int t = 0; t < MHB_SMOOTH_TERMS; t++) {
-    if (!source_of(p->receptance, t)) continue;
-    double *to = shb_arena_take(&p->arena, (size_t)rank * (size_t)rank, sizeof(double));
-    if (!to) return;
-    cblas_dgemm(CblasRowMajor, CblasTrans, CblasNoTrans, rank, q, q, 1 / s->weight[t], s->left, q,
-                s->small + t * q, wide, 0, half, q);
-    cblas_dgemm(CblasRowMajor, CblasNoTrans, CblasNoTrans, rank, rank, q, 1, half, q, s->left, q, 0,
-                to, rank);
-    p->smooth[t] = to;
-  }
-}
-
-/* Few columns matter to a product of an iteration, or few are left at all. */
-static int saves(const sketch *s, int n, int rank) {
-  return rank < n / 2 || s->singular[n / 2] < COARSE;
-}
-
-/* One sketch. 1: the smooth part is found; 0: more columns are needed; -1: failed. */
-static int try_sketch(mhb_receptance_product *p, sketch *s) {
-  if (!sketch_allocate(s, p->n) || !find_range(p, s) || !reduce(p, s)) return -1;
-  int rank = 0;
-  while (rank < s->columns && s->singular[rank] > NEGLIGIBLE) rank++;
-  if (rank > s->columns - 16 && s->columns < p->n) return 0;
-  if (left_out(p, s, rank) > 1e2 * NEGLIGIBLE || !saves(s, p->n, rank)) return -1;
-  take_smooth(p, s, rank);
-  return 1;
-}
-
-static void find_smooth(mhb_receptance_product *p, const double *stiffness, double top) {
-  double       root[p->n];
-  sketch       s      = {.root = root};
+/* Largest weight of a residual term. */
+static double weight_at(const mhb_receptance_product *p, int term, double top) {
   modal_series series = modal_series_at(p->receptance->model, top);
-  int          any = 0, found = 0;
-  for (int i = 0; i < p->n; i++) root[i] = sqrt(stiffness[i]);
+  return fmax(series.weight[term], 1e-300);
+}
+
+static void find_smooth(mhb_receptance_product *p, const double *root, double top) {
+  mhb_smooth_source source[MHB_SMOOTH_TERMS];
+  mhb_smooth_span   span;
+  int               any = 0;
   for (int t = 0; t < MHB_SMOOTH_TERMS; t++) {
-    s.weight[t] = fmax(series.weight[term_of(t)], 1e-300);
-    any |= source_of(p->receptance, t) != NULL;
+    source[t] = (mhb_smooth_source){source_of(p->receptance, t), weight_at(p, term_of(t), top)};
+    any |= source[t].A != NULL;
   }
-  for (int q = FIRST_SKETCH; any && !found; q *= 2) {
-    if (q >= p->n && p->n > MOST_WHOLE) break;
-    s.columns = q < p->n ? q : p->n;
-    found     = try_sketch(p, &s);
-    sketch_free(&s);
-    if (s.columns == p->n) break;
+  mhb_smooth_span_find(p->n, root, MHB_SMOOTH_TERMS, source, &p->arena, &span);
+  p->U    = span.U;
+  p->size = span.size;
+  if (!any) return;
+  p->n_smooth = span.U ? span.rank : p->n; /* without U the terms themselves */
+  for (int t = 0; t < MHB_SMOOTH_TERMS; t++)
+    p->smooth[t] = span.U ? span.C[t] : (double *)source[t].A;
+}
+
+/* ---- the same of a disc ---- */
+
+/* Matrix of a residual term at harmonic k, [n][n]. */
+static const double complex *wave_term(const mhb_receptance_product *p, int t, int k) {
+  const size_t square = (size_t)p->n * (size_t)p->n;
+  return p->receptance->residual_terms->own[t] + (size_t)k * square;
+}
+
+/* What all harmonics have in common: the mean of the real parts. */
+static void take_mean(mhb_receptance_product *p, int t) {
+  const size_t square = (size_t)p->n * (size_t)p->n;
+  double      *mean   = shb_arena_take(&p->arena, square, sizeof(double));
+  for (int k = p->first; k <= p->m && mean; k++)
+    for (size_t i = 0; i < square; i++)
+      mean[i] += creal(wave_term(p, t, k)[i]) / (p->m - p->first + 1);
+  p->own[t] = mean;
+}
+
+/* part[2][n][n] <- real and imaginary part of a term without the mean. */
+static void split_wave(const mhb_receptance_product *p, int t, int k, double *part) {
+  const size_t          square = (size_t)p->n * (size_t)p->n;
+  const double         *mean   = t < 2 ? p->own[t] : NULL;
+  const double complex *from   = wave_term(p, t, k);
+  for (size_t i = 0; i < square; i++) {
+    part[i]          = creal(from[i]) - (mean ? mean[i] : 0);
+    part[square + i] = cimag(from[i]);
   }
-  if (found == 1 || !any) return;
-  p->U        = NULL; /* the terms themselves */
-  p->n_smooth = p->n;
-  for (int t = 0; t < MHB_SMOOTH_TERMS; t++) p->smooth[t] = (double *)source_of(p->receptance, t);
+}
+
+/* Term t of all harmonics between the columns of U, or whole. */
+static void take_waves(mhb_receptance_product *p, int t, const mhb_smooth_span *span,
+                       const double *part) {
+  const size_t square = (size_t)p->n * (size_t)p->n, s = (size_t)p->n_smooth, K = (size_t)p->m + 1;
+  p->wave[t] = shb_arena_take(&p->arena, K * s * s, sizeof(double complex));
+  for (int k = p->first; k <= p->m && p->wave[t]; k++) {
+    const size_t  at = 2 * ((size_t)t * K + (size_t)k);
+    const double *re = span->U ? span->C[at] : part + at * square;
+    const double *im = span->U ? span->C[at + 1] : re + square;
+    for (size_t i = 0; i < s * s; i++) p->wave[t][(size_t)k * s * s + i] = CMPLX(re[i], im[i]);
+  }
+}
+
+static shb_status find_waves(mhb_receptance_product *p, const double *root, double top) {
+  double complex *const *own    = p->receptance->residual_terms->own;
+  const size_t           square = (size_t)p->n * (size_t)p->n, K = (size_t)p->m + 1;
+  const int              n_sources = MODAL_TERMS * 2 * (p->m + 1);
+  mhb_smooth_source     *source    = calloc((size_t)n_sources, sizeof *source);
+  double                *part      = calloc((size_t)n_sources * square, sizeof *part);
+  mhb_smooth_span        span      = {0};
+  for (int t = 0; t < 2 && part; t++)
+    if (own[t]) take_mean(p, t);
+  for (int t = 0; t < MODAL_TERMS && part && source && !p->arena.failed; t++)
+    for (int k = p->first; k <= p->m && own[t]; k++) {
+      const size_t at = 2 * ((size_t)t * K + (size_t)k);
+      split_wave(p, t, k, part + at * square);
+      source[at]     = (mhb_smooth_source){part + at * square, weight_at(p, t, top)};
+      source[at + 1] = (mhb_smooth_source){part + (at + 1) * square, source[at].weight};
+    }
+  const int ok = part && source && !p->arena.failed;
+  if (ok) {
+    mhb_smooth_span_find(p->n, root, n_sources, source, &p->arena, &span);
+    p->U        = span.U;
+    p->size     = span.size;
+    p->n_smooth = span.U ? span.rank : p->n;
+    for (int t = 0; t < MODAL_TERMS; t++)
+      if (own[t]) take_waves(p, t, &span, part);
+  }
+  free(source);
+  free(part);
+  SHB_CHECK(ok, SHB_ERR_IO, "out of memory for the receptance of %d pairs", p->n / 3);
+  return SHB_OK;
 }
 
 /* ---- life cycle ---- */
@@ -238,6 +150,8 @@ static void take_arrays(mhb_receptance_product *p) {
   p->motion        = shb_arena_take(&p->arena, n, sizeof(double complex));
   p->coarse_force  = shb_arena_take(&p->arena, n * nb, sizeof(float));
   p->coarse_motion = shb_arena_take(&p->arena, n * nb, sizeof(float));
+  p->wave_force    = shb_arena_take(&p->arena, s + MHB_BLAS_ROOM, sizeof(double complex));
+  p->wave_motion   = shb_arena_take(&p->arena, s + MHB_BLAS_ROOM, sizeof(double complex));
   p->amplitude =
       shb_arena_take(&p->arena, (size_t)p->n_poles + MHB_BLAS_ROOM, sizeof(double complex));
 }
@@ -252,13 +166,23 @@ shb_status mhb_receptance_product_create(mhb_receptance *r, int first, int m,
   p->first      = first;
   p->m          = m;
   p->nb         = first ? 2 * (m - first + 1) : 2 * m + 1;
-  p->n_poles    = r->n_modes + r->model->n_residual;
+  p->n_poles    = r->n_modes + r->residual_terms->r;
   p->omega      = NAN;
+  double     root[r->n];
+  shb_status status = SHB_OK;
+  for (int i = 0; i < r->n; i++) root[i] = sqrt(stiffness[i]);
   for (int t = 0; t < 2; t++)
-    p->own[t] = r->residual_terms->contact[t] ? r->residual_terms->contact[t]->self : NULL;
+    if (r->residual_terms->contact[t]) p->own[t] = r->residual_terms->contact[t]->self;
+  if (r->residual_terms->own[0])
+    status = find_waves(p, root, m * top / r->nu);
+  else
+    find_smooth(p, root, m * top / r->nu);
   for (int t = 0; t < 2; t++) take_own(p, t, stiffness);
-  find_smooth(p, stiffness, m * top / r->nu);
   take_arrays(p);
+  if (status != SHB_OK) {
+    mhb_receptance_product_destroy(p);
+    return status;
+  }
   if (p->arena.failed) {
     mhb_receptance_product_destroy(p);
     SHB_FAIL(SHB_ERR_IO, "out of memory for the receptance of %d pairs", r->n / 3);
@@ -280,20 +204,21 @@ static double *weights_of(const mhb_receptance_product *p, mhb_product_kind kind
   return p->weight + ((size_t)kind * MODAL_TERMS + (size_t)term) * ((size_t)p->m + 1);
 }
 
-/* L and dL/d omega of the modes, g and dg/d omega of the residual modes. */
+/* L and dL/d omega of the modes unless they are coupled, g and dg/d omega of the residual modes. */
 static void set_poles(mhb_receptance_product *p, int k, const modal_series *series, double dw2) {
   const mhb_receptance *r     = p->receptance;
+  const modal_model    *model = mhb_receptance_model(r, k);
   double                kk    = (double)k / r->nu;
   double complex       *value = p->pole[MHB_PRODUCT_VALUE] + (size_t)k * (size_t)p->n_poles;
   double complex       *slope = p->pole[MHB_PRODUCT_SLOPE] + (size_t)k * (size_t)p->n_poles;
-  for (int i = 0; i < r->n_modes; i++) {
+  for (int i = 0; i < r->n_modes && !r->factor; i++) {
     double complex L    = r->lambda[k * r->n_modes + i];
-    double         loss = 2 * r->model->damping_ratio[i] * SHB_TWO_PI * r->model->frequency[i] * kk;
+    double         loss = 2 * model->damping_ratio[i] * SHB_TWO_PI * model->frequency[i] * kk;
     value[i]            = L;
     slope[i]            = L * L * CMPLX(dw2, -loss);
   }
-  for (int i = 0; i < r->model->n_residual; i++) {
-    double dg, g = modal_series_mode(r->model, i, series, &dg);
+  for (int i = 0; i < model->n_residual; i++) {
+    double dg, g = modal_series_mode(model, i, series, &dg);
     value[r->n_modes + i] = g;
     slope[r->n_modes + i] = dg * dw2;
   }
@@ -305,7 +230,7 @@ void mhb_receptance_product_update(mhb_receptance_product *p) {
   p->omega = r->omega;
   for (int k = p->first; k <= p->m; k++) {
     double       kk = (double)k / r->nu, dw2 = 2 * kk * kk * r->omega;
-    modal_series series = modal_series_at(r->model, kk * r->omega);
+    modal_series series = modal_series_at(mhb_receptance_model(r, k), kk * r->omega);
     mhb_receptance_update_load(r, k);
     for (int t = 0; t < MODAL_TERMS; t++) {
       weights_of(p, MHB_PRODUCT_VALUE, t)[k] = series.weight[t];
@@ -385,6 +310,31 @@ static int turn(mhb_receptance_product *p, int t, mhb_product_kind kind, int cou
   return any;
 }
 
+/* y[count][nb] += C_k v_k of a disc, v as the columns of U see the force. */
+static void add_waves(mhb_receptance_product *p, mhb_product_kind kind, int count, const double *v,
+                      double *y) {
+  const double complex zero = 0;
+  const size_t         s = (size_t)p->n_smooth, nb = (size_t)p->nb;
+  for (int k = p->first; k <= p->m; k++) {
+    const size_t at  = (size_t)mhb_product_column(p, k);
+    int          any = 0;
+    for (size_t i = 0; i < (size_t)count; i++)
+      p->wave_force[i] = CMPLX(v[i * nb + at], k ? v[i * nb + at + 1] : 0);
+    for (int t = 0; t < MODAL_TERMS; t++) {
+      const double complex weight = weights_of(p, kind, t)[k], one = 1;
+      if (!p->wave[t] || creal(weight) == 0) continue;
+      cblas_zgemv(CblasRowMajor, CblasNoTrans, count, count, &weight,
+                  p->wave[t] + (size_t)k * s * s, p->n_smooth, p->wave_force, 1, any ? &one : &zero,
+                  p->wave_motion, 1);
+      any = 1;
+    }
+    for (size_t i = 0; i < (size_t)count && any; i++) {
+      y[i * nb + at] += creal(p->wave_motion[i]);
+      if (k) y[i * nb + at + 1] += cimag(p->wave_motion[i]);
+    }
+  }
+}
+
 /* out += U C_k U^T p_k */
 static void add_smooth(mhb_receptance_product *p, mhb_product_kind kind, double negligible,
                        const double *force, double *out) {
@@ -403,19 +353,25 @@ static void add_smooth(mhb_receptance_product *p, mhb_product_kind kind, double 
     if (p->smooth[t] && turn(p, t, kind, used, v))
       cblas_dgemm(CblasRowMajor, CblasNoTrans, CblasNoTrans, used, nb, used, 1, p->smooth[t], s,
                   p->turned, nb, 1, y, nb);
+  add_waves(p, kind, used, v, y);
   if (p->U)
     cblas_dgemm(CblasRowMajor, CblasNoTrans, CblasNoTrans, n, nb, used, 1, p->U, s, y, nb, 1, out,
                 nb);
 }
 
-/* motion += X diag(pole) X^H force of harmonic k. */
+/* motion += X L X^H force of harmonic k; L = diag(pole), or that of coupled modes. */
 static void add_shapes(mhb_receptance_product *p, int count, const double complex *X,
-                       const double complex *pole) {
+                       const double complex *pole, int k, mhb_product_kind kind) {
   const double complex one = 1, zero = 0;
   if (count == 0) return;
   cblas_zgemv(CblasRowMajor, CblasConjTrans, p->n, count, &one, X, count, p->force, 1, &zero,
               p->amplitude, 1);
-  for (int i = 0; i < count; i++) p->amplitude[i] *= pole[i];
+  if (pole)
+    for (int i = 0; i < count; i++) p->amplitude[i] *= pole[i];
+  else if (kind == MHB_PRODUCT_VALUE)
+    mhb_receptance_coupled(p->receptance, k, p->amplitude);
+  else
+    mhb_receptance_coupled_slope(p->receptance, k, p->amplitude);
   cblas_zgemv(CblasRowMajor, CblasNoTrans, p->n, count, &one, X, count, p->amplitude, 1, &one,
               p->motion, 1);
 }
@@ -423,7 +379,7 @@ static void add_shapes(mhb_receptance_product *p, int count, const double comple
 static void add_poles(mhb_receptance_product *p, mhb_product_kind kind, const double *force,
                       double *out) {
   const mhb_receptance *r = p->receptance;
-  int                   n = p->n, nb = p->nb, modes = r->n_modes, rest = r->model->n_residual;
+  int                   n = p->n, nb = p->nb, modes = r->n_modes, rest = r->residual_terms->r;
   for (int k = p->first; k <= p->m; k++) {
     const double complex *pole = p->pole[kind] + (size_t)k * (size_t)p->n_poles;
     int                   any  = 0;
@@ -434,8 +390,10 @@ static void add_poles(mhb_receptance_product *p, mhb_product_kind kind, const do
     }
     if (!any) continue;
     memset(p->motion, 0, sizeof(double complex) * (size_t)n);
-    add_shapes(p, modes, r->B + (size_t)k * (size_t)n * (size_t)modes, pole);
-    add_shapes(p, rest, r->residual_terms->S + (size_t)k * (size_t)n * (size_t)rest, pole + modes);
+    add_shapes(p, modes, r->B + (size_t)k * (size_t)n * (size_t)modes, r->factor ? NULL : pole, k,
+               kind);
+    add_shapes(p, rest, r->residual_terms->S + (size_t)k * (size_t)n * (size_t)rest, pole + modes,
+               k, kind);
     for (int i = 0; i < n; i++) {
       double *to = out + (size_t)i * (size_t)nb + mhb_product_column(p, k);
       to[0] += creal(p->motion[i]);

@@ -4,8 +4,12 @@
  *
  * own_t: residual flexibility and inertia of a face by itself, of full rank. What couples the two
  * faces is smooth, and so is the third residual term. It lies in the span of a few vectors U: 86 of
- * 711 with 237 pairs of cases/z_notch_blade. A random sketch finds U (Halko, Martinsson, Tropp
- * 2011) to 1e-12 in the norm of the contact stiffness. Without a small U the products are dense.
+ * 711 with 237 pairs of cases/z_notch_blade. It is found to 1e-12 in the norm of the contact
+ * stiffness (smooth_span.h). Without a small U the products are dense.
+ *
+ * With a disc the terms differ by nodal diameter. own_t is the mean of their real parts over the
+ * harmonics, and what a harmonic differs by is smooth: C_k is complex. L_k is a full matrix with
+ * Coriolis terms.
  *
  * Forces and motions are in real form [n][2m+1]. Without the low harmonics they are [n][nb], real
  * and imaginary part of each harmonic. */
@@ -31,6 +35,8 @@ typedef struct {
   double         *size;            /* [smooth] of U's columns in the terms, falling, where I is 1 */
   double         *smooth[MHB_SMOOTH_TERMS]; /* [smooth][smooth] U^+ of a term; NULL: none */
 
+  double complex *wave[MODAL_TERMS]; /* [k][smooth][smooth] the same of a disc, by terms */
+
   /* at a frequency */
   double          omega;              /* rad/s; NAN: none */
   double         *weight;             /* [kind][term][k] of the residual terms */
@@ -43,6 +49,7 @@ typedef struct {
   float          *coarse_force, *coarse_motion; /* [n][2m+1] */
   double complex *force, *motion;               /* [n] */
   double complex *amplitude;                    /* [poles] */
+  double complex *wave_force, *wave_motion;     /* [smooth] */
   shb_arena       arena;
 } mhb_receptance_product;
 

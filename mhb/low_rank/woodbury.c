@@ -67,8 +67,8 @@ static int renew(mhb_woodbury *w, const mhb_law *law) {
   w->basis = NULL;
   set_stiffness(law, w->n_pairs, w->stiffness);
   int most   = w->n / 3 < MOST_COEFFICIENTS ? w->n / 3 : MOST_COEFFICIENTS;
-  w->without = mhb_contact_basis_create(w->product->receptance, w->m, w->stiffness, w->low, w->high,
-                                        most, &w->basis) != SHB_OK;
+  w->without = mhb_contact_basis_create(w->product, w->m, w->stiffness, w->low, w->high, most,
+                                        &w->basis) != SHB_OK;
   if (!w->without && !make_room(w, w->basis->size + 1)) w->without = 1;
   return !w->without;
 }

@@ -371,8 +371,8 @@ static void factor_at(const mhb_receptance *r, int k, double complex *A, int *pi
   mhb_factor_complex(r->n_modes, A, pivot);
 }
 
-/* x <- L x at the frequency of the receptance, whether its factor is that of it or not. */
-static void coupled_solve(const mhb_receptance *r, int k, double complex *x) {
+/* The factor may be that of another frequency. */
+void mhb_receptance_coupled(const mhb_receptance *r, int k, double complex *x) {
   const size_t    m    = (size_t)r->n_modes;
   const int       kept = r->load_at[k] == frequency_of(r, k);
   double complex *own  = kept ? NULL : malloc(m * m * sizeof *own);
@@ -414,6 +414,14 @@ static void coupled_slope(const mhb_receptance *r, int k, const double complex *
     for (int j = 0; j < m; j++) sum += G[(size_t)i * (size_t)m + (size_t)j] * x[j];
     y[i] = -I * kk * sum;
   }
+}
+
+void mhb_receptance_coupled_slope(const mhb_receptance *r, int k, double complex *x) {
+  double complex y[r->n_modes];
+  mhb_receptance_coupled(r, k, x);
+  coupled_slope(r, k, x, y);
+  memcpy(x, y, sizeof y);
+  mhb_receptance_coupled(r, k, x);
 }
 
 /* R += B L B^H; the factor is up to date. */
@@ -582,12 +590,10 @@ MHB_HOT static void slope_drive(const mhb_receptance *r, int k, const double com
   double kk = (double)k / r->nu, spring = 2 * kk * kk * r->omega;
   drive(r, k, p, yr, yi);
   if (r->factor) {
-    double complex x[m], y[m];
+    double complex x[m];
     join(m, yr, yi, x);
-    coupled_solve(r, k, x);
-    coupled_slope(r, k, x, y);
-    coupled_solve(r, k, y);
-    part(m, y, yr, yi);
+    mhb_receptance_coupled_slope(r, k, x);
+    part(m, x, yr, yi);
     return;
   }
   const double complex *lambda = r->lambda + k * m;
@@ -611,7 +617,7 @@ MHB_HOT static void motion_drive(const mhb_receptance *r, int k, double w, const
   if (r->factor) {
     double complex x[m];
     join(m, yr, yi, x);
-    coupled_solve(r, k, x);
+    mhb_receptance_coupled(r, k, x);
     part(m, x, yr, yi);
     return;
   }
@@ -696,11 +702,11 @@ static void coupled_change(const mhb_receptance *r, int k, const double complex 
   if (d_omega != 0) {
     double complex x[m], y[m];
     for (int i = 0; i < m; i++) x[i] = mhb_modal_part_force(r->part, k, p, i, r->scale);
-    coupled_solve(r, k, x);
+    mhb_receptance_coupled(r, k, x);
     coupled_slope(r, k, x, y);
     for (int i = 0; i < m; i++) a[i] += d_omega * y[i];
   }
-  coupled_solve(r, k, a);
+  mhb_receptance_coupled(r, k, a);
 }
 
 void mhb_receptance_probe_change(const mhb_receptance *r, int k, const double complex *p,
@@ -758,9 +764,9 @@ void mhb_receptance_by_damping(const mhb_receptance *r, int k, const double comp
   memset(probe, 0, sizeof *probe * (size_t)q);
   if (r->factor) {
     join(m, yr, yi, coupled);
-    coupled_solve(r, k, coupled);
+    mhb_receptance_coupled(r, k, coupled);
     for (int i = 0; i < m; i++) coupled[i] *= -I * loss_of(r, k, i) * w;
-    coupled_solve(r, k, coupled);
+    mhb_receptance_coupled(r, k, coupled);
   }
   for (int i = 0; i < m; i++) {
     double b = 2 * mhb_receptance_model(r, k)->damping_ratio[i] * SHB_TWO_PI *

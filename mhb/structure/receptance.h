@@ -126,6 +126,10 @@ void mhb_receptance_motion(const mhb_receptance *receptance, int k, const double
 void mhb_receptance_amplitudes(const mhb_receptance *receptance, int k, const double complex *p,
                                double complex *amplitude);
 
+/* x[modes] <- L x and dL/d omega x of modes that Coriolis terms couple. */
+void mhb_receptance_coupled(const mhb_receptance *receptance, int k, double complex *x);
+void mhb_receptance_coupled_slope(const mhb_receptance *receptance, int k, double complex *x);
+
 /* slope[n] <- d/d omega of harmonic k of free - R p, at fixed p[n]; p NULL: of free. */
 void mhb_receptance_slope(const mhb_receptance *receptance, int k, const double complex *p,
                           double complex *slope);

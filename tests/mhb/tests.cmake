@@ -36,12 +36,14 @@ shb_test(mhb/response direct_stress tests_fem tests_models shb_modal)
 shb_test(mhb/branches stiff_disc tests_fem tests_models shb_modal)
 shb_test(mhb/branches disc_run_up tests_fem tests_models shb_modal)
 foreach(noun balance stick_stiffness condensation multistart newton ring_system subharmonics
-    truncation_error truncation_step modal_error spatial_error stuck_solver coriolis)
+    truncation_error truncation_step modal_error spatial_error stuck_solver coriolis
+    disc_contacts)
   shb_test(mhb/balance ${noun} tests_models)
 endforeach()
 target_sources(test_mhb_balance_condensation PRIVATE bench/shroud_face.c)
 target_sources(test_mhb_balance_spatial_error PRIVATE bench/shroud_face.c)
 target_sources(test_mhb_balance_stuck_solver PRIVATE bench/shroud_face.c)
+target_sources(test_mhb_balance_disc_contacts PRIVATE bench/shroud_face.c)
 shb_counts_allocations(test_mhb_balance_condensation)
 foreach(noun multipliers floquet disc_stability mistuned_stability friction_limit hill
         linearised_law ring_band bloch hessenberg_qr curve_verdicts)

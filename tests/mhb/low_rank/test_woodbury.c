@@ -18,6 +18,7 @@
 #include "mhb/numerics/vector.h"
 #include "tests/bench/shroud_face.h"
 #include "tests/support/check.h"
+#include "tests/support/random_disc.h"
 #include "tests/support/random_model.h"
 
 enum { M = 3, NB = 2 * M + 1 };
@@ -131,6 +132,32 @@ static void products_are_those_of_R(void **state) {
   shroud_face_model(12, 150, &model);
   check_product(&model, &s, SHB_TWO_PI * 255, 0);
   modal_model_free(&model);
+}
+
+/* The same of a disc: without and with Coriolis terms, forwards and backwards, random and smooth. */
+static void products_of_a_disc(void **state) {
+  (void)state;
+  enum { BLADES = 6 };
+  modal_nodal_diameters disc;
+  modal_model           face;
+  mhb_settings          s = random_settings(M);
+  for (int i = 0; i < 4; i++) {
+    const int parts = WITH_LEFT | WITH_RESIDUAL | (i % 2 ? WITH_RESIDUAL_MODES : WITH_NORMALS);
+    random_disc(9, BLADES, parts, i >= 2, 5, &disc);
+    s.nodal_diameters = &disc;
+    s.engine_order    = i % 2 ? 5 : 1;
+    check_product(&disc.model[0], &s, 1.2, 0);
+    modal_nodal_diameters_free(&disc);
+  }
+  s = shroud_face_settings(M);
+  shroud_face_model(12, 150, &face);
+  face_disc(&face, BLADES, 0, &disc);
+  modal_model_free(&face);
+  s.nodal_diameters = &disc;
+  s.blades          = BLADES;
+  s.engine_order    = 1;
+  check_product(&disc.model[0], &s, SHB_TWO_PI * 255, 1);
+  modal_nodal_diameters_free(&disc);
 }
 
 /* A free response made without R is that made with it. */
@@ -266,6 +293,36 @@ static void solution_is_that_of_the_whole(void **state) {
   modal_model_free(&model);
 }
 
+static void solution_on_a_disc(void **state) {
+  (void)state;
+  enum { BLADES = 6 };
+  modal_nodal_diameters disc;
+  modal_model           face;
+  solver                v = {0};
+  mhb_settings          s = random_settings(M);
+  for (int coriolis = 0; coriolis < 2; coriolis++) {
+    random_disc(12, BLADES, WITH_LEFT | WITH_NORMALS | WITH_AREAS, coriolis, 5, &disc);
+    s.nodal_diameters = &disc;
+    open_solver(&disc.model[0], &s, 1, 1.4, &v);
+    for (unsigned long long seed = 0; seed < 3; seed++)
+      compare_at(&v, 1.05 + .1 * (double)seed, .02 * pow(4, (double)seed), seed);
+    close_solver(&v);
+    modal_nodal_diameters_free(&disc);
+  }
+  s = shroud_face_settings(M);
+  shroud_face_model(14, 150, &face);
+  face_disc(&face, BLADES, 0, &disc);
+  modal_model_free(&face);
+  s.nodal_diameters = &disc;
+  s.blades          = BLADES;
+  s.engine_order    = 5;
+  open_solver(&disc.model[0], &s, SHB_TWO_PI * 215, SHB_TWO_PI * 320, &v);
+  for (unsigned long long seed = 0; seed < 3; seed++)
+    compare_at(&v, SHB_TWO_PI * (230 + 20 * (double)seed), 1e-4 * pow(4, (double)seed), seed);
+  close_solver(&v);
+  modal_nodal_diameters_free(&disc);
+}
+
 /* |(I + X K X^H D) x_k - rhs_k|/|rhs_k| of a harmonic, D of each pair, X and K of the basis. */
 static double residual_of(const solver *v, int k, const double complex (*D)[9], const double *x,
                           const double *rhs) {
@@ -337,7 +394,9 @@ int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(lone_harmonics_are_those_of_the_basis),
       cmocka_unit_test(products_are_those_of_R),
+      cmocka_unit_test(products_of_a_disc),
       cmocka_unit_test(load_without_R),
+      cmocka_unit_test(solution_on_a_disc),
       cmocka_unit_test(solution_is_that_of_the_whole),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
