@@ -33,19 +33,21 @@ static int count(const char *text, char c) {
   return n;
 }
 
-/* The next line that is not empty; NULL at the end. */
-static char *next_line(char **at) {
+/* The next line that is not empty; NULL at the end. number counts the lines. */
+static char *next_line(char **at, int *number) {
   while (*at) {
     char *line = *at, *end = strchr(line, '\n');
     if (end) *end = '\0';
     *at = end ? end + 1 : NULL;
+    ++*number;
     if (trim(line)[0]) return line;
   }
   return NULL;
 }
 
 static bool fill(const char *path, design_table *t, char *why, size_t size) {
-  char *at = t->text, *line = next_line(&at);
+  int   number = 0;
+  char *at = t->text, *line = next_line(&at, &number);
   if (!line) {
     snprintf(why, size, "%s: the table is empty; its first line names the varied keys", path);
     return false;
@@ -55,19 +57,21 @@ static bool fill(const char *path, design_table *t, char *why, size_t size) {
   t->column    = calloc((size_t)t->n_columns, sizeof *t->column);
   bool fits    = (long)lines * t->n_columns <= MOST_CELLS;
   t->cell      = fits ? calloc((size_t)lines * (size_t)t->n_columns + 1, sizeof *t->cell) : NULL;
-  if (!t->column || !t->cell) {
+  t->line      = fits ? calloc((size_t)lines + 1, sizeof *t->line) : NULL;
+  if (!t->column || !t->cell || !t->line) {
     snprintf(why, size, "%s: the table is too large", path);
     return false;
   }
   split(line, t->column, t->n_columns);
-  while ((line = next_line(&at)) != NULL) {
+  while ((line = next_line(&at, &number)) != NULL) {
     int n = split(line, t->cell + (size_t)t->n_rows * (size_t)t->n_columns, t->n_columns);
     if (n != t->n_columns) {
-      snprintf(why, size, "%s: row %d has %d columns, the header has %d", path, t->n_rows + 1, n,
-               t->n_columns);
+      snprintf(why, size, "%s:%d: row %d has %d columns, the header has %d%s", path, number,
+               t->n_rows + 1, n, t->n_columns,
+               strchr(line, ';') ? "; columns are separated by commas" : "");
       return false;
     }
-    t->n_rows++;
+    t->line[t->n_rows++] = number;
   }
   return true;
 }
@@ -87,6 +91,7 @@ bool design_table_read(const char *path, design_table *t, char *why, size_t size
 void design_table_free(design_table *t) {
   free(t->column);
   free(t->cell);
+  free(t->line);
   free(t->text);
   *t = (design_table){0};
 }

@@ -9,6 +9,7 @@ typedef struct {
   int    n_columns, n_rows;
   char **column; /* [n_columns] header; they point into text */
   char **cell;   /* [n_rows][n_columns] as written, without surrounding blanks */
+  int   *line;   /* [n_rows] where a row stands in the file, from 1 */
   char  *text;
 } design_table;
 

@@ -63,24 +63,50 @@ bool study_key_is_number(const case_key *key) {
   }
 }
 
-/* The message about a path that is no key: the nearest one of its block. */
+/* A part of a path as the key table has it: an index becomes "[]". Returns the length of the part
+ * with its index. */
+static size_t part_of(const char *at, char word[CASE_PATH], char pattern[CASE_PATH]) {
+  size_t name = strcspn(at, ".["), whole = strcspn(at, ".");
+  case_path(word, "%.*s", (int)name, at);
+  case_path(pattern, "%s%s", word, at[name] == '[' ? "[]" : "");
+  return whole;
+}
+
+/* The nearest path that is a key, with the indices of path. False: there is none; block is then the
+ * block of the part that is no key, and word this part. */
+static bool nearest_path(const char *path, char near[CASE_PATH], char block[CASE_PATH],
+                         char word[CASE_PATH]) {
+  const case_keys keys = case_key_table();
+  char            pattern[CASE_PATH], longer[CASE_PATH], best[CASE_LONGEST_WORD];
+  near[0] = block[0] = '\0';
+  for (const char *at = path;; at++) {
+    size_t      n   = part_of(at, word, pattern);
+    const char *dot = block[0] ? "." : "", *index = at + strlen(word);
+    case_path(longer, "%s%s%s", block, dot, pattern);
+    bool known = case_key_is_block(keys, longer) || row_of(longer);
+    if (!known && !case_key_nearest(keys, block, word, best)) return false;
+    if (!known) case_path(longer, "%s%s%s%s", block, dot, best, pattern + strlen(word));
+    case_append(near, CASE_PATH, "%s%s%.*s", dot, known ? word : best, (int)(n - strlen(word)),
+                index);
+    at += n;
+    if (!*at) return row_of(longer) != NULL;
+    case_path(block, "%s", longer);
+    if (case_key_is_block(keys, block)) continue;
+    case_append(block, CASE_PATH, "[]"); /* a list without an index, perhaps */
+    if (!case_key_is_block(keys, block)) return row_of(longer) != NULL;
+    case_append(near, CASE_PATH, "[0]");
+  }
+}
+
+/* The message about a path that is no key: the nearest one. */
 static void refuse_path(case_issues *issues, const case_node *node, const char *path) {
-  char block[CASE_PATH], hint[512];
-  case_path(block, "%s", path);
-  char *dot  = strrchr(block, '.');
-  char *leaf = dot ? dot + 1 : block;
-  char  word[CASE_PATH];
-  case_path(word, "%.*s", (int)strcspn(leaf, "["), leaf);
-  if (dot) *dot = '\0';
-  if (!dot) block[0] = '\0';
-  for (char *at = block; *at; at++) /* "sections[4]" is the block "sections[]" */
-    if (*at == '[')
-      memmove(at + 1, at + 1 + strcspn(at + 1, "]"), strlen(at + 1 + strcspn(at + 1, "]")) + 1);
-  if (!dot || case_key_is_block(case_key_table(), block)) {
+  char near[CASE_PATH], block[CASE_PATH], word[CASE_PATH], hint[512];
+  if (case_key_is_block(case_key_table(), path)) { /* a mapping of the case */
+    case_key_suggest(case_key_table(), path, "", hint, sizeof hint);
+  } else if (nearest_path(path, near, block, word)) {
+    snprintf(hint, sizeof hint, "; did you mean '%s'?", near);
+  } else {
     case_key_suggest(case_key_table(), block, word, hint, sizeof hint);
-  } else { /* the first part is wrong */
-    case_path(word, "%.*s", (int)strcspn(path, ".["), path);
-    case_key_suggest(case_key_table(), "", word, hint, sizeof hint);
   }
   case_issue_add(issues, node->key_line, node->key_column, path, "is no key of a case%s", hint);
 }

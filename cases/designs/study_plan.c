@@ -170,17 +170,44 @@ static void make_sample(case_issues *issues, const case_node *at, const study_pl
   *n_designs = plan->n_points;
 }
 
-/* The columns of a table become keys. */
-static void name_columns(case_issues *issues, const case_node *at, const design_table *table,
-                         study_keys *keys) {
-  case_node column  = *at;
-  column.key_line   = at->line;
-  column.key_column = at->column;
-  for (int k = 0; k < table->n_columns && issues->n == 0; k++) {
-    if (keys->n == STUDY_MAX_KEYS) fault(issues, at, "plan", "the table has more than 32 columns");
-    if (issues->n == 0 && study_key_start(issues, &column, table->column[k], &keys->key[keys->n]))
-      keys->n++;
+/* Record the first fault of a table at the plan that names it; line 0 is that of no row. */
+static void table_fault(case_issues *issues, const case_node *at, const char *path, int line,
+                        const char *text) {
+  char number[32] = "";
+  if (line > 0) snprintf(number, sizeof number, ":%d", line);
+  case_issue_add(issues, at->line, at->column, "plan", "%s%s: %s", path, number, text);
+}
+
+/* A column becomes a key. False after a fault, which is recorded in own. */
+static bool name_column(case_issues *own, const char *name, int number, study_keys *keys) {
+  const case_node place = {.kind = CASE_SCALAR};
+  if (!name[0]) {
+    case_issue_add(own, 0, 0, NULL, "column %d has no name; expected a key of the case", number);
+  } else if (strchr(name, ';')) {
+    case_issue_add(own, 0, 0, NULL, "columns are separated by commas, not by ';'");
+  } else if (keys->n == STUDY_MAX_KEYS) {
+    case_issue_add(own, 0, 0, NULL, "the table has more than %d columns", STUDY_MAX_KEYS);
+  } else if (study_key_start(own, &place, name, &keys->key[keys->n])) {
+    for (int k = 0; k < keys->n; k++)
+      if (strcmp(keys->key[k].path, name) == 0)
+        case_issue_add(own, 0, 0, name, "is the column %d and %d", k + 1, number);
+    keys->n++;
   }
+  return own->n == 0;
+}
+
+/* Columns and cells of a table as keys and designs [n_rows][n_columns]. Returns the line of the
+ * first fault, which is recorded in own; 0: the header, or none. */
+static int read_table(case_issues *own, const design_table *table, study_keys *keys,
+                      double *design) {
+  for (int k = 0; k < table->n_columns; k++)
+    if (!name_column(own, table->column[k], k + 1, keys)) return 0;
+  for (int i = 0; i < table->n_rows * keys->n; i++) {
+    const case_node cell = {.kind = CASE_SCALAR, .text = table->cell[i]};
+    if (!study_key_number(own, &keys->key[i % keys->n], &cell, &design[i]))
+      return table->line[i / keys->n];
+  }
+  return 0;
 }
 
 /* Take the columns of a table as varied keys, and its rows as designs. */
@@ -188,20 +215,21 @@ static void use_table(case_issues *issues, const case_node *at, const study_plan
                       study_keys *keys, int *n_designs, double **design) {
   design_table table;
   char         why[512];
+  case_issues  own = {0};
   if (!design_table_read(plan->table, &table, why, sizeof why)) {
     fault(issues, at, "plan", why);
     return;
   }
-  int n_keys = table.n_columns;
-  name_columns(issues, at, &table, keys);
-  if (take(issues, at, table.n_rows, n_keys, design)) *n_designs = table.n_rows;
-  for (int i = 0; issues->n == 0 && i < table.n_rows * n_keys; i++) {
-    const case_node cell = {
-        .kind = CASE_SCALAR, .line = at->line, .column = at->column, .text = table.cell[i]};
-    if (!study_key_number(issues, &keys->key[i % n_keys], &cell, &(*design)[i]))
-      case_issue_add(issues, at->line, at->column, "plan", "%s: row %d", plan->table,
-                     i / n_keys + 1);
+  if (take(issues, at, table.n_rows, table.n_columns, design)) {
+    int line = read_table(&own, &table, keys, *design);
+    if (own.no_memory)
+      case_issues_no_memory(issues);
+    else if (own.n > 0)
+      table_fault(issues, at, plan->table, line, own.issue[0].text);
+    else
+      *n_designs = table.n_rows;
   }
+  case_issues_free(&own);
   design_table_free(&table);
 }
 

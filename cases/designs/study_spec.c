@@ -5,12 +5,13 @@
 #include <string.h>
 
 #include "cases/designs/digest.h"
+#include "cases/designs/refusals.h"
 #include "cases/designs/uncertain_keys.h"
 #include "cases/parse/diagnostics.h"
 #include "cases/parse/keys.h"
 #include "cases/schema/case.h"
 
-enum { STAGES = CASE_MESH | CASE_MODAL | CASE_MHB, TOLD = 5 };
+enum { STAGES = CASE_MESH | CASE_MODAL | CASE_MHB };
 
 /* The keys of a study file. Only their names are used, for suggestions. */
 static const case_key rows[] = {
@@ -69,6 +70,74 @@ static void read_outputs(reading *r, const case_node *node, const case_node *roo
   if (node->kind == CASE_SEQUENCE && node->n == 0) fault(r, node, "outputs", "the list is empty");
 }
 
+/* ---------------------------------------------------------------- a design as a case */
+
+/* The value of a key with its ratio, if it has one. */
+static double value_of(const study_keys *keys, const double *value, int key) {
+  double out = value[key];
+  for (int k = 0; k < keys->n; k++)
+    if (keys->key[k].is_ratio && keys->key[k].nominal == key) out *= value[k];
+  return keys->key[key].whole ? rint(out) : out;
+}
+
+int study_spec_words(const study_spec *s, const double *value, char **words) {
+  int  n    = 0;
+  bool good = true;
+  for (int k = 0; k < s->keys.n; k++) {
+    const study_key *key  = &s->keys.key[k];
+    size_t           size = strlen(key->path) + 40;
+    if (key->is_ratio) continue;
+    words[n]     = strdup("--set");
+    words[n + 1] = malloc(size);
+    good         = good && words[n] && words[n + 1];
+    if (words[n + 1])
+      snprintf(words[n + 1], size, "%s=%.17g", key->path, value_of(&s->keys, value, k));
+    n += 2;
+  }
+  return good ? n : -1;
+}
+
+shb_status study_spec_design(const study_spec *s, const double *value, const char *name,
+                             const char *into, FILE *errors, case_file *file) {
+  char       *words[2 * STUDY_MAX_KEYS] = {NULL}, named[CASE_NAME * 2];
+  const char *text[STUDY_MAX_KEYS + 1];
+  int         n = study_spec_words(s, value, words), sets = 0;
+  shb_status  status = n >= 0 ? SHB_OK : shb_fail(SHB_ERR_IO, __FILE__, __LINE__, "out of memory");
+  for (; 2 * sets < n; sets++) text[sets] = words[2 * sets + 1];
+  snprintf(named, sizeof named, "name=%s", name ? name : "");
+  if (name) text[sets++] = named;
+  const case_overrides overrides = {sets, text, into};
+  if (status == SHB_OK) status = case_read_with(s->case_path, &overrides, STAGES, errors, file);
+  for (int i = 0; i < 2 * STUDY_MAX_KEYS; i++) free(words[i]);
+  return status;
+}
+
+/* The digest of a design. False: it is refused, and *messages holds what was said, malloc'ed; NULL
+ * without memory. */
+static bool digest_values(const study_spec *s, const double *value, char digest[DIGEST_TEXT],
+                          char **messages) {
+  size_t    length;
+  case_file file;
+  FILE     *into = open_memstream(messages, &length);
+  digest[0]      = '\0';
+  if (!into) return false;
+  bool good = study_spec_design(s, value, NULL, NULL, into, &file) == SHB_OK;
+  if (good) digest_design(&file, s->inputs, s->n_outputs, s->output, digest);
+  if (good) case_free(&file);
+  fclose(into);
+  return good;
+}
+
+bool study_spec_digest(const study_spec *s, const double *value, char digest[DIGEST_TEXT],
+                       char *why, size_t size) {
+  char *messages = NULL;
+  bool  good     = digest_values(s, value, digest, &messages);
+  why[0]         = '\0';
+  if (!good && messages) refusal_line(messages, s->case_path, why, size);
+  free(messages);
+  return good;
+}
+
 /* ---------------------------------------------------------------- designs */
 
 /* What belongs together: plan and vary, uncertain and samples. */
@@ -79,8 +148,8 @@ static void check_parts(reading *r, const case_node *root) {
                   *samples = case_node_find(root, "samples"), *seed = case_node_find(root, "seed");
   if (s->plan.kind == STUDY_TABLE && vary)
     fault(r, vary, "vary", "the columns of the table are the varied keys; leave vary out");
-  if (s->plan.kind != STUDY_TABLE && !vary && !case_node_find(root, "optimise") &&
-      (plan || !uncertain))
+  if (r->issues.n == 0 && s->plan.kind != STUDY_TABLE && !vary &&
+      !case_node_find(root, "optimise") && (plan || !uncertain))
     fault(r, root, "vary", "missing; expected a mapping of keys of the case");
   const case_node *optimise = case_node_find(root, "optimise");
   if (optimise && plan)
@@ -121,23 +190,23 @@ static const case_node *make_designs(reading *r, const case_node *root) {
   if (uncertain) uncertain_keys_read(&r->issues, uncertain, &s->keys);
   if (r->issues.n == 0 && uncertain)
     study_plan_add_samples(&r->issues, uncertain, &s->plan, &s->keys, &s->n_designs, &s->design);
-  return vary || !uncertain ? at : uncertain;
+  if (vary) return vary;
+  return plan ? plan : uncertain ? uncertain : root;
 }
 
-/* Read every design as a case, and report the first that are refused. */
-static void check_designs(reading *r, const case_node *at) {
-  study_spec *s   = r->spec;
-  int         bad = 0;
-  s->digest       = calloc((size_t)s->n_designs + 1, sizeof *s->digest);
+/* Read every design as a case, and report those that are refused. */
+static void check_designs(reading *r, const case_node *root, const case_node *at) {
+  study_spec *s       = r->spec;
+  refusals    refused = {0};
+  s->digest           = calloc((size_t)s->n_designs + 1, sizeof *s->digest);
   for (int d = 0; s->digest && d < s->n_designs; d++) {
-    char line[512];
-    bool good = study_spec_digest(s, s->design + (size_t)d * (size_t)s->keys.n, s->digest[d], line,
-                                  sizeof line);
-    if (!good && bad++ < TOLD)
-      case_issue_add(&r->issues, at->line, at->column, NULL, "design %d: %s", d + 1, line);
+    const double *value    = s->design + (size_t)d * (size_t)s->keys.n;
+    char         *messages = NULL;
+    if (!digest_values(s, value, s->digest[d], &messages))
+      refusals_take(&refused, &s->keys, d, messages ? messages : "", s->case_path);
+    free(messages);
   }
-  if (bad > TOLD)
-    case_issue_add(&r->issues, at->line, at->column, NULL, "%d designs are refused in all", bad);
+  refusals_report(&refused, &s->keys, s->design, root, at, &r->issues);
 }
 
 /* ---------------------------------------------------------------- the file */
@@ -196,7 +265,7 @@ static void read_document(reading *r, bool check, FILE *errors) {
   if (read_case(r, root, errors)) {
     read_outputs(r, case_node_find(root, "outputs"), root);
     const case_node *place = make_designs(r, root);
-    if (r->issues.n == 0 && check) check_designs(r, place);
+    if (r->issues.n == 0 && check) check_designs(r, root, place);
   }
   case_document_free(root);
 }
@@ -227,70 +296,4 @@ void study_spec_free(study_spec *s) {
   free(s->inputs);
   case_free(&s->base);
   *s = (study_spec){0};
-}
-
-/* The value of a key with its ratio, if it has one. */
-static double value_of(const study_keys *keys, const double *value, int key) {
-  double out = value[key];
-  for (int k = 0; k < keys->n; k++)
-    if (keys->key[k].is_ratio && keys->key[k].nominal == key) out *= value[k];
-  return keys->key[key].whole ? rint(out) : out;
-}
-
-int study_spec_words(const study_spec *s, const double *value, char **words) {
-  int  n    = 0;
-  bool good = true;
-  for (int k = 0; k < s->keys.n; k++) {
-    const study_key *key  = &s->keys.key[k];
-    size_t           size = strlen(key->path) + 40;
-    if (key->is_ratio) continue;
-    words[n]     = strdup("--set");
-    words[n + 1] = malloc(size);
-    good         = good && words[n] && words[n + 1];
-    if (words[n + 1])
-      snprintf(words[n + 1], size, "%s=%.17g", key->path, value_of(&s->keys, value, k));
-    n += 2;
-  }
-  return good ? n : -1;
-}
-
-shb_status study_spec_design(const study_spec *s, const double *value, const char *name,
-                             const char *into, FILE *errors, case_file *file) {
-  char       *words[2 * STUDY_MAX_KEYS] = {NULL}, named[CASE_NAME * 2];
-  const char *text[STUDY_MAX_KEYS + 1];
-  int         n = study_spec_words(s, value, words), sets = 0;
-  shb_status  status = n >= 0 ? SHB_OK : shb_fail(SHB_ERR_IO, __FILE__, __LINE__, "out of memory");
-  for (; 2 * sets < n; sets++) text[sets] = words[2 * sets + 1];
-  snprintf(named, sizeof named, "name=%s", name ? name : "");
-  if (name) text[sets++] = named;
-  const case_overrides overrides = {sets, text, into};
-  if (status == SHB_OK) status = case_read_with(s->case_path, &overrides, STAGES, errors, file);
-  for (int i = 0; i < 2 * STUDY_MAX_KEYS; i++) free(words[i]);
-  return status;
-}
-
-/* The first line of the messages of a case, without the name of its file. */
-static void first_line(const char *text, const char *path, char *out, size_t size) {
-  size_t n = strlen(path);
-  if (strncmp(text, path, n) == 0 && text[n] == ':') text += n + 1;
-  const char *error = strstr(text, "error: ");
-  if (error) text = error + strlen("error: ");
-  snprintf(out, size, "%.*s", (int)strcspn(text, "\n"), text);
-}
-
-bool study_spec_digest(const study_spec *s, const double *value, char digest[DIGEST_TEXT],
-                       char *why, size_t size) {
-  char     *text = NULL;
-  size_t    length;
-  case_file file;
-  FILE     *messages = open_memstream(&text, &length);
-  digest[0] = why[0] = '\0';
-  if (!messages) return false;
-  bool good = study_spec_design(s, value, NULL, NULL, messages, &file) == SHB_OK;
-  if (good) digest_design(&file, s->inputs, s->n_outputs, s->output, digest);
-  if (good) case_free(&file);
-  fclose(messages);
-  if (!good && text) first_line(text, s->case_path, why, size);
-  free(text);
-  return good;
 }

@@ -309,18 +309,36 @@ FAULTS = [
     ('samples: 32\nuncertain: {contact.mu: {normal: [0.3, 1 mm]}}', 'has unit mm'),
     ('samples: 32\nuncertain: {contact.mu: 0.3}', 'expected a distribution'),
     ('samples: 32\nuncertain: {contact.to: {normal: [0.3, 0.1]}}', 'is not a number'),
-    ('samples: 32\nuncertain: {contact.mv: {normal: [0.3, 0.1]}}', "did you mean 'mu'?"),
+    ('samples: 32\nuncertain: {contact.mv: {normal: [0.3, 0.1]}}', "did you mean 'contact.mu'?"),
     ('samples: 32\nuncertain: {contact.mu: {triangular: [0.3, 0.2, 0.4]}}', 'mode <= upper end'),
     ('samples: 32\nuncertain: {contact.mu: {normal: [1, 0.1], relative: true}}',
      'relative: true needs the key in vary'),
     ('samples: 32\nvary: {contact.mu: 0.3}\nuncertain: {contact.mu: {normal: [1, 0.1]}}',
      'add relative: true'),
     ('samples: 32\nuncertain: {contact.mu: {normal: [0, 0.1]}}', 'contact.mu: is -'),
-    ('vary: {contact.mv: [1, 2]}', "contact.mv: is no key of a case; did you mean 'mu'?"),
-    ('vary: {contact.no: [1, 2]}', "contact.no: is no key of a case; did you mean 'n0'?"),
-    ('vary: {contct.mu: [1, 2]}', "contct.mu: is no key of a case; did you mean 'contact'?"),
+    ('vary: {contact.mv: [1, 2]}', "contact.mv: is no key of a case; did you mean 'contact.mu'?"),
+    ('vary: {contact.no: [1, 2]}', "contact.no: is no key of a case; did you mean 'contact.n0'?"),
+    ('vary: {contct.mu: [1, 2]}', "contct.mu: is no key of a case; did you mean 'contact.mu'?"),
+    ('vary: {n0: [1, 2]}', "n0: is no key of a case; did you mean 'contact.n0'?"),
+    ('vary: {mesh.blade.section[4].thicknes: [1 mm, 2 mm]}',
+     "did you mean 'mesh.blade.sections[4].thickness'?"),
+    ('vary: {mesh.blade.sections.thicknes: [1 mm, 2 mm]}',
+     "did you mean 'mesh.blade.sections[0].thickness'?"),
+    ('vary: {contact.n0.low: [1, 2]}', "did you mean 'contact.n0'?"),
+    ('vary: {mhb: [1, 2]}', 'mhb: is no key of a case; known here: frequency, '),
+    ('vary: {mhb.huckleberry: [1, 2]}', 'is no key of a case; known here: frequency, '),
     ('vary: {contact.to: [1, 2]}', 'contact.to: is not a number'),
     ('vary: {contact.mu: [0.3, -1]}', 'design 2: contact.mu: is -1, must be 0 to'),
+    ('vary: {contact.n0: [1 N], contact.mu: [0.3, -1, -2]}', # at the value at fault
+     'fault.yaml:2:45: error: design 2: contact.mu: is -1, must be 0 to 1e+06 (2 designs in all)'),
+    ('vary: {contact.n0: [1 N, 2 N], contact.mu: {from: -1, to: 1, points: 3}}',
+     'fault.yaml:2:44: error: design 1: contact.mu: is -1, must be 0 to 1e+06 (2 designs in all)'),
+    ('vary: {contact.mu: 0.3, contact.n0[7]: 1 N}',
+     "fault.yaml:2:40: error: design 1: 'contact.n0' has the entries 0 to 3"),
+    ('vary: {contact.mu: 0.3, mhb.frequency[0]: [0.1 Hz, 5 Hz]}',
+     'fault.yaml:2:52: error: design 2: mhb.frequency: goes from 5 to '),
+    ('samples: 8\nuncertain: {contact.n0: {normal: [1, 0.1]}, contact.mu: {normal: [-1, 0.1]}}',
+     'fault.yaml:3:57: error: design 1: contact.mu: is -'),
     ('vary: {contact.mu: []}', 'contact.mu: the list is empty'),
     ('vary: {contact.n0: [1 m]}', 'contact.n0:'),
     ('vary: {contact.n0: {from: 1 N, to: 2 N}}', 'a grid needs the number of points'),
@@ -333,21 +351,32 @@ FAULTS = [
     ('vary: {contact.mu: [0.3]}\nplan: gird', 'plan: expected grid'),
     ('vray: {contact.mu: [0.3]}', "did you mean 'vary'?"),
     ('plan: {table: none.csv}', 'none.csv: cannot be opened'),
-    ('plan: {table: short.csv}', 'row 1 has 1 columns, the header has 2'),
-    ('plan: {table: wrong.csv}', 'contact.nu: is no key of a case'),
+    ('plan: {table: short.csv}', 'short.csv:3: row 1 has 1 columns, the header has 2'),
+    ('plan: {table: wrong.csv}',
+     "plan: wrong.csv: contact.nu: is no key of a case; did you mean 'contact.n0'?"),
+    ('plan: {table: unit.csv}', "plan: unit.csv:3: contact.n0: '1 m' has unit m, expected N"),
+    ('plan: {table: twice.csv}', 'plan: twice.csv: contact.mu: is the column 1 and 2'),
+    ('plan: {table: nameless.csv}', 'plan: nameless.csv: column 2 has no name'),
+    ('plan: {table: semicolons.csv}', 'columns are separated by commas'),
+    ('plan: {table: low.csv}', 'fault.yaml:2:7: error: design 2: contact.mu: is -1, must be 0'),
     ('plan: {table: empty.csv}', 'holds no design'),
 ]
 
 
 def check_faults():
     """Every fault is refused by one line, by check and before anything runs."""
-    write('short.csv', 'contact.mu,contact.n0\n0.3\n')
+    write('short.csv', 'contact.mu,contact.n0\n\n0.3\n')
+    write('unit.csv', 'contact.mu,contact.n0\n0.3,1 N\n0.3,1 m\n')
+    write('twice.csv', 'contact.mu,contact.mu\n0.3,0.4\n')
+    write('nameless.csv', 'contact.mu,\n0.3,0.4\n')
+    write('semicolons.csv', 'contact.mu;contact.n0\n0.3;1\n')
+    write('low.csv', 'contact.mu,contact.n0\n0.3,1\n-1,1\n')
     write('wrong.csv', 'contact.mu,contact.nu\n0.3,1\n')
     write('empty.csv', 'contact.mu\n')
     for text, message in FAULTS:
         write('fault.yaml', f'case: case.yaml\n{text}\n')
         said = run(program('shroudhb-study'), 'fault.yaml', code=2)
-        assert message in said, f'{text}: {said}'
+        assert message in said and said.count('error:') == 1, f'{text}: {said}'
         assert not os.path.exists('fault.study.h5'), text
         said = run(program('shroudhb-study'), '--check', 'fault.yaml', code=2)
         assert message in said, f'{text}: {said}'
