@@ -10,6 +10,7 @@
 #include "mesh/base/constants.h"
 #include "mhb/balance/ring_condensation.h"
 #include "mhb/balance/stuck_solver.h"
+#include "mhb/contact/slip_onset.h"
 #include "mhb/numerics/fourier.h"
 #include "mhb/numerics/simd.h"
 #include "mhb/structure/ring_receptance.h"
@@ -424,16 +425,18 @@ static mhb_pair_kind sure_kind(const mhb_balance *b, const double *x, int a) {
   return friction < law->mu * (mean - load) * (1 - SURE) ? MHB_PAIR_STUCK : MHB_PAIR_NONLINEAR;
 }
 
-static bool is_sure(mhb_balance *b, const double *x, int a, mhb_pair_kind *kind) {
-  mhb_contact_info *info = &b->eval->info[a];
-  *kind                  = sure_kind(b, x, a);
-  if (*kind == MHB_PAIR_NONLINEAR) return false;
-  const bool stuck = *kind == MHB_PAIR_STUCK;
-  linear_force(b, x, a, *kind);
+static void set_stuck(mhb_contact_info *info, bool stuck) {
   memset(info, 0, offsetof(mhb_contact_info, transition));
   info->share[stuck ? MHB_STICK : MHB_SEPARATE] = 1;
   info->undetermined                            = stuck;
   info->slider[0] = info->slider[1] = NAN;
+}
+
+static bool is_sure(mhb_balance *b, const double *x, int a, mhb_pair_kind *kind) {
+  *kind = sure_kind(b, x, a);
+  if (*kind == MHB_PAIR_NONLINEAR) return false;
+  linear_force(b, x, a, *kind);
+  set_stuck(&b->eval->info[a], *kind == MHB_PAIR_STUCK);
   return true;
 }
 
@@ -441,11 +444,33 @@ static bool is_assumed(const mhb_balance *b, int a) {
   return b->assumed && (b->assumed[a] == MHB_PAIR_STUCK || b->assumed[a] == MHB_PAIR_OPEN);
 }
 
+/* A pair at the onset of slip, or extrapolated from there by its stuck law. */
+static void evaluate_touching(mhb_balance *b, const double *x, int a, int derivative) {
+  const mhb_law *law = &b->law[a];
+  const size_t   nb = (size_t)b->nb, block = 3 * nb, at = (size_t)a * block;
+  mhb_slip_onset onset;
+  mhb_slip_onset_find(law, b->m, x + at, &onset);
+  linear_force(b, x, a, MHB_PAIR_STUCK);
+  set_stuck(&b->eval->info[a], true);
+  for (size_t i = 0; i < 2; i++) b->eval->p[at + (i + 1) * nb] = onset.c[i];
+  if (!derivative) return;
+  b->eval->kind[a] = MHB_PAIR_AT_LIMIT;
+  set_linear_derivative(b, a);
+  double        by_h[block];
+  double *const row[2] = {mhb_balance_mean_friction_row(b, a, 1),
+                          mhb_balance_mean_friction_row(b, a, 2)};
+  mhb_slip_onset_gradient(law, b->m, x + at, &onset, by_h, row);
+}
+
 /* A pair that was stuck or open is evaluated without derivative first: it mostly still is. */
 static void evaluate_pair(mhb_balance *b, mhb_contact_evaluator *contact, const double *x, int a,
                           int derivative) {
   size_t  block = 3 * (size_t)b->nb, at = (size_t)a * block;
   double *dp = b->eval->dp + at * block;
+  if (b->touching && b->touching[a]) {
+    evaluate_touching(b, x, a, derivative);
+    return;
+  }
   if (!derivative && is_assumed(b, a)) {
     linear_force(b, x, a, b->assumed[a]);
     return;

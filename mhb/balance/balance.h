@@ -63,7 +63,10 @@ typedef struct {
                                 * the tuned wave lags at blade b */
   const mhb_pair_kind *assumed; /* [pair] kinds that stuck and open pairs are taken to have by
                                  * evaluations without derivative, without their law; or NULL */
-  mhb_evaluation      *eval;    /* in use: evaluations write it */
+  const bool          *touching; /* [pair] true: stuck with the mean friction of two phases that touch
+                                  * (slip_onset.h), whether or not the motion is beyond that; or
+                                  * NULL. Not in a mistuned ring */
+  mhb_evaluation      *eval;     /* in use: evaluations write it */
   mhb_evaluation      *default_evaluation; /* in use after creation; owned */
   shb_arena            arena;
 } mhb_balance;
