@@ -56,8 +56,8 @@ set(SLOW_TESTS
 set(NIGHTLY_TESTS robust.fail_nth_all robust.kills_many robust.damaged_many)
 
 if(TARGET repeated_sweep)
-  # the heap still grows by 0.4 to 1.5 kB a sweep, so they fail
-  list(APPEND NIGHTLY_TESTS robust.repeated robust.repeated_many)
+  list(APPEND INTEGRATION_TESTS robust.repeated)
+  list(APPEND NIGHTLY_TESTS robust.repeated_many)
 endif()
 
 set(TIMEOUT_nightly 86400)

@@ -38,9 +38,11 @@ with bring_your_own(SCENE):
     if peaks:
         print(f'{PROCESSES} processes: results alike, {min(peaks)} to {max(peaks)} kB')
         assert max(peaks) < 1.2 * min(peaks)
-    done = subprocess.run([PROGRAM, str(SWEEPS), 'one.yaml'], env=ENVIRONMENT, text=True,
-                          capture_output=True)
-    print(done.stdout + done.stderr, end='')
-    assert done.returncode == 0
+    # a block of 16 bytes lost after each sweep is noticed
+    for count, lost, code in ((SWEEPS, 0, 0), (10, 16, 1)):
+        done = subprocess.run([PROGRAM, str(count), 'one.yaml', str(lost)], env=ENVIRONMENT,
+                              text=True, capture_output=True)
+        print(done.stdout + done.stderr, end='')
+        assert done.returncode == code
     assert content(RESULT) == expected, 'the last sweep gave other numbers'
     assert not [name for name in os.listdir() if '.tmp.' in name]

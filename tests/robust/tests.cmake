@@ -33,8 +33,7 @@ if(SHROUDHB_PYTHON)
     target_link_libraries(repeated_sweep PRIVATE shb_cases_commands)
     set(REPEATED ${ROBUST}/test_repeated.py $<TARGET_FILE:repeated_sweep>
       $<TARGET_FILE_DIR:shroudhb> ${SCENE})
-    add_test(NAME robust.repeated CONFIGURATIONS nightly
-      COMMAND ${SHROUDHB_PYTHON} -B ${REPEATED} 50 3)
+    add_test(NAME robust.repeated COMMAND ${SHROUDHB_PYTHON} -B ${REPEATED} 20 3)
     add_test(NAME robust.repeated_many CONFIGURATIONS nightly
       COMMAND ${SHROUDHB_PYTHON} -B ${REPEATED} 1000 1000)
     set_tests_properties(robust.repeated robust.repeated_many PROPERTIES SKIP_RETURN_CODE 77)
