@@ -131,22 +131,23 @@ static double power_of(int n, const double complex *u) {
 
 /* ---- unknowns u ---- */
 
-/* A <- I + R_k D, column-major. */
-static void fill(mhb_higher_harmonics *h, int k) {
-  int n = h->n;
-  mhb_receptance_update(h->receptance, k);
-  const double complex *R = h->receptance->R + (size_t)k * (size_t)n * (size_t)n;
+void mhb_harmonic_matrix(int n, const double complex *R, const double complex (*D)[9],
+                         double complex *A) {
   for (int i = 0; i < n; i++, R += n)
     for (int j = 0; j < n; j++) {
-      const double complex *D = h->D + 9 * (j / 3) + j % 3, *r = R + j - j % 3;
-      h->A[(size_t)j * (size_t)n + (size_t)i] = r[0] * D[0] + r[1] * D[3] + r[2] * D[6] + (i == j);
+      const double complex *d = D[j / 3] + j % 3, *row = R + j - j % 3;
+      A[(size_t)j * (size_t)n + (size_t)i] =
+          row[0] * d[0] + row[1] * d[3] + row[2] * d[6] + (i == j);
     }
 }
 
 /* u <- (I + R_k D)^-1 c; 0: singular. */
 static int solve_pairs(mhb_higher_harmonics *h, int k, double complex *u) {
-  fill(h, k);
-  memcpy(u, h->c, sizeof *u * (size_t)h->n);
+  const size_t n = (size_t)h->n;
+  mhb_receptance_update(h->receptance, k);
+  mhb_harmonic_matrix(h->n, h->receptance->R + (size_t)k * n * n, (const double complex(*)[9])h->D,
+                      h->A);
+  memcpy(u, h->c, sizeof *u * n);
   return mhb_factor_complex(h->n, h->A, h->pivot) && mhb_solve_complex(h->n, h->A, h->pivot, 1, u);
 }
 
@@ -155,13 +156,10 @@ static int solve_pairs(mhb_higher_harmonics *h, int k, double complex *u) {
 /* W = (I + G D)^-1 of a pair; I where singular. */
 static void set_W(mhb_higher_harmonics *h, int k, int pair, double complex W[3][3]) {
   const mhb_receptance *r       = h->receptance;
-  const double complex *D       = h->D + 9 * pair;
   double complex        G[3][3] = {{0}}, A[9];
   int                   pivot[3];
   mhb_residual_terms_block(r->residual_terms, k, k * r->omega / r->nu, pair, G);
-  for (int c = 0; c < 3; c++)
-    for (int d = 0; d < 3; d++)
-      A[3 * d + c] = G[c][0] * D[d] + G[c][1] * D[3 + d] + G[c][2] * D[6 + d] + (c == d);
+  mhb_harmonic_matrix(3, G[0], (const double complex(*)[9])(h->D + 9 * pair), A);
   int ok = mhb_factor_complex(3, A, pivot);
   for (int d = 0; d < 3; d++) {
     double complex column[3] = {d == 0, d == 1, d == 2};

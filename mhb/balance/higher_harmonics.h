@@ -63,6 +63,11 @@ void mhb_higher_harmonics_feedback(mhb_higher_harmonics *higher, const mhb_balan
  * part that couples k with -k; N/m. */
 void mhb_last_stiffness(const mhb_balance *balance, int pair, double complex D[3][3]);
 
+/* A[n][n] column-major <- I + R D: R[n][n] the receptance of n/3 pairs at one harmonic, m/N, and
+ * D[pair][3][3] their stiffness, N/m. */
+void mhb_harmonic_matrix(int n, const double complex *R, const double complex (*D)[9],
+                         double complex *A);
+
 /* |u_k|^2 of the last estimate, m^2; 0 for other harmonics. */
 double mhb_higher_harmonics_power(const mhb_higher_harmonics *higher, int k);
 

@@ -81,16 +81,6 @@ static size_t place_of(const mhb_truncation_step *t, int k, int contact) {
   return (size_t)(k - t->balance->m - 1) * blades + (size_t)contact;
 }
 
-/* A[n][n] column-major <- I + R D of a contact alone, R[n][n]. */
-static void fill(int n, const double complex *R, const double complex (*D)[9], double complex *A) {
-  for (int i = 0; i < n; i++, R += n)
-    for (int j = 0; j < n; j++) {
-      const double complex *d = D[j / 3] + j % 3, *row = R + j - j % 3;
-      A[(size_t)j * (size_t)n + (size_t)i] =
-          row[0] * d[0] + row[1] * d[3] + row[2] * d[6] + (i == j);
-    }
-}
-
 /* Factors of all harmonics above m. 0: singular. */
 static int factor_high(mhb_truncation_step *t) {
   const mhb_balance         *b    = t->balance;
@@ -104,8 +94,8 @@ static int factor_high(mhb_truncation_step *t) {
     for (int k = b->m + 1; k <= t->doubled->m; k++) {
       const size_t    at = place_of(t, k, c);
       double complex *A  = t->A + at * (size_t)(n * n);
-      fill(n, mhb_ring_receptance_block(ring, k, c, MHB_RING_OWN), (const double complex(*)[9])D,
-           A);
+      mhb_harmonic_matrix(n, mhb_ring_receptance_block(ring, k, c, MHB_RING_OWN),
+                          (const double complex(*)[9])D, A);
       if (!mhb_factor_complex(n, A, t->pivot + at * (size_t)n)) return 0;
     }
   }
