@@ -23,7 +23,10 @@ static const double ACCURACY = 1e-6;
 
 void contact_points_free(contact_points *p) {
   if (!p) return;
-  modal_model_free(&p->other);
+  if (p->disc.n > 0)
+    modal_nodal_diameters_free(&p->disc);
+  else
+    modal_model_free(&p->other);
   modal_joining_free(&p->joining);
   free(p);
 }
@@ -36,32 +39,56 @@ static shb_status create(contact_points **out) {
   return SHB_OK;
 }
 
-shb_status contact_points_join(modal_model *model, int patches, contact_points **out) {
-  modal_model joined;
+/* The other model is that of a disc. */
+static void take_disc(contact_points *p, modal_nodal_diameters disc) {
+  p->disc                  = disc;
+  p->other                 = p->disc.model[0];
+  p->pairs.nodal_diameters = &p->disc;
+}
+
+shb_status contact_points_join(modal_model *model, modal_nodal_diameters *disc, int patches,
+                               contact_points **out) {
+  modal_model           joined;
+  modal_nodal_diameters joined_disc;
   *out = NULL;
   if (patches == model->n_pairs) return SHB_OK;
   SHB_TRY(create(out));
   shb_status status = modal_joining_create(model, patches, &(*out)->joining);
-  if (status == SHB_OK) status = modal_join(model, &(*out)->joining, &joined);
+  if (status == SHB_OK)
+    status = disc ? modal_join_diameters(disc, &(*out)->joining, &joined_disc)
+                  : modal_join(model, &(*out)->joining, &joined);
   if (status != SHB_OK) {
     contact_points_free(*out);
     *out = NULL;
     return status;
   }
-  (*out)->other       = *model;
   (*out)->pairs.finer = true;
-  *model              = joined;
+  if (disc) {
+    take_disc(*out, *disc);
+    *disc  = joined_disc;
+    *model = disc->model[0];
+    return SHB_OK;
+  }
+  (*out)->other = *model;
+  *model        = joined;
   return SHB_OK;
 }
 
-shb_status contact_points_halve(const modal_model *model, contact_points **out) {
-  const int interfaces = model->n_interfaces > 1 ? model->n_interfaces : 1;
-  *out                 = NULL;
+shb_status contact_points_halve(const modal_model *model, const modal_nodal_diameters *disc,
+                                contact_points **out) {
+  const int             interfaces = model->n_interfaces > 1 ? model->n_interfaces : 1;
+  modal_nodal_diameters joined;
+  *out = NULL;
   if (modal_joinable(model) < 2 * interfaces) return SHB_OK;
   SHB_TRY(create(out));
   shb_status status = modal_joining_create(model, model->n_pairs / 2, &(*out)->joining);
-  if (status == SHB_OK) status = modal_join(model, &(*out)->joining, &(*out)->other);
-  if (status == SHB_OK) return SHB_OK;
+  if (status == SHB_OK)
+    status = disc ? modal_join_diameters(disc, &(*out)->joining, &joined)
+                  : modal_join(model, &(*out)->joining, &(*out)->other);
+  if (status == SHB_OK) {
+    if (disc) take_disc(*out, joined);
+    return SHB_OK;
+  }
   contact_points_free(*out);
   *out = NULL;
   return status;
@@ -170,26 +197,35 @@ static shb_status judge(const modal_model *model, const mhb_settings *settings, 
 }
 
 /* Back to all pairs. */
-static void undo(modal_model *model, contact_points *points) {
-  modal_model_free(model);
-  *model        = points->other;
+static void undo(modal_model *model, modal_nodal_diameters *disc, contact_points *points) {
+  if (disc) {
+    modal_nodal_diameters_free(disc);
+    *disc        = points->disc;
+    *model       = disc->model[0];
+    points->disc = (modal_nodal_diameters){0};
+  } else {
+    modal_model_free(model);
+    *model = points->other;
+  }
   points->other = (modal_model){0};
   contact_points_free(points);
 }
 
-shb_status contact_points_choose(modal_model *model, const mhb_settings *asked, double tolerance,
+shb_status contact_points_choose(modal_model *model, modal_nodal_diameters *disc,
+                                 const mhb_settings *asked, double tolerance,
                                  contact_points **out) {
-  mhb_settings s   = outline_of(asked);
-  const int    all = model->n_pairs;
-  *out             = NULL;
+  mhb_settings s    = outline_of(asked);
+  const int    all  = model->n_pairs;
+  s.nodal_diameters = disc;
+  *out              = NULL;
   for (int patches = 1; patches < all;) {
     double error = 0;
-    SHB_TRY(contact_points_join(model, patches, out));
+    SHB_TRY(contact_points_join(model, disc, patches, out));
     s.other_pairs = &(*out)->pairs;
     SHB_TRY(judge(model, &s, &error));
     (*out)->estimate = error;
     if (error <= tolerance) return SHB_OK;
-    undo(model, *out);
+    undo(model, disc, *out);
     *out = NULL;
     patches *= error > FAR * tolerance ? 4 : 2;
   }

@@ -136,11 +136,17 @@ static shb_status check_disc(const case_file *file, const char *path, const case
             "rotor.mistuning: %s holds the modes of a disc, whose sectors are alike; leave it out, "
             "or clamp the blade at its root",
             path);
-  SHB_CHECK(file->points >= 0 || file->modal_file, SHB_ERR_INPUT,
-            "contact.points: auto does not know the disc of %s; give the number of points, or all",
-            path);
   SHB_TRY(mhb_receptance_check(&m->settings, 0));
   return check_use(path, &m->model);
+}
+
+/* contact.points: auto. */
+static shb_status choose_points(const case_file *file, case_model *m) {
+  if (file->points >= 0 || file->modal_file) return SHB_OK;
+  SHB_TRY(
+      contact_points_choose(&m->model, m->disc, &m->settings, file->points_tolerance, &m->points));
+  if (m->points) m->settings.other_pairs = &m->points->pairs;
+  return SHB_OK;
 }
 
 shb_status case_model_read(const case_file *file, const char *path, int modes, bool residuals,
@@ -148,27 +154,27 @@ shb_status case_model_read(const case_file *file, const char *path, int modes, b
   *m = (case_model){.settings = file->mhb};
   if (file->run_up) SHB_TRY(read_disc_speeds(path, modes, residuals, m));
   if (!m->disc) SHB_TRY(read_disc(path, modes, residuals, m));
-  if (m->disc) return check_disc(file, path, m);
+  if (m->disc) {
+    SHB_TRY(check_disc(file, path, m));
+    return m->disc_run_up ? SHB_OK : choose_points(file, m);
+  }
   if (file->run_up) return read_speeds(path, modes, residuals, m);
   SHB_TRY(modal_model_read(path, &m->model));
   SHB_TRY(check_use(path, &m->model));
   if (modes > 0) SHB_TRY(modal_model_reduce(&m->model, modes, residuals));
   if (file->mistuning.kind != CASE_TUNED) return make_ring(file, m);
-  if (file->points >= 0 || file->modal_file) return SHB_OK;
-  SHB_TRY(contact_points_choose(&m->model, &m->settings, file->points_tolerance, &m->points));
-  if (m->points) m->settings.other_pairs = &m->points->pairs;
-  return SHB_OK;
+  return choose_points(file, m);
 }
 
 shb_status case_model_join(case_model *m, int patches) {
-  SHB_TRY(contact_points_join(&m->model, patches, &m->points));
+  SHB_TRY(contact_points_join(&m->model, m->disc, patches, &m->points));
   if (m->points) m->settings.other_pairs = &m->points->pairs;
   return SHB_OK;
 }
 
 shb_status case_model_judge_points(case_model *m) {
-  if (m->points || m->run_up || m->ring || m->disc) return SHB_OK;
-  SHB_TRY(contact_points_halve(&m->model, &m->points));
+  if (m->points || m->run_up || m->ring) return SHB_OK;
+  SHB_TRY(contact_points_halve(&m->model, m->disc, &m->points));
   if (m->points) m->settings.other_pairs = &m->points->pairs;
   return SHB_OK;
 }

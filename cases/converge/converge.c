@@ -66,6 +66,20 @@ static char *current_points(const case_file *file) {
   return NULL;
 }
 
+/* The model stays with all its pairs: nothing but their number is asked of it. */
+static shb_status choose_points_of_disc(convergence_study *s, const mhb_settings *settings) {
+  modal_nodal_diameters disc;
+  contact_points       *joined = NULL;
+  SHB_TRY(modal_nodal_diameters_read(s->variant[0].modal, &disc));
+  modal_model first = disc.model[0];
+  shb_status  status =
+      contact_points_choose(&first, &disc, settings, s->file->points_tolerance, &joined);
+  if (status == SHB_OK && joined) s->base.patches = first.n_pairs;
+  contact_points_free(joined);
+  modal_nodal_diameters_free(&disc);
+  return status;
+}
+
 /* With contact.points: auto all ladders but that of the points have as many as the case needs. */
 static shb_status choose_points(convergence_study *s, const case_file *own) {
   s->n_pairs = s->model.n_pairs;
@@ -74,7 +88,8 @@ static shb_status choose_points(convergence_study *s, const case_file *own) {
   settings.n_preloads   = own->mhb.n_preloads;
   for (int i = 0; i < own->mhb.n_preloads; i++) settings.n0[i] = own->mhb.n0[i];
   shb_progress_show(&s->progress, -1, "contact.points: auto");
-  SHB_TRY(contact_points_choose(&s->model, &settings, s->file->points_tolerance, &s->joined));
+  if (s->disc) return choose_points_of_disc(s, &settings);
+  SHB_TRY(contact_points_choose(&s->model, NULL, &settings, s->file->points_tolerance, &s->joined));
   if (s->joined) s->base.patches = s->model.n_pairs;
   return SHB_OK;
 }
@@ -84,11 +99,13 @@ static shb_status choose_points(convergence_study *s, const case_file *own) {
 static shb_status check_disc(convergence_study *s) {
   modal_nodal_diameters d;
   case_model            m;
+  case_file             whole = *s->file;
+  whole.points                = 0; /* whatever is chosen */
   SHB_TRY(modal_nodal_diameters_read(s->variant[0].modal, &d));
   s->disc = d.n > 0;
   modal_nodal_diameters_free(&d);
   if (!s->disc) return SHB_OK;
-  shb_status status = case_model_read(s->file, s->variant[0].modal, 0, true, &m);
+  shb_status status = case_model_read(&whole, s->variant[0].modal, 0, true, &m);
   if (status == SHB_OK) status = mhb_receptance_check(&m.settings, m.disc->blades);
   case_model_free(&m);
   return status;

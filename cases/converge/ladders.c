@@ -302,10 +302,6 @@ static shb_status points_ladder(convergence_study *s) {
             own        = s->base.patches > 0 ? s->base.patches : all;
   const int interfaces = s->model.n_interfaces > 1 ? s->model.n_interfaces : 1;
   if (modal_joinable(&s->model) < 1 || all <= interfaces) return SHB_OK;
-  if (s->disc) {
-    post_put(&s->note, "The ladder of points is left out: those of a disc are not joined.\n");
-    return SHB_OK;
-  }
   for (int patches = interfaces; first == s->result.n || patches < 2 * all; patches *= 2) {
     char         name[16];
     rung_setting setting = s->base;

@@ -359,13 +359,6 @@ static void check_disc(case_reader *r, int stages) {
   const bool       disc =
       file->has_disc || file->source.rules.usual[MESH_CYCLIC_RIGHT].kind != MESH_RULE_NONE;
   if (!disc || file->modal_file) return;
-  if (file->modes == 0 && case_reader_good(r, "modal.modes"))
-    case_reader_issue(r, "modal.modes",
-                      "is auto, which a disc does not know; give the number of modes at each nodal "
-                      "diameter");
-  if (file->points < 0 && case_reader_good(r, "contact.points"))
-    case_reader_issue(r, "contact.points",
-                      "is auto, which a disc does not know; give the number of points, or all");
   if (stages & CASE_MHB && file->mistuning.kind != CASE_TUNED)
     case_reader_issue(
         r, "rotor.mistuning",

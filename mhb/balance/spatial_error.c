@@ -7,11 +7,12 @@
 shb_status mhb_spatial_error_create(const mhb_balance *balance, mhb_spatial_error **out) {
   mhb_spatial_error *e = calloc(1, sizeof *e);
   SHB_CHECK(e, SHB_ERR_IO, "out of memory");
-  e->balance            = balance;
-  e->pairs              = balance->settings->other_pairs;
-  e->settings           = *balance->settings;
-  e->settings.harmonics = balance->m;
-  shb_status status     = mhb_balance_create(e->pairs->model, &e->settings, &e->other);
+  e->balance                  = balance;
+  e->pairs                    = balance->settings->other_pairs;
+  e->settings                 = *balance->settings;
+  e->settings.harmonics       = balance->m;
+  e->settings.nodal_diameters = e->pairs->nodal_diameters;
+  shb_status status           = mhb_balance_create(e->pairs->model, &e->settings, &e->other);
   if (status == SHB_OK) {
     e->x      = shb_arena_take(&e->arena, (size_t)e->other->n, sizeof *e->x);
     e->step   = shb_arena_take(&e->arena, (size_t)e->other->n, sizeof *e->step);

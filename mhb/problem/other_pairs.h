@@ -7,7 +7,9 @@
 
 /* The model and the joining must outlive all that use it. */
 struct mhb_other_pairs {
-  const modal_model   *model;
+  const modal_model *model;
+  const struct modal_nodal_diameters
+      *nodal_diameters;         /* of a disc: its models, the first of which is model; else NULL */
   const modal_joining *joining; /* of the finer one's pairs to the coarser one's */
   bool                 finer;   /* this model is the finer one, and that of the modal file */
 };

@@ -229,14 +229,17 @@ static double *mean_columns(const modal_joining *j, int sides, const double *fro
   return out;
 }
 
-/* The mean over rows and columns, made symmetric: round-off of the two sums differs. */
-static double *mean_both(const modal_joining *j, int sides, const double *from) {
+/* The mean over rows and columns, made symmetric (sign 1) or skew (-1): round-off of the two sums
+ * differs. */
+static double *mean_both(const modal_joining *j, int sides, const double *from, double sign) {
   const size_t n    = 3 * (size_t)(sides * j->n_patches);
   double      *rows = mean_rows(j, sides, from, 3 * (size_t)(sides * j->n_pairs));
   double      *out  = mean_columns(j, sides, rows, n, 1);
   for (size_t i = 0; out && i < n; i++)
-    for (size_t k = 0; k < i; k++)
-      out[i * n + k] = out[k * n + i] = (out[i * n + k] + out[k * n + i]) / 2;
+    for (size_t k = 0; k < i; k++) {
+      out[i * n + k] = (out[i * n + k] + sign * out[k * n + i]) / 2;
+      out[k * n + i] = sign * out[i * n + k];
+    }
   free(rows);
   return out;
 }
@@ -269,10 +272,10 @@ static char **copy_names(char *const *name, int n) {
   return to;
 }
 
-/* What knows nothing of the contact. */
+/* What knows nothing of the contact, in arrays of the sizes of b. */
 static void copy_rest(const modal_model *a, modal_model *b) {
-  const size_t m = (size_t)a->n_modes, q = 3 * (size_t)a->n_probes, K = (size_t)a->n_load + 1;
-  const size_t r = (size_t)a->n_residual, real = sizeof(double), both = sizeof(double complex);
+  const size_t m = (size_t)b->n_modes, q = 3 * (size_t)b->n_probes, K = (size_t)b->n_load + 1;
+  const size_t r = (size_t)b->n_residual, real = sizeof(double), both = sizeof(double complex);
   b->frequency           = copy(a->frequency, m * real);
   b->damping_ratio       = copy(a->damping_ratio, m * real);
   b->coriolis            = copy(a->coriolis, m * m * real);
@@ -286,8 +289,8 @@ static void copy_rest(const modal_model *a, modal_model *b) {
   b->probe_load_residual = copy(a->probe_load_residual, K * q * both);
   b->probe_load_inertia  = copy(a->probe_load_inertia, K * q * both);
   b->probe_load_fourth   = copy(a->probe_load_fourth, K * q * both);
-  b->probe_name          = copy_names(a->probe_name, a->n_probes);
-  b->interface_name      = copy_names(a->interface_name, a->n_interfaces);
+  b->probe_name          = copy_names(a->probe_name, b->n_probes);
+  b->interface_name      = copy_names(a->interface_name, b->n_interfaces);
 }
 
 /* Area, position and interface of the patches. */
@@ -353,28 +356,30 @@ static bool is_whole(const modal_model *a, const modal_model *b) {
                               b->normal};
   for (size_t i = 0; i < sizeof from / sizeof *from; i++)
     if (from[i] && !to[i]) return false;
-  return b->position;
+  return true;
 }
 
-shb_status modal_join(const modal_model *a, const modal_joining *j, modal_model *b) {
-  const size_t m = (size_t)a->n_modes, q = 3 * (size_t)a->n_probes, K = (size_t)a->n_load + 1;
-  const int    sides = a->has_left ? 2 : 1;
-  *b                 = (modal_model){.n_modes      = a->n_modes,
+/* The arrays of a, whose sizes are those of `of`, joined. sign: of the transpose of the residual
+ * matrices. */
+static shb_status join_arrays(const modal_model *of, const modal_model *a, const modal_joining *j,
+                              double sign, modal_model *b) {
+  const size_t m = (size_t)of->n_modes, q = 3 * (size_t)of->n_probes, K = (size_t)of->n_load + 1;
+  const int    sides = of->has_left ? 2 : 1;
+  *b                 = (modal_model){.n_modes      = of->n_modes,
                                      .n_pairs      = j->n_patches,
-                                     .n_probes     = a->n_probes,
-                                     .n_load       = a->n_load,
-                                     .n_interfaces = a->n_interfaces,
-                                     .has_left     = a->has_left,
-                                     .n_residual   = a->n_residual,
-                                     .tail_order   = a->tail_order};
+                                     .n_probes     = of->n_probes,
+                                     .n_load       = of->n_load,
+                                     .n_interfaces = of->n_interfaces,
+                                     .has_left     = of->has_left,
+                                     .n_residual   = of->n_residual,
+                                     .tail_order   = of->tail_order};
   copy_rest(a, b);
-  describe_patches(a, j, b);
   b->right                = mean_rows(j, 1, a->right, m);
   b->left                 = mean_rows(j, 1, a->left, m);
-  b->residual_flexibility = mean_both(j, sides, a->residual_flexibility);
-  b->residual_inertia     = mean_both(j, sides, a->residual_inertia);
-  b->residual_fourth      = mean_both(j, sides, a->residual_fourth);
-  b->residual_shape       = mean_rows(j, sides, a->residual_shape, (size_t)a->n_residual);
+  b->residual_flexibility = mean_both(j, sides, a->residual_flexibility, sign);
+  b->residual_inertia     = mean_both(j, sides, a->residual_inertia, sign);
+  b->residual_fourth      = mean_both(j, sides, a->residual_fourth, sign);
+  b->residual_shape       = mean_rows(j, sides, a->residual_shape, (size_t)of->n_residual);
   b->contact_tail         = bound_tails(j, sides, a->contact_tail);
   b->load_residual = (double complex *)mean_columns(j, sides, (double *)a->load_residual, K, 2);
   b->load_inertia  = (double complex *)mean_columns(j, sides, (double *)a->load_inertia, K, 2);
@@ -382,9 +387,29 @@ shb_status modal_join(const modal_model *a, const modal_joining *j, modal_model 
   b->probe_contact_residual = mean_columns(j, sides, a->probe_contact_residual, q, 1);
   b->probe_contact_inertia  = mean_columns(j, sides, a->probe_contact_inertia, q, 1);
   b->probe_contact_fourth   = mean_columns(j, sides, a->probe_contact_fourth, q, 1);
-  if (is_whole(a, b)) return SHB_OK;
+  if (a->position) describe_patches(a, j, b);
+  if (is_whole(a, b) && !a->position == !b->position) return SHB_OK;
   modal_model_free(b);
   return shb_fail(SHB_ERR_IO, __FILE__, __LINE__, "out of memory for %d patches", j->n_patches);
+}
+
+shb_status modal_join(const modal_model *a, const modal_joining *j, modal_model *b) {
+  return join_arrays(a, a, j, 1, b);
+}
+
+shb_status modal_join_diameters(const modal_nodal_diameters *a, const modal_joining *j,
+                                modal_nodal_diameters *b) {
+  SHB_TRY(modal_nodal_diameters_create(a->blades, a->n, b));
+  shb_status status = SHB_OK;
+  for (int i = 0; i < a->n && status == SHB_OK; i++) {
+    const modal_model *of = &a->model[i];
+    b->diameter[i]        = a->diameter[i];
+    status                = join_arrays(of, of, j, 1, &b->model[i]);
+    if (status == SHB_OK) status = join_arrays(of, &a->imaginary[i], j, -1, &b->imaginary[i]);
+    if (status == SHB_OK) status = join_arrays(of, &a->backward[i], j, 1, &b->backward[i]);
+  }
+  if (status != SHB_OK) modal_nodal_diameters_free(b);
+  return status;
 }
 
 void modal_joining_spread(const modal_joining *j, int sides, const double complex *force,

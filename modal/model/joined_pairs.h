@@ -9,7 +9,7 @@
 #ifndef MODAL_MODEL_JOINED_PAIRS_H
 #define MODAL_MODEL_JOINED_PAIRS_H
 
-#include "modal/model/model.h"
+#include "modal/model/nodal_diameters.h"
 
 typedef struct {
   int     n_pairs, n_patches;
@@ -41,6 +41,10 @@ void       modal_joining_free(modal_joining *joining); /* also on a zeroed struc
 /* The joined model, to be freed. The tails become bounds: of the mean of several motions by the
  * mean of their roots. SHB_ERR_IO: no memory. */
 shb_status modal_join(const modal_model *model, const modal_joining *joining, modal_model *joined);
+
+/* The same at every nodal diameter, of a joining of the first model. */
+shb_status modal_join_diameters(const modal_nodal_diameters *diameters,
+                                const modal_joining *joining, modal_nodal_diameters *joined);
 
 /* out[n_contact of the model] <- forces on its pairs by forces on the patches, [n_contact of the
  * joined model], both with this stride. */

@@ -15,6 +15,7 @@ static const double BAND_MARGIN = 1.2;
 
 typedef struct {
   const modal_model *model;
+  const modal_model *imaginary;      /* NULL: real */
   int                n;              /* contact dofs */
   double             band;           /* Hz */
   double             scale[SAMPLES]; /* largest diagonal receptance, m/N */
@@ -24,15 +25,34 @@ static double omega_at(const selection *s, int sample) {
   return SHB_TWO_PI * s->band * (sample + 1) / SAMPLES;
 }
 
+/* The model with the imaginary parts of the shapes, whose receptance is what they add to that of
+ * the real parts on the diagonal. */
+static modal_model shapes_of_imaginary(const modal_model *re, const modal_model *im) {
+  return (modal_model){.n_modes            = re->n_modes,
+                       .n_pairs            = re->n_pairs,
+                       .has_left           = re->has_left,
+                       .n_residual         = im->residual_shape ? re->n_residual : 0,
+                       .frequency          = re->frequency,
+                       .damping_ratio      = re->damping_ratio,
+                       .right              = im->right,
+                       .left               = im->left,
+                       .residual_frequency = re->residual_frequency,
+                       .residual_shape     = im->residual_shape};
+}
+
 /* Largest diagonal receptance of the full model, to which errors are relative. */
 static shb_status find_scales(selection *s) {
   const size_t    n     = (size_t)s->n;
-  double complex *value = malloc(n * n * sizeof *value);
+  double complex *value = calloc(2 * n * n, sizeof *value), *more = value + n * n;
   SHB_CHECK(value, SHB_ERR_IO, "out of memory for the receptance");
+  modal_model im = {0};
+  if (s->imaginary) im = shapes_of_imaginary(s->model, s->imaginary);
   for (int f = 0; f < SAMPLES; f++) {
     modal_receptance(s->model, omega_at(s, f), value);
+    if (s->imaginary) modal_receptance(&im, omega_at(s, f), more);
     s->scale[f] = 0;
-    for (size_t c = 0; c < n; c++) s->scale[f] = fmax(s->scale[f], cabs(value[c * (n + 1)]));
+    for (size_t c = 0; c < n; c++)
+      s->scale[f] = fmax(s->scale[f], cabs(value[c * (n + 1)] + more[c * (n + 1)]));
   }
   free(value);
   return SHB_OK;
@@ -105,4 +125,16 @@ shb_status modal_select_modes(const modal_model *model, double band, double tole
   if (status == SHB_OK) status = remove_modes(&s, tolerance, &reduced, modes, error);
   modal_model_free(&reduced);
   return status;
+}
+
+shb_status modal_modes_suffice(const modal_model *model, const modal_model *imaginary, double band,
+                               double tolerance, bool *enough, double *error) {
+  selection s = {
+      .model = model, .imaginary = imaginary, .n = modal_model_contact_dofs(model), .band = band};
+  SHB_CHECK(modal_series_has_fourth(model) && model->contact_tail, SHB_ERR_INPUT,
+            "the modal model does not hold what estimates its error");
+  SHB_TRY(find_scales(&s));
+  *error  = error_of(&s, model);
+  *enough = *error <= tolerance && model->frequency[model->n_modes - 1] >= BAND_MARGIN * band;
+  return SHB_OK;
 }

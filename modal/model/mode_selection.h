@@ -16,4 +16,10 @@
 shb_status modal_select_modes(const modal_model *model, double band, double tolerance, int *modes,
                               double *error);
 
+/* Whether the modes of a nodal diameter are enough by the same rules.
+ *   imaginary  in   imaginary parts of the model; NULL: real
+ *   error      out  of the contact receptance, relative */
+shb_status modal_modes_suffice(const modal_model *model, const modal_model *imaginary, double band,
+                               double tolerance, bool *enough, double *error);
+
 #endif

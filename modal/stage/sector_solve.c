@@ -37,9 +37,6 @@ shb_status modal_sector_check(MPI_Comm comm, const modal_settings *settings) {
             "a sector with cyclic sides runs on one rank, not %d; its nodal diameters run on "
             "threads (OMP_NUM_THREADS)",
             ranks);
-  SHB_CHECK(settings->modes > 0, SHB_ERR_INPUT,
-            "modal.modes: auto is for a clamped blade; give the number of modes at each nodal "
-            "diameter");
   SHB_CHECK(settings->check != MODAL_CHECK_INERTIA, SHB_ERR_INPUT,
             "modal.check: inertia is for a clamped blade; leave it at auto, or give never");
   for (int i = 0; i < settings->n_diameters; i++)

@@ -15,15 +15,15 @@ typedef struct {
   modal_sector_speeds   speeds; /* n = 0: one speed. Models of the main one are shared. */
 } modal_sector;
 
-/* Can a sector with these settings be solved? Errors: SHB_ERR_INPUT several ranks, modes: auto,
- * modal.check: inertia, a nodal diameter above N/2. */
+/* Can a sector with these settings be solved? Errors: SHB_ERR_INPUT several ranks, modal.check:
+ * inertia, a nodal diameter above N/2. */
 shb_status modal_sector_check(MPI_Comm comm, const modal_settings *settings);
 
 /* The nodal diameters wanted, ascending, with 0; their models are zero. Errors: SHB_ERR_IO no
  * memory. */
 shb_status modal_sector_list(const modal_settings *settings, modal_nodal_diameters *models);
 
-/* Add the other nodal diameters to that of 0.
+/* Add the other nodal diameters to that of 0; settings->modes is their number, not 0.
  *
  * The stiffness is that about the static equilibrium of nodal diameter 0. As many threads run as
  * OpenMP and the memory allow; the results do not depend on their number.

@@ -1,4 +1,5 @@
 #include "modal/stage/speed_range.h"
+#include "modal/stage/sector_modes.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -175,10 +176,14 @@ static shb_status choose_modes(MPI_Comm comm, const mesh_fe *mesh, const modal_s
   for (int i = 0; i < 2 && settings->modes == 0; i++) {
     modal_settings settings_here = *settings;
     modal_result   result;
-    settings_here.speed = range[i];
+    modal_sector   sector = {0};
+    settings_here.speed   = range[i];
     shb_progress_note(progress, "modes needed at %.6g rad/s", settings_here.speed);
-    shb_status status = modal_solve(comm, mesh, &settings_here, progress, &result);
+    shb_status status = mesh->image ? modal_sector_solve_enough(comm, mesh, &settings_here,
+                                                                progress, &result, &sector)
+                                    : modal_solve(comm, mesh, &settings_here, progress, &result);
     if (status == SHB_OK) *modes = PetscMax(*modes, result.model.n_modes);
+    modal_sector_free(&sector, &result);
     modal_result_free(&result);
     SHB_TRY(status);
   }

@@ -17,7 +17,7 @@
 #include "modal/model/sampled_receptance.h"
 #include "modal/stage/model_export.h"
 #include "modal/stage/sector_export.h"
-#include "modal/stage/sector_solve.h"
+#include "modal/stage/sector_modes.h"
 #include "modal/stage/speed_range.h"
 
 /* All mode shapes on rank 0, [m][n_nodes][3]; NULL elsewhere. Free with free. */
@@ -180,11 +180,11 @@ static shb_status run(MPI_Comm comm, int rank, const char *out_path, const mesh_
   if (settings->n_speeds > 1)
     status = modal_speed_range_solve(comm, mesh, settings, progress, &speeds,
                                      mesh->image ? &sector : NULL, &result);
+  else if (mesh->image)
+    status = modal_sector_solve_enough(comm, mesh, settings, progress, &result, &sector);
   else
     status = modal_solve(comm, mesh, settings, progress, &result);
   if (status == SHB_OK) status = gather_shapes(&result, rank, &of.shape);
-  if (status == SHB_OK && mesh->image && settings->n_speeds <= 1)
-    status = modal_sector_solve(mesh, settings, progress, &result, NULL, &sector);
   if (status == SHB_OK)
     status = modal_agree(comm, rank == 0 ? find_stresses(mesh, settings, &result, &of) : SHB_OK);
   if (status == SHB_OK)

@@ -105,6 +105,10 @@ void face_disc(const modal_model *face, int blades, double coriolis, modal_nodal
            (size_t)(face->n_load + 1) * m * sizeof(double complex));
     memcpy(re->residual_flexibility, face->residual_flexibility, rows * rows * sizeof(double));
     memcpy(re->residual_inertia, face->residual_inertia, rows * rows * sizeof(double));
+    if (face->position) {
+      re->position = malloc(rows * sizeof(double));
+      memcpy(re->position, face->position, rows * sizeof(double));
+    }
     add_smooth(n, 1, .2 * self, &seed, re->residual_flexibility);
     add_smooth(n, 1, .2 * inertia, &seed, re->residual_inertia);
     if (coriolis > 0) re->coriolis = folded(face->n_modes, -1, coriolis, &seed);

@@ -12,6 +12,7 @@
 #include "mhb/branches/forced_response.h"
 #include "tests/bench/shroud_face.h"
 #include "tests/support/check.h"
+#include "tests/support/random_disc.h"
 
 enum { PAIRS = 16 };
 
@@ -27,7 +28,7 @@ static int chosen_at(double tolerance, double *estimate) {
   contact_points *points;
   mhb_settings    s = settings_of();
   smooth_face_model(PAIRS, 150, &model);
-  assert_int_equal(contact_points_choose(&model, &s, tolerance, &points), SHB_OK);
+  assert_int_equal(contact_points_choose(&model, NULL, &s, tolerance, &points), SHB_OK);
   const int n = model.n_pairs;
   *estimate   = points ? points->estimate : 0;
   if (points) {
@@ -56,6 +57,38 @@ static void fewest_that_keep_the_tolerance(void **state) {
   assert_true(n[0] < PAIRS && n[3] == PAIRS && n[0] < n[2]);
 }
 
+/* The same of a disc; all its models are joined, and judged by the whole ones. */
+static void points_of_a_disc(void **state) {
+  (void)state;
+  int last = 0;
+  for (double tolerance = .5; tolerance > 1e-3; tolerance /= 30) {
+    modal_model           face;
+    modal_nodal_diameters disc;
+    contact_points       *points;
+    mhb_settings          s = settings_of();
+    smooth_face_model(PAIRS, 150, &face);
+    face_disc(&face, 6, 0, &disc);
+    modal_model_free(&face);
+    s.blades          = 6;
+    s.engine_order    = 1;
+    s.nodal_diameters = &disc;
+    modal_model first = disc.model[0];
+    assert_ok(contact_points_choose(&first, &disc, &s, tolerance, &points));
+    print_message("disc, tolerance %g: %d of %d, estimate %.2g\n", tolerance, first.n_pairs, PAIRS,
+                  points ? points->estimate : 0);
+    for (int n = 0; n < disc.n; n++) assert_int_equal(disc.model[n].n_pairs, first.n_pairs);
+    assert_true(first.n_pairs > last && first.right == disc.model[0].right);
+    last = first.n_pairs;
+    if (points) {
+      assert_below(points->estimate, tolerance);
+      assert_ptr_equal(points->pairs.nodal_diameters, &points->disc);
+      assert_int_equal(points->disc.model[1].n_pairs, PAIRS);
+    }
+    contact_points_free(points);
+    modal_nodal_diameters_free(&disc);
+  }
+}
+
 /* Every point of a response carries the estimate that the choice rests on. */
 static void points_carry_the_error(void **state) {
   (void)state;
@@ -66,7 +99,7 @@ static void points_carry_the_error(void **state) {
   int             judged = 0, beyond = 0, moving = 0;
   s.stability = MHB_STABILITY_NEVER;
   smooth_face_model(PAIRS, 150, &model);
-  assert_int_equal(contact_points_choose(&model, &s, .1, &points), SHB_OK);
+  assert_int_equal(contact_points_choose(&model, NULL, &s, .1, &points), SHB_OK);
   assert_non_null(points);
   s.other_pairs = &points->pairs;
   assert_int_equal(mhb_forced_response(&model, &s, NULL, NULL, NULL, &response), SHB_OK);
@@ -93,14 +126,14 @@ static void half_as_many_judge_a_fixed_number(void **state) {
   modal_model     model;
   contact_points *points;
   smooth_face_model(PAIRS, 150, &model);
-  assert_int_equal(contact_points_halve(&model, &points), SHB_OK);
+  assert_int_equal(contact_points_halve(&model, NULL, &points), SHB_OK);
   assert_int_equal(model.n_pairs, PAIRS);
   assert_int_equal(points->other.n_pairs, PAIRS / 2);
   assert_false(points->pairs.finer);
   contact_points_free(points);
   free(model.position);
   model.position = NULL;
-  assert_int_equal(contact_points_halve(&model, &points), SHB_OK);
+  assert_int_equal(contact_points_halve(&model, NULL, &points), SHB_OK);
   assert_null(points); /* without positions nothing is judged */
   modal_model_free(&model);
 }
@@ -108,6 +141,7 @@ static void half_as_many_judge_a_fixed_number(void **state) {
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(fewest_that_keep_the_tolerance),
+      cmocka_unit_test(points_of_a_disc),
       cmocka_unit_test(points_carry_the_error),
       cmocka_unit_test(half_as_many_judge_a_fixed_number),
   };

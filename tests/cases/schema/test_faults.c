@@ -552,14 +552,6 @@ static void a_disc_and_other_keys(void **state) {
   static const struct {
     const char *rest, *says;
   } rows[] = {
-      {"modal: {modes: auto}\nrotor: {blades: 4}\ncontact: {points: 1, mu: 1, ku: 1, kv: 1, n0: "
-       "1}\n",
-       "error: modal.modes: is auto, which a disc does not know; give the number of modes at each "
-       "nodal diameter"},
-      {"modal: {modes: 3}\nrotor: {blades: 4}\ncontact: {points: auto, mu: 1, ku: 1, kv: 1, n0: "
-       "1}\n",
-       "error: contact.points: is auto, which a disc does not know; give the number of points, or "
-       "all"},
       {"modal: {modes: 3}\nrotor: {blades: 4, mistuning: {deviation: 1 %, seed: 7}}\ncontact: "
        "{points: 1, mu: 1, ku: 1, kv: 1, n0: 1}\n",
        "error: rotor.mistuning: does not go with a disc, whose sectors are alike; leave it out, or "

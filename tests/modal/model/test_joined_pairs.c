@@ -13,6 +13,7 @@
 
 #include "mhb/structure/receptance.h"
 #include "tests/support/check.h"
+#include "tests/support/random_disc.h"
 #include "tests/support/random_model.h"
 
 enum { PAIRS = 16, HARMONICS = 2 };
@@ -86,6 +87,45 @@ static void receptance_is_the_mean(void **state) {
     modal_model_free(&few);
     modal_model_free(&all);
   }
+}
+
+/* The same at every nodal diameter of a disc, forwards and backwards. */
+static void receptance_of_a_disc_is_the_mean(void **state) {
+  (void)state;
+  modal_nodal_diameters all, few;
+  modal_joining         j;
+  unsigned long long    seed = 5;
+  const int    parts = WITH_LEFT | WITH_RESIDUAL | WITH_RESIDUAL_MODES | WITH_NORMALS | WITH_AREAS;
+  mhb_settings s     = random_settings(HARMONICS);
+  random_disc(PAIRS, s.blades, parts, true, 3, &all);
+  double *position = malloc(3 * (size_t)PAIRS * sizeof *position);
+  for (int i = 0; i < 3 * PAIRS; i++) position[i] = random_unit(&seed);
+  for (int n = 0; n < all.n; n++) {
+    modal_model *m = &all.model[n];
+    memcpy(m->normal, all.model[0].normal, 3 * (size_t)PAIRS * sizeof(double));
+    memcpy(m->area, all.model[0].area, (size_t)PAIRS * sizeof(double));
+    m->position = malloc(3 * (size_t)PAIRS * sizeof(double));
+    memcpy(m->position, position, 3 * (size_t)PAIRS * sizeof(double));
+  }
+  assert_ok(modal_joining_create(&all.model[0], 5, &j));
+  assert_ok(modal_join_diameters(&all, &j, &few));
+  for (s.engine_order = 1; s.engine_order <= 5; s.engine_order += 4) {
+    s.nodal_diameters = &all;
+    mhb_receptance *a = receptance_of(&all.model[0], &s);
+    s.nodal_diameters = &few;
+    mhb_receptance *b = receptance_of(&few.model[0], &s);
+    for (int k = 0; k <= HARMONICS; k++) {
+      const double d = difference(&j, a, b, k);
+      print_message("disc, engine order %d, k = %d: %.1e\n", s.engine_order, k, d);
+      assert_below(d, 1e-12);
+    }
+    mhb_receptance_destroy(a);
+    mhb_receptance_destroy(b);
+  }
+  modal_joining_free(&j);
+  modal_nodal_diameters_free(&few);
+  modal_nodal_diameters_free(&all);
+  free(position);
 }
 
 /* Twice as many patches cut each patch in two. The areas of 4 patches differ by two pairs at
@@ -176,6 +216,7 @@ static void faults_are_told(void **state) {
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(receptance_is_the_mean),
+      cmocka_unit_test(receptance_of_a_disc_is_the_mean),
       cmocka_unit_test(patches_are_nested),
       cmocka_unit_test(all_patches_change_nothing),
       cmocka_unit_test(spread_forces_do_the_same_work),
