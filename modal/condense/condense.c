@@ -27,14 +27,15 @@ enum {
  * eigenvalue of the last mode. */
 static const double NEGLIGIBLE = 1e-10;
 
-/* Right-hand sides: contact dofs, then load patterns; and the matrices of one batch of them. V_i
- * and mu_i are those of modal/condense/residual_modes.h. */
+/* Right-hand sides: contact dofs, then load patterns, whose residual terms are wanted. Then, if they
+ * fit, the probes: residual modes made of them too are as accurate there. And the matrices of one
+ * batch of them. V_i and mu_i are those of modal/condense/residual_modes.h. */
 typedef struct {
   int                       batch; /* columns */
   const fem_system         *system;
   const modal_eigen        *eigen;
   const modal_condensation *to;
-  int                       n_contact, n_column;
+  int                       n_contact, n_term, n_column; /* n_term without the probes */
   modal_dofs                column;
   Mat                       B, X, Y; /* [3 n_free][batch] */
   double *sample[BLOCKS];            /* [column][batch] V_0, V_1, V_2 at the columns' own dofs */
@@ -205,6 +206,7 @@ static void add_load(const workspace *w, int pattern, const double *sample, int 
 static void store_terms(const workspace *w, int first, int count, modal_model *model) {
   const int       nc = w->n_contact, q3 = w->to->probe.n;
   const int       contacts        = first + count <= nc ? count : PetscMax(nc - first, 0);
+  const int       terms           = PetscMin(count, w->n_term - first);
   double         *contact[]       = {model->residual_flexibility, model->residual_inertia,
                                      model->residual_fourth};
   double         *probe_contact[] = {model->probe_contact_residual, model->probe_contact_inertia,
@@ -215,7 +217,7 @@ static void store_terms(const workspace *w, int first, int count, modal_model *m
   for (int t = 0; t < BLOCKS; t++) {
     put_columns(w, w->sample[t], nc, first, contacts, contact[t]);
     put_columns(w, w->probe[t], q3, first, contacts, probe_contact[t]);
-    for (int c = contacts; c < count; c++) {
+    for (int c = contacts; c < terms; c++) {
       add_load(w, first + c - nc, w->sample[t], c, nc, load[t]);
       add_load(w, first + c - nc, w->probe[t], c, q3, probe_load[t]);
     }
@@ -282,8 +284,8 @@ static void store_residual_modes(const workspace *w, const modal_residual_modes 
   }
 }
 
-/* Scale of each column: the largest contact receptance for contact dofs, its own for a load
- * pattern. */
+/* Scale of each column: the largest contact receptance for contact dofs, its own for a load pattern
+ * or a probe. */
 static void set_scales(const workspace *w, double *scale) {
   const size_t next = (size_t)w->batch + 1;
   double       most = 0;
@@ -337,11 +339,22 @@ static void symmetrise(double *a, size_t n) {
     for (size_t j = 0; j < i; j++) a[i * n + j] = a[j * n + i] = (a[i * n + j] + a[j * n + i]) / 2;
 }
 
+/* Residual modes need all columns in one batch. */
+static bool fits_single_batch(const workspace *w, int n_column) {
+  const double room = (double)MAX_NUMBERS / (3. * 3 * (double)w->system->n_free);
+  return n_column <= MAX_COLUMNS && n_column <= room;
+}
+
 static shb_status create_columns(workspace *w) {
-  w->n_contact = w->to->contact.n;
-  w->n_column  = w->n_contact + w->to->load.dofs.n;
+  const int with_probes = w->to->contact.n + w->to->load.dofs.n + w->to->probe.n;
+  w->n_contact          = w->to->contact.n;
+  w->n_column = w->n_term = w->n_contact + w->to->load.dofs.n;
   SHB_TRY(modal_dofs_append(&w->column, &w->to->contact));
   SHB_TRY(modal_dofs_append(&w->column, &w->to->load.dofs));
+  if (w->n_contact > 0 && fits_single_batch(w, with_probes)) {
+    w->n_column = with_probes;
+    SHB_TRY(modal_dofs_append(&w->column, &w->to->probe));
+  }
   for (int i = 0; i < 2; i++) {
     w->tail[i] = calloc((size_t)w->n_column + 1, sizeof(double));
     SHB_CHECK(w->tail[i], SHB_ERR_IO, "out of memory for the condensation");
@@ -380,12 +393,6 @@ static PetscErrorCode destroy_workspace(workspace *w) {
   PetscFunctionReturn(0);
 }
 
-/* Residual modes need all columns in one batch. */
-static bool fits_single_batch(const workspace *w) {
-  const double room = (double)MAX_NUMBERS / (3. * 3 * (double)w->system->n_free);
-  return w->n_column <= MAX_COLUMNS && w->n_column <= room;
-}
-
 /* Columns of a batch where not all fit in one. */
 static int batch_size(const workspace *w) {
   const double room = (double)BATCH_NUMBERS / (3. * (double)w->system->n_free);
@@ -419,7 +426,7 @@ static shb_status fill(workspace *w, shb_progress *progress, modal_model *model)
     drop_residual_terms(model);
     return SHB_OK;
   }
-  const bool single_batch = fits_single_batch(w);
+  const bool single_batch = fits_single_batch(w, w->n_column);
   const int  batch        = single_batch ? n : batch_size(w);
   FEM_PETSC(create_batch(w, batch));
   for (int first = 0; first < n; first += batch) {

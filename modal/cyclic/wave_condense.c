@@ -15,14 +15,15 @@ static const double NEGLIGIBLE = 1e-10;
 
 static const double complex one = 1, zero = 0;
 
-/* Right-hand sides: contact dofs, then load patterns; and the vectors of one batch of them. V_i and
- * mu_i are those of modal/condense/residual_modes.h. */
+/* Right-hand sides: contact dofs, load patterns and, if they fit, the probes, as in
+ * modal/condense/condense.c; and the vectors of one batch of them. V_i and mu_i are those of
+ * modal/condense/residual_modes.h. */
 typedef struct {
   wave_operator            *op;
   const wave_modes         *modes;
   const modal_condensation *to;
   modal_model              *model, *imaginary, *backward;
-  int                       n_contact, n_column, batch;
+  int                       n_contact, n_term, n_column, batch;
   modal_dofs                column;
   double complex           *X, *Y, *MX;         /* [batch][order] */
   double complex           *C;                  /* [batch][modes] */
@@ -241,6 +242,7 @@ static void store_terms(const workspace *w, int first, int count) {
   const modal_model *m = w->model, *i = w->imaginary, *b = w->backward;
   const int          nc = w->n_contact, q3 = w->to->probe.n;
   const int          contacts           = first + count <= nc ? count : nc > first ? nc - first : 0;
+  const int          terms              = first + count <= w->n_term ? count : w->n_term - first;
   double            *contact[][2]       = {{m->residual_flexibility, i->residual_flexibility},
                                            {m->residual_inertia, i->residual_inertia},
                                            {m->residual_fourth, i->residual_fourth}};
@@ -256,7 +258,7 @@ static void store_terms(const workspace *w, int first, int count) {
   for (int t = 0; t < BLOCKS; t++) {
     put_columns(w, w->sample[t], nc, first, contacts, contact[t][0], contact[t][1]);
     put_columns(w, w->probe[t], q3, first, contacts, probe_contact[t][0], probe_contact[t][1]);
-    for (int c = contacts; c < count; c++) {
+    for (int c = contacts; c < terms; c++) {
       add_load(w, first + c - nc, nc, w->batch, w->sample[t] + c, load[t][0], load[t][1]);
       if (q3 > 0)
         add_load(w, first + c - nc, q3, w->batch, w->probe[t] + c, probe_load[t][0],
@@ -381,11 +383,21 @@ static shb_status create_residual_modes(workspace *w) {
 
 /* ------------------------------------------------------------------ together */
 
+/* Residual modes need all columns in one batch. */
+static bool fits_single_batch(const workspace *w, int n_column) {
+  return n_column <= MAX_COLUMNS && n_column <= (double)MAX_NUMBERS / (3. * (double)w->op->order);
+}
+
 static shb_status create_columns(workspace *w) {
-  w->n_contact = w->to->contact.n;
-  w->n_column  = w->n_contact + w->to->load.dofs.n;
+  const int with_probes = w->to->contact.n + w->to->load.dofs.n + w->to->probe.n;
+  w->n_contact          = w->to->contact.n;
+  w->n_column = w->n_term = w->n_contact + w->to->load.dofs.n;
   SHB_TRY(modal_dofs_append(&w->column, &w->to->contact));
   SHB_TRY(modal_dofs_append(&w->column, &w->to->load.dofs));
+  if (fits_single_batch(w, with_probes)) {
+    w->n_column = with_probes;
+    SHB_TRY(modal_dofs_append(&w->column, &w->to->probe));
+  }
   for (int i = 0; i < 2; i++) {
     w->tail[i] = calloc((size_t)w->n_column + 1, sizeof **w->tail);
     SHB_CHECK(w->tail[i], SHB_ERR_IO, "out of memory for the condensation");
@@ -440,18 +452,12 @@ static void symmetrise(double *re, double *im, size_t n) {
     }
 }
 
-/* Residual modes need all columns in one batch. */
-static bool fits_single_batch(const workspace *w) {
-  return w->n_column <= MAX_COLUMNS &&
-         w->n_column <= (double)MAX_NUMBERS / (3. * (double)w->op->order);
-}
-
 static shb_status fill(workspace *w) {
   SHB_TRY(create_columns(w));
   SHB_TRY(fill_shapes(w));
   const int n = w->n_column, nc = w->n_contact;
   if (nc == 0) return SHB_OK;
-  const bool single_batch = fits_single_batch(w);
+  const bool single_batch = fits_single_batch(w, w->n_column);
   SHB_TRY(create_batch(w, single_batch || n < BATCH ? n : BATCH));
   for (int first = 0; first < n; first += w->batch) {
     const int count = n - first < w->batch ? n - first : w->batch;
