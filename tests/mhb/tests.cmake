@@ -33,7 +33,7 @@ shb_test(mhb/response response_samples shb_mhb_response)
 shb_test(mhb/response modal_motion tests_models)
 shb_test(mhb/response face_wear tests_models)
 shb_test(mhb/response direct_stress tests_fem tests_models shb_modal)
-shb_test(mhb/branches stiff_disc tests_fem tests_models shb_modal)
+shb_test(mhb/branches stiff_disc tests_fem tests_box tests_models shb_modal shb_mesh_blade)
 shb_test(mhb/branches disc_run_up tests_fem tests_models shb_modal)
 foreach(noun balance stick_stiffness condensation multistart newton ring_system subharmonics
     truncation_error truncation_step modal_error spatial_error stuck_solver coriolis
