@@ -3,6 +3,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "modal/hdf5/h5.h"
 #include "postproc/analysis/file_origin.h"
 #include "postproc/field/field_grid.h"
 #include "postproc/field/field_scene.h"
@@ -137,16 +138,82 @@ static shb_status gather(const field_options *o, const char *modal, material *m)
   return SHB_OK;
 }
 
+/* ---------------------------------------------------------------- a mode */
+
+/* Greatest displacement of a mode in the files, m. */
+static const double MODE_SIZE = 1e-3;
+
+/* Hz, of a mode of the file. */
+static shb_status mode_frequency(const char *path, const post_blade_field *f, int mode,
+                                 int diameter, double *frequency) {
+  char     name[64] = "/modes/frequency";
+  h5_shape shape    = H5_SHAPE((hsize_t)f->n_modes);
+  double  *all;
+  hid_t    file;
+  if (diameter >= 0) snprintf(name, sizeof name, "/nodal_diameter_%d/modes/frequency", diameter);
+  SHB_TRY(h5_open(path, &file));
+  shb_status status = h5_read_double(file, name, &shape, &all);
+  h5_close(file);
+  SHB_TRY(status);
+  *frequency = all[mode - 1];
+  free(all);
+  return SHB_OK;
+}
+
+/* The nodal diameter asked for, 0 by default; -1 without a disc. */
+static shb_status find_diameter(const field_options *o, const post_blade_field *f, int *diameter) {
+  *diameter = f->n_waves > 0 && o->diameter < 0 ? 0 : o->diameter;
+  SHB_CHECK(f->n_waves > 0 || o->diameter < 0, SHB_ERR_INPUT,
+            "--nodal-diameter: %s holds a clamped blade; leave it out", o->response);
+  SHB_CHECK(f->n_waves > 0 || !o->ring, SHB_ERR_INPUT,
+            "--ring: %s holds the modes of one clamped blade", o->response);
+  for (int i = 0; i < f->n_waves; i++)
+    if (f->diameter[i] == *diameter) return SHB_OK;
+  SHB_CHECK(f->n_waves == 0, SHB_ERR_INPUT,
+            "--nodal-diameter %d: %s does not hold it; modal.nodal_diameters: all computes all",
+            *diameter, o->response);
+  return SHB_OK;
+}
+
+static shb_status gather_mode(const field_options *o, material *m) {
+  int    diameter;
+  double frequency = 0;
+  SHB_TRY(post_blade_field_read_motion(o->response, &m->field));
+  SHB_CHECK(m->field.n_nodes > 0, SHB_ERR_INPUT,
+            "%s has no /mesh or no modes/stress; make it with shroudhb modal", o->response);
+  SHB_CHECK(o->mode <= m->field.n_modes, SHB_ERR_INPUT, "--mode %d: %s has the modes 1 to %d",
+            o->mode, o->response, m->field.n_modes);
+  SHB_TRY(find_diameter(o, &m->field, &diameter));
+  SHB_TRY(post_blade_field_read_wave(&m->field, o->response, diameter));
+  SHB_TRY(mode_frequency(o->response, &m->field, o->mode, diameter, &frequency));
+  SHB_TRY(post_origin_open(o->response, &m->modal));
+  SHB_TRY(post_origin_open(o->response, &m->origin));
+  return post_period_of_mode(&m->field, o->mode, diameter, frequency, MODE_SIZE,
+                             axis_of(m->modal.settings), &m->period);
+}
+
+/* ---------------------------------------------------------------- files */
+
 static void output_path(const field_options *o, const post_period *p, const char *ending,
                         char out[PATH]) {
   const int stem      = field_stem(o->response);
   char      point[40] = "";
-  if (o->point >= 0 || o->peak > 0 || o->branch >= 0)
+  if (p->mode > 0 && p->diameter >= 0)
+    snprintf(point, sizeof point, "_mode_%d_%d", p->diameter, p->mode);
+  else if (p->mode > 0)
+    snprintf(point, sizeof point, "_mode_%d", p->mode);
+  else if (o->point >= 0 || o->peak > 0 || o->branch >= 0)
     snprintf(point, sizeof point, "_%d_%d", p->branch, p->point);
   snprintf(out, PATH, "%.*s.%s%s.%s", stem, o->response, o->ring ? "ring" : "field", point, ending);
 }
 
 static void print_note(const post_period *p, const post_scene_note *note, FILE *out) {
+  if (p->mode > 0) {
+    if (p->diameter >= 0) fprintf(out, "nodal diameter %d, ", p->diameter);
+    fprintf(out, "mode %d: %.6g Hz; at a greatest displacement of %.4g mm von Mises is %.4g MPa\n",
+            p->mode, p->frequency, 1e3 * MODE_SIZE, note->greatest_stress / 1e6);
+    return;
+  }
   fprintf(out, "branch %d, point %d: %.6g Hz, greatest displacement %.4g mm, von Mises %.4g MPa\n",
           p->branch, p->point, p->frequency, 1e3 * note->greatest_displacement,
           note->greatest_stress / 1e6);
@@ -155,12 +222,17 @@ static void print_note(const post_period *p, const post_scene_note *note, FILE *
 }
 
 static shb_status publish(const field_options *o, const material *m, FILE *out) {
-  char            grid[PATH], picture[PATH], settings[128];
-  const int       steps = o->steps > 0 ? o->steps : STEPS;
-  post_buffer     glb   = {0};
-  post_scene_note note;
-  snprintf(settings, sizeof settings, "branch = %d\npoint = %d\nsteps = %d\nring = %d\n",
-           m->period.branch, m->period.point, steps, o->ring);
+  char               grid[PATH], picture[PATH], settings[128];
+  const int          steps = o->steps > 0 ? o->steps : STEPS;
+  post_buffer        glb   = {0};
+  post_scene_note    note;
+  const post_period *p = &m->period;
+  if (p->mode > 0)
+    snprintf(settings, sizeof settings, "mode = %d\nnodal_diameter = %d\nsteps = %d\nring = %d\n",
+             p->mode, p->diameter, steps, o->ring);
+  else
+    snprintf(settings, sizeof settings, "branch = %d\npoint = %d\nsteps = %d\nring = %d\n",
+             p->branch, p->point, steps, o->ring);
   const shb_provenance provenance = {m->origin.case_path, m->origin.case_text, settings,
                                      "shroudhb-field"};
   output_path(o, &m->period, "vtkhdf", grid);
@@ -181,7 +253,9 @@ shb_status field_command(const field_options *options, FILE *out) {
   material m = {0};
   snprintf(beside, sizeof beside, "%.*s.modal.h5", field_stem(options->response),
            options->response);
-  shb_status status = gather(options, options->modal ? options->modal : beside, &m);
+  shb_status status = options->mode > 0
+                          ? gather_mode(options, &m)
+                          : gather(options, options->modal ? options->modal : beside, &m);
   if (status == SHB_OK) status = publish(options, &m, out);
   release(&m);
   return status;

@@ -38,6 +38,8 @@ static int take(const char *word, const char *value, field_options *out) {
   } numbers[] = {{"--branch", 0, INT_MAX, &out->branch},
                  {"--point", 0, INT_MAX, &out->point},
                  {"--peak", 1, INT_MAX, &out->peak},
+                 {"--mode", 1, INT_MAX, &out->mode},
+                 {"--nodal-diameter", 0, INT_MAX, &out->diameter},
                  {"--steps", POST_LEAST_STEPS, POST_MOST_STEPS, &out->steps}};
   for (size_t i = 0; i < sizeof numbers / sizeof *numbers; i++)
     if (strcmp(word, numbers[i].option) == 0)
@@ -60,7 +62,8 @@ static bool is_bare_peak(const char *word, const char *value) {
 }
 
 int field_options_take(int *argc, char **argv, field_options *out) {
-  *out  = (field_options){.branch = -1, .point = -1, .peak = -1, .steps = -1, .scale = -1};
+  *out = (field_options){
+      .branch = -1, .point = -1, .peak = -1, .mode = -1, .diameter = -1, .steps = -1, .scale = -1};
   int n = 1;
   for (int i = 1; i < *argc; i++) {
     const char *value = i + 1 < *argc ? argv[i + 1] : NULL;
@@ -79,13 +82,16 @@ int field_options_take(int *argc, char **argv, field_options *out) {
   if (out->point >= 0 && out->branch < 0) return refuse("--point", "--branch");
   if (out->point >= 0 && out->peak >= 0) return refuse("--peak", "no --point");
   if (out->face && out->ring) return refuse("--face", "no --ring");
+  if (out->mode >= 0 && (out->branch >= 0 || out->peak >= 0 || out->face || out->modal))
+    return refuse("--mode", "no --branch, --point, --peak, --face, --modal");
+  if (out->diameter >= 0 && out->mode < 0) return refuse("--nodal-diameter", "--mode");
   return -1;
 }
 
 int field_stem(const char *path) {
-  static const char *const ending[] = {".response.h5", ".h5"};
+  static const char *const ending[] = {".response.h5", ".modal.h5", ".h5"};
   const size_t             n        = strlen(path);
-  for (int i = 0; i < 2; i++) {
+  for (size_t i = 0; i < sizeof ending / sizeof *ending; i++) {
     const size_t m = strlen(ending[i]);
     if (n > m && strcmp(path + n - m, ending[i]) == 0) return (int)(n - m);
   }

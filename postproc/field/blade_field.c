@@ -207,15 +207,31 @@ static shb_status read_wave_data(hid_t file, int diameter, const char *name, int
   return h5_read_complex(file, path, &shape, data);
 }
 
+static shb_status read_modes(hid_t file, const post_blade_field *f, int i) {
+  post_wave_field *w = &f->wave[i];
+  const int        n = f->n_nodes, d = f->diameter[i], m = f->n_modes;
+  SHB_TRY(read_wave_data(file, d, "modes/stress", m, n, POST_STRESSES, &w->stress));
+  return f->motion ? read_wave_data(file, d, "modes/shape", m, n, 3, &w->shape) : SHB_OK;
+}
+
 static shb_status read_wave(hid_t file, const post_blade_field *f, int i) {
   post_wave_field *w = &f->wave[i];
-  const int        n = f->n_nodes, d = f->diameter[i], m = f->n_modes, c = f->n_column;
-  SHB_TRY(read_wave_data(file, d, "modes/stress", m, n, POST_STRESSES, &w->stress));
-  if (f->motion) SHB_TRY(read_wave_data(file, d, "modes/shape", m, n, 3, &w->shape));
+  const int        n = f->n_nodes, d = f->diameter[i], c = f->n_column;
+  SHB_TRY(read_modes(file, f, i));
   if (c == 0) return SHB_OK;
   SHB_TRY(read_wave_data(file, d, "residual/stress", c, n, POST_STRESSES, &w->residual));
   if (f->motion) SHB_TRY(read_wave_data(file, d, "residual/shape", c, n, 3, &w->residual_shape));
   return SHB_OK;
+}
+
+shb_status post_blade_field_read_wave(post_blade_field *f, const char *path, int n) {
+  hid_t      file;
+  shb_status status = SHB_OK;
+  SHB_TRY(h5_open(path, &file));
+  for (int i = 0; i < f->n_waves && status == SHB_OK; i++)
+    if (f->diameter[i] == n && !f->wave[i].stress) status = read_modes(file, f, i);
+  h5_close(file);
+  return status;
 }
 
 int post_blade_wave(const post_blade_field *f, const mhb_branch *b, int k, bool *backward) {

@@ -56,6 +56,10 @@ void       post_blade_field_free(post_blade_field *field); /* also on a zeroed s
 shb_status post_blade_field_match(post_blade_field *field, const mhb_response *response,
                                   const char *path);
 
+/* Read the modes of nodal diameter n from the modal file at path, without the residual columns. It
+ * must be one of field->diameter. Errors: those of h5_open and h5_read_complex. */
+shb_status post_blade_field_read_wave(post_blade_field *field, const char *path, int n);
+
 /* Index in field->wave of the nodal diameter of harmonic k of a branch. -1: the file lacks it. Of a
  * blade without a disc it is 0. *backward: the harmonic has the conjugate fields. */
 int post_blade_wave(const post_blade_field *field, const mhb_branch *branch, int k, bool *backward);

@@ -220,10 +220,15 @@ static shb_status describe(const writer *w) {
 static shb_status put_all(hid_t file, const writer *w) {
   const post_period *p = w->period;
   SHB_TRY(h5_write_provenance(file, "shroudhb field", 1, w->provenance));
-  SHB_TRY(h5_write_attribute_int(file, "/", "branch", p->branch));
-  SHB_TRY(h5_write_attribute_int(file, "/", "point", p->point));
-  SHB_TRY(h5_write_attribute_int(file, "/", "order", p->order));
-  SHB_TRY(h5_write_attribute_int(file, "/", "engine_order", p->engine_order));
+  if (p->mode > 0) {
+    SHB_TRY(h5_write_attribute_int(file, "/", "mode", p->mode));
+    if (p->diameter >= 0) SHB_TRY(h5_write_attribute_int(file, "/", "nodal_diameter", p->diameter));
+  } else {
+    SHB_TRY(h5_write_attribute_int(file, "/", "branch", p->branch));
+    SHB_TRY(h5_write_attribute_int(file, "/", "point", p->point));
+    SHB_TRY(h5_write_attribute_int(file, "/", "order", p->order));
+    SHB_TRY(h5_write_attribute_int(file, "/", "engine_order", p->engine_order));
+  }
   SHB_TRY(h5_write_attribute_int(file, "/", "blades", p->blades));
   SHB_TRY(h5_write_attribute_double(file, "/", "frequency", p->frequency));
   SHB_TRY(put_mesh(w));

@@ -1,6 +1,7 @@
 #include "postproc/field/whole_period.h"
 
 #include <cblas.h>
+#include <complex.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -39,6 +40,66 @@ shb_status post_period_create(const post_blade_field *field, const mhb_response 
             n);
   SHB_TRY(post_blade_displacement(field, b, kept, p->displacement));
   return post_blade_stress(field, b, kept, p->stress);
+}
+
+/* m kg^-1/2, greatest displacement of a node in a mode over the period. The node moves on an
+ * ellipse whose half axis is sqrt((|u|^2 + |u.u|)/2). */
+static double greatest_of_mode(int n, const double *re, const double *im) {
+  double most = 0;
+  for (int i = 0; i < n; i++) {
+    double         length = 0;
+    double complex square = 0;
+    for (int d = 0; d < 3; d++) {
+      const double complex u = CMPLX(re[3 * i + d], im[3 * i + d]);
+      length += creal(u * conj(u));
+      square += u * u;
+    }
+    most = fmax(most, sqrt(0.5 * (length + cabs(square))));
+  }
+  return most;
+}
+
+/* rows[2][n]: real and imaginary part of a mode, from shapes [modes][n]. */
+static void take_mode(int mode, int n, const double *real, const double complex *wave,
+                      double *rows) {
+  const size_t at = (size_t)(mode - 1) * (size_t)n;
+  for (int i = 0; i < n; i++) {
+    rows[i]     = wave ? creal(wave[at + (size_t)i]) : real[at + (size_t)i];
+    rows[n + i] = wave ? cimag(wave[at + (size_t)i]) : 0;
+  }
+}
+
+shb_status post_period_of_mode(const post_blade_field *field, int mode, int diameter,
+                               double frequency, double size, mesh_axis axis, post_period *p) {
+  const int              n = field->n_nodes;
+  const post_wave_field *w = NULL;
+  for (int i = 0; i < field->n_waves; i++)
+    if (field->diameter[i] == diameter) w = &field->wave[i];
+  *p = (post_period){.field        = field,
+                     .branch       = -1,
+                     .point        = -1,
+                     .mode         = mode,
+                     .diameter     = diameter,
+                     .n_harmonics  = 1,
+                     .order        = 1,
+                     .frequency    = frequency,
+                     .closes       = w != NULL,
+                     .engine_order = w ? diameter : 0,
+                     .blades       = field->blades,
+                     .axis         = axis};
+  if (w) p->lag = SHB_TWO_PI * diameter / field->blades;
+  p->displacement = calloc(4 * 3 * (size_t)n + 1, sizeof *p->displacement);
+  p->stress       = calloc(4 * (size_t)POST_STRESSES * (size_t)n + 1, sizeof *p->stress);
+  SHB_CHECK(p->displacement && p->stress, SHB_ERR_IO, "out of memory for the field of %d nodes", n);
+  double *shape = p->displacement + 6 * (size_t)n;
+  double *sigma = p->stress + 2 * (size_t)POST_STRESSES * (size_t)n;
+  take_mode(mode, 3 * n, field->shape, w ? w->shape : NULL, shape);
+  take_mode(mode, POST_STRESSES * n, field->stress, w ? w->stress : NULL, sigma);
+  const double most = greatest_of_mode(n, shape, shape + 3 * (size_t)n);
+  SHB_CHECK(most > 0, SHB_ERR_INPUT, "mode %d does not move", mode);
+  cblas_dscal(6 * n, size / most, shape, 1);
+  cblas_dscal(2 * POST_STRESSES * n, size / most, sigma, 1);
+  return SHB_OK;
 }
 
 void post_period_free(post_period *p) {

@@ -11,12 +11,14 @@
  * it. */
 typedef struct {
   const post_blade_field *field;
-  int                     branch, point; /* of the response */
-  int                     n_harmonics;   /* the highest that moves */
-  int                     order;         /* nu: the motion repeats after nu excitation periods */
-  double                  frequency;     /* Hz, of the excitation */
-  bool                    closes;        /* the wave around the ring; else only blade 0 counts */
-  double                  lag;           /* rad, of the right neighbour at harmonic 1 */
+  int                     branch, point;  /* of the response; -1: of a mode */
+  int                     mode, diameter; /* of the modal file, from 1, and its nodal diameter, -1
+                                           * without a disc; mode 0: a point of the response */
+  int                     n_harmonics;    /* the highest that moves */
+  int                     order;          /* nu: the motion repeats after nu excitation periods */
+  double                  frequency;      /* Hz, of the excitation */
+  bool                    closes;         /* the wave around the ring; else only blade 0 counts */
+  double                  lag;            /* rad, of the right neighbour at harmonic 1 */
   int                     engine_order, blades;
   mesh_axis               axis;
   double                 *displacement; /* [2 k + (0 real, 1 imaginary)][n][3] m, mesh axes */
@@ -27,6 +29,13 @@ typedef struct {
  * SHB_ERR_IO no memory. */
 shb_status post_period_create(const post_blade_field *field, const mhb_response *response,
                               int branch, int kept, mesh_axis axis, post_period *period);
+/* Free vibration in a mode, such that the greatest displacement of a node is `size`, m. Of a disc it
+ * is the wave of a nodal diameter that runs forwards.
+ *   mode       in  from 1
+ *   diameter   in  of a disc, one of field->diameter that was read; else -1
+ *   frequency  in  Hz */
+shb_status post_period_of_mode(const post_blade_field *field, int mode, int diameter,
+                               double frequency, double size, mesh_axis axis, post_period *period);
 void       post_period_free(post_period *period); /* also on a zeroed struct */
 
 /* s, after which the motion repeats. */

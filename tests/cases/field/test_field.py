@@ -431,6 +431,65 @@ def check_disc():
     assert float(row['amplitude']) > 0
 
 
+def check_modes():
+    """Modes of the modal file: one sector by nodal diameter, and the wave around all of them."""
+    theta = 2 * np.pi / 60
+    for n, mode in ((0, 1), (4, 2), (12, 3)):
+        words = ('shroudhb', 'field', '--steps', '8', '--mode', str(mode))
+        run(*words, '--nodal-diameter', str(n), 'disc.modal.h5')
+        run(*words, '--nodal-diameter', str(n), '--ring', 'disc.modal.h5')
+        with h5py.File('disc.modal.h5') as file:
+            group = file[f'nodal_diameter_{n}/modes']
+            shape, stress, hz = (group[k][mode - 1] for k in ('shape', 'stress', 'frequency'))
+            shape, stress = (x['r'] + 1j * x['i'] if x.dtype.names else x for x in (shape, stress))
+        nodes = len(shape)
+        instants = np.exp(2j * np.pi * np.arange(3600) / 3600)[:, None]
+        axes = (np.abs(shape) ** 2).sum(1), np.abs((shape ** 2).sum(1))
+        scale = 1e-3 / np.sqrt((axes[0] + axes[1]).max() / 2)
+        worst = np.argmax(axes[0] + axes[1])
+        over = np.linalg.norm(np.real(scale * shape[worst] * instants), axis=1).max()
+        check(f'nodal diameter {n}, mode {mode}: greatest displacement', abs(over / 1e-3 - 1), 1e-5)
+        with h5py.File(f'disc.field_mode_{n}_{mode}.vtkhdf') as file:
+            check_structure(file, 1)
+            assert file.attrs['mode'] == mode and file.attrs['nodal_diameter'] == n
+            assert 'branch' not in file.attrs
+            vtk = file['VTKHDF']
+            u, s = vtk['PointData/displacement'][:], vtk['PointData/stress'][:]
+            check('period of the mode', abs(vtk['Steps/Values'][1] * 8 * hz - 1), 1e-12)
+            for step in range(8):
+                turn = scale * np.exp(2j * np.pi * step / 8)
+                rows = slice(step * nodes, (step + 1) * nodes)
+                check('motion of the mode', largest(u[rows] - np.real(turn * shape)) / 1e-3, 1e-12)
+                check('stress of the mode', largest(s[rows] - np.real(turn * stress)) /
+                      largest(scale * stress), 2e-7)
+        with h5py.File(f'disc.ring_mode_{n}_{mode}.vtkhdf') as file:
+            check_structure(file, 60)
+            u = file['VTKHDF/PointData/displacement'][:].reshape(8, 60, nodes, 3)
+            for b in (0, 1, 17, 59):
+                late = scale * np.exp(2j * np.pi / 8 * 3 - 1j * n * theta * b)
+                wanted = np.real(late * shape) @ rotation(2 * np.pi * b / 60).T
+                check('sector of the wave', largest(u[3, b] - wanted) / 1e-3, 1e-6)
+        check_sides(f'disc.ring_mode_{n}_{mode}.vtkhdf', 60)
+        check_vtk(f'disc.field_mode_{n}_{mode}.vtkhdf')
+    run('shroudhb', 'field', '--quiet', '--mode', '2', 'blade.modal.h5')
+    with h5py.File('blade.field_mode_2.vtkhdf') as file, h5py.File('blade.modal.h5') as modal:
+        shape = modal['modes/shape'][1]
+        scale = 1e-3 / np.linalg.norm(shape, axis=1).max()
+        check('mode of a clamped blade',
+              largest(file['VTKHDF/PointData/displacement'][:len(shape)] - scale * shape), 1e-15)
+        assert 'nodal_diameter' not in file.attrs
+    field = ['shroudhb', 'field']
+    refused(field + ['--mode', '9', 'disc.modal.h5'], '--mode 9: disc.modal.h5 has the modes 1 to 8')
+    refused(field + ['--mode', '1', '--nodal-diameter', '31', 'disc.modal.h5'],
+            '--nodal-diameter 31: disc.modal.h5 does not hold it')
+    refused(field + ['--mode', '1', '--nodal-diameter', '0', 'blade.modal.h5'],
+            '--nodal-diameter: blade.modal.h5 holds a clamped blade')
+    refused(field + ['--mode', '1', '--ring', 'blade.modal.h5'],
+            '--ring: blade.modal.h5 holds the modes of one clamped blade')
+    refused(field + ['--nodal-diameter', '1', 'disc.modal.h5'], '--nodal-diameter needs --mode')
+    refused(field + ['--mode', '1', '--peak', '1', 'disc.modal.h5'], '--mode needs no --branch')
+
+
 def check_gauge():
     """Against Hooke's law for the nodal stress at the nearest node: both err by the mesh size."""
     with open('blade.gauge.csv', newline='') as source:
@@ -552,6 +611,7 @@ def main():
     check_scene('own', branch, highest, 'own.ring.glb', 14, BLADES)
     check_rigid_disc(branch, highest)
     check_disc()
+    check_modes()
 
     check_face()
     free = next(i for i in range(10**6) if i not in points)
