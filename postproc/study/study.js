@@ -879,6 +879,19 @@
 
   /* ---------------------------------------------------------------- uncertainty */
   const confidence = U ? number(100 * U.confidence, 3, false) + NBSP + "%" : "";
+  /* An interval in words; so few samples may not give one of its bounds. */
+  function interval(o, [, lo, hi]) {
+    const text = v => escape(o.text(v, 3));
+    if (lo === null && hi === null) return "";
+    if (hi === null) return `above ${text(lo)}`;
+    return lo === null ? `below ${text(hi)}` : `${text(lo)} to ${text(hi)}`;
+  }
+  const percentileCell = (o, e) => {
+    const bounds = interval(o, e);
+    return e[0] === null ? "–" :
+                           escape(o.text(e[0])) +
+            (bounds ? `<br><span class="note">${bounds}</span>` : "");
+  };
   function drawSpread() {
     const id = "spread-chart", o = state.output, height = 340;
     const list = o.list.filter(Number.isFinite).sort((a, b) => a - b);
@@ -891,9 +904,9 @@
     U.percentile[o.index].forEach(([v, lo, hi], q) => {
       if (v === null) return;
       const level = U.level[q] / 100, right = p.x(v) < p.box.left + 0.7 * p.box.width;
-      if (lo !== null)
-        svg += `<path class="whisker" d="M${p.x(lo)} ${p.y(level)}H${p.x(hi)}M${p.x(lo)} ${
-            p.y(level) - 5}v10M${p.x(hi)} ${p.y(level) - 5}v10"/>`;
+      for (const end of [lo, hi])
+        if (end !== null)
+          svg += `<path class="whisker" d="M${p.x(v)} ${p.y(level)}H${p.x(end)}m0 -5v10"/>`;
       p.dot("dot varying", v, level, 4.5);
       p.text(
           "mark", v, level, right ? 12 : -12, right && level > 0.1 ? 16 : -9,
@@ -932,11 +945,6 @@
     show(id, height, [], svg);
   }
   function percentileTable() {
-    const cell = (o, e) => e[0] === null ? "–" :
-                                           escape(o.text(e[0])) +
-            (e[1] === null ? "" :
-                             `<br><span class="note">${escape(o.text(e[1], 3))} to ${
-                                 escape(o.text(e[2], 3))}</span>`);
     return `<div class="scroll"><table><caption>Statistics of ${
         U.samples} samples. Second lines: intervals at ${
         confidence} confidence.</caption><thead><tr><th>Output</th><th>Mean</th><th>Deviation</th>${
@@ -946,7 +954,7 @@
                 o =>
                     `<tr><th>${escape(o.name)}</th><td>${escape(o.text(U.mean[o.index]))}</td><td>${
                         escape(o.text(U.deviation[o.index], 3))}</td>${
-                        U.percentile[o.index].map(e => `<td>${cell(o, e)}</td>`).join("")}</tr>`)
+                        U.percentile[o.index].map(e => `<td>${percentileCell(o, e)}</td>`).join("")}</tr>`)
             .join("")}</tbody></table></div>`;
   }
   function buildUncertainty() {
@@ -991,9 +999,9 @@
         p.line("line whole", shown.map(g => R.key[g][k]), shown.map(g => robustAt(g, o)[q][0]));
       for (const g of shown) {
         const [v, lo, hi] = robustAt(g, o)[q], x = p.x(R.key[g][k]);
-        if (lo !== null && hi !== null)
-          svg += `<path class="whisker" d="M${x} ${p.y(lo)}V${p.y(hi)}M${x - 4} ${p.y(lo)}h8M${
-              x - 4} ${p.y(hi)}h8"/>`;
+        for (const end of [lo, hi])
+          if (end !== null)
+            svg += `<path class="whisker" d="M${x} ${p.y(v)}V${p.y(end)}m-4 0h8"/>`;
         p.dot("dot varying", R.key[g][k], v, 4);
       }
       const last = shown[shown.length - 1];
@@ -1007,12 +1015,6 @@
   }
   function robustTable() {
     const o = state.output;
-    const cell = e => e[0] === null ? "–" :
-                                      escape(o.text(e[0])) +
-            (e[1] === null && e[2] === null ? "" :
-                                              `<br><span class="note">${
-                                                  e[1] === null ? "–" : escape(o.text(e[1], 3))} to ${
-                                                  e[2] === null ? "–" : escape(o.text(e[2], 3))}</span>`);
     const text = v => v === null ? "–" : escape(o.text(v, 4));
     return `<caption>${escape(o.name)} at each design of the varied keys. Second lines: intervals
         at ${number(100 * R.confidence, 3, false)} % confidence.</caption><thead><tr>${
@@ -1026,7 +1028,7 @@
                         .join("")}<td>${R.samples[g]}${
                     R.failed[g] ? ` (${R.failed[g]} failed)` : ""}</td><td>${
                     text(R.mean[g][o.index])}</td><td>${text(R.deviation[g][o.index])}</td>${
-                    robustAt(g, o).map(e => `<td>${cell(e)}</td>`).join("")}</tr>`)
+                    robustAt(g, o).map(e => `<td>${percentileCell(o, e)}</td>`).join("")}</tr>`)
             .join("")}</tbody>`;
   }
   function buildRobust() {

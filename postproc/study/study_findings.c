@@ -130,6 +130,20 @@ static void close_figure(post_buffer *out) {
   post_put(out, "</span></dd></div>\n");
 }
 
+/* "A to B at 95 % confidence". A bound that so few samples cannot give is left out; false: both. */
+static bool put_bounds(const design_study *s, double low, double high, double confidence,
+                       post_buffer *out) {
+  const int  objective = study_objective(s);
+  const bool has_low = isfinite(low), has_high = isfinite(high);
+  if (!has_low && !has_high) return false;
+  if (!has_low || !has_high) post_put(out, has_low ? "above " : "below ");
+  if (has_low) put_output(s, objective, low, out);
+  if (has_low && has_high) post_put(out, " to ");
+  if (has_high) put_output(s, objective, high, out);
+  post_put(out, " at %g\u00a0%% confidence", 100 * confidence);
+  return true;
+}
+
 static void put_uncertain_figures(const design_study *s, int objective, post_buffer *out) {
   const study_uncertainty *u = &s->uncertainty;
   int                      q = last_percentile(u), i = objective * u->n_percentiles + q;
@@ -143,12 +157,7 @@ static void put_uncertain_figures(const design_study *s, int objective, post_buf
   post_put(out, "<div class=\"figure\"><dt>%g %% stay below</dt><dd><b>", u->level[q]);
   put_output(s, objective, u->percentile[i], out);
   between(out);
-  if (isfinite(u->percentile_low[i])) {
-    put_output(s, objective, u->percentile_low[i], out);
-    post_put(out, " to ");
-    put_output(s, objective, u->percentile_high[i], out);
-    post_put(out, " at %g\u00a0%% confidence", 100 * u->confidence);
-  }
+  put_bounds(s, u->percentile_low[i], u->percentile_high[i], u->confidence, out);
   close_figure(out);
 }
 
@@ -193,14 +202,8 @@ static void put_robust_figures(const design_study *s, int group, int level, post
   post_put(out, "<div class=\"figure\"><dt>%g %% stay below</dt><dd><b>", r->level[level]);
   put_output(s, study_objective(s), r->percentile[i], out);
   between(out);
-  if (isfinite(r->percentile_low[i]) && isfinite(r->percentile_high[i])) {
-    put_output(s, study_objective(s), r->percentile_low[i], out);
-    post_put(out, " to ");
-    put_output(s, study_objective(s), r->percentile_high[i], out);
-    post_put(out, " at %g\u00a0%% confidence", 100 * r->confidence);
-  } else {
+  if (!put_bounds(s, r->percentile_low[i], r->percentile_high[i], r->confidence, out))
     post_put(out, "%d samples are too few for an interval", r->n_samples[group]);
-  }
   close_figure(out);
   for (int k = 0; k < r->n_varied && k < 2; k++) {
     open_figure("at ", s->key[k].name, out);

@@ -175,7 +175,8 @@ static void make_statistics(design_study *s) {
       double at                     = level[q] / 100 * s->n;
       u->percentile[3 * o + q]      = list[(int)at];
       u->percentile_low[3 * o + q]  = list[(int)fmax(0, at - 7)];
-      u->percentile_high[3 * o + q] = list[(int)fmin(s->n - 1, at + 7)];
+      /* as of few samples: the highest percentile has no upper bound */
+      if (q < 2) u->percentile_high[3 * o + q] = list[(int)fmin(s->n - 1, at + 7)];
     }
     for (int k = 0; k < s->n_keys; k++) {
       int    i         = o * s->n_keys + k;

@@ -5,6 +5,8 @@
 
 MAKER keep writes page_KIND.study.html of every kind of study into the folder (test_study_page).
 """
+import csv
+import io
 import json
 import re
 import subprocess
@@ -42,6 +44,28 @@ ACTIONS = """
   for (const b of document.querySelectorAll("[data-log]")) b.click();
   for (const b of [...document.querySelectorAll("#heads button")].keys())
     document.querySelectorAll("#heads button")[b].click();
+  /* each column of numbers, sorted up and down by a click */
+  seen.unsorted = [...document.querySelectorAll("#heads th:not(.words)")].map((h, j) => {
+    const column = () => [...document.querySelectorAll("#rows tr")]
+        .map(r => parseFloat(r.cells[j].textContent.replace("\u2212", "-").replace(/\u202f/g, "")))
+        .filter(Number.isFinite);
+    const click = () => document.querySelectorAll("#heads button")[j].click();
+    click();
+    if (document.querySelectorAll("#heads th")[j].ariaSort !== "ascending") click();
+    const up = column();
+    click();
+    const down = column();
+    return up.every((v, i) => !i || v >= up[i - 1]) && down.every((v, i) => !i || v <= down[i - 1])
+        ? "" : h.textContent;
+  }).join("");
+  seen.outside = [...document.querySelectorAll(".whisker")].filter(w => {
+    const a = w.getBoundingClientRect(), b = w.closest("svg").getBoundingClientRect();
+    return a.left < b.left - 1 || a.right > b.right + 1 || a.top < b.top - 1 ||
+        a.bottom > b.bottom + 1;
+  }).length;
+  seen.between = [...document.querySelectorAll("#uncertainty td .note, #robust td .note")]
+      .map(n => n.textContent)
+      .filter(t => !/^((above|below) )?[-\d.]+\s\S+( to [-\d.]+\s\S+)?$/.test(t)).join();
   for (const svg of charts) {
     const r = svg.getBoundingClientRect();
     for (const t of [0.3, 0.5, 0.7]) {
@@ -69,7 +93,13 @@ ACTIONS = """
   }
   if ($("all")) $("all").click();
   seen.all = document.querySelectorAll("#rows tr").length;
-  document.title = "seen " + JSON.stringify(seen);
+  const kept = [], made = URL.createObjectURL;
+  URL.createObjectURL = blob => kept.push(blob) && made.call(URL, blob);
+  if ($("csv")) $("csv").click();
+  Promise.all(kept.map(blob => blob.text())).then(text => {
+    seen.csv = text.join("");
+    document.title = "seen " + JSON.stringify(seen);
+  });
 })();
 </script></body>"""
 
@@ -109,6 +139,19 @@ def faults(kind, page, chromium, folder):
         found.append(f'nothing drawn in {seen["blank"]}')
     if seen['all'] != DESIGNS[kind]:
         found.append(f'{seen["all"]} rows')
+    if seen['unsorted']:
+        found.append(f'not sorted by {seen["unsorted"]}')
+    if seen['outside']:
+        found.append(f'{seen["outside"]} intervals leave their chart')
+    if seen['between']:
+        found.append(f'intervals {seen["between"]}')
+    table = list(csv.DictReader(io.StringIO(seen['csv'])))
+    if DESIGNS[kind] and len(table) != DESIGNS[kind]:
+        found.append(f'{len(table)} rows in the CSV')
+    if table and not {'design', 'contact.n0', 'peak', 'status', 'reason'} <= set(table[0]):
+        found.append(f'CSV of {list(table[0])}')
+    if sorted(int(row['design']) for row in table) != list(range(1, len(table) + 1)):
+        found.append('designs of the CSV')
     command = r'shroudhb study STUDY.yaml --design \d+'
     if seen['rows'] and not re.search(command, seen.get('dock', '')):
         found.append(f'design: {seen.get("dock")}')
