@@ -65,7 +65,7 @@ void case_check_unused(const case_reader *r) {
   char last[CASE_PATH] = "", path[CASE_PATH];
   for (int i = 0; i < r->keys.n; i++) {
     const case_key *key = &r->keys.key[i];
-    if (!case_reader_good(r, key->path) || !case_reader_given(r, key->path)) continue;
+    if (!r->good[i] || !r->given[i]) continue;
     if (case_key_applies(key, r->file)) continue;
     if (r->file->modal_file && of_own_modes(key)) {
       whole(r, key, path);

@@ -368,8 +368,12 @@ case_node *case_document_parse(case_issues *issues) {
 
 bool case_plain_value(const char *text, case_node *out) {
   static const char plain[] =
-      "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_./%+ ";
+      "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_./%+- ";
   *out = (case_node){.kind = CASE_SCALAR, .line = 1, .column = 1, .text = (char *)text};
+  if (strcmp(text, "{}") == 0) {
+    *out = (case_node){.kind = CASE_MAPPING, .line = 1, .column = 1};
+    return true;
+  }
   return isalnum((unsigned char)text[0]) && text[strspn(text, plain)] == '\0' &&
          strcmp(text, "null") != 0;
 }

@@ -41,8 +41,8 @@ shb_status case_text_read(const char *path, char **text, size_t *length);
 case_node *case_document_parse(case_issues *issues);
 void       case_document_free(case_node *root);
 
-/* A text of letters, digits, spaces and _ . / % + as the node that YAML makes of it. The node
- * borrows the text. False for any other text. */
+/* A text of letters, digits, spaces and _ . / % + -, or the mapping {}, as the node that YAML makes
+ * of it. The node borrows the text. False for any other text. */
 bool case_plain_value(const char *text, case_node *out);
 
 /* FNV-1a of a string (Fowler, Noll, Vo). */

@@ -153,17 +153,16 @@ shb_status case_read_with(const char *path, const case_overrides *overrides, int
   return lost && n == 1 ? SHB_ERR_IO : status;
 }
 
+static void drop(char **text) {
+  free(*text);
+  *text = NULL;
+}
+
 void case_free(case_file *file) {
-  free(file->path);
-  free(file->folder);
-  free(file->output);
-  free(file->text);
-  free(file->name);
-  free(file->mesh_file);
-  free(file->modal_file);
-  free(file->field_file);
-  free(file->mistuning.file);
-  for (int i = 0; i < CASE_MAX_LOADS; i++) free(file->loads[i].field);
-  free(file->converge_output);
-  *file = (case_file){0};
+  char **const texts[] = {&file->path,           &file->folder,     &file->output,
+                          &file->text,           &file->name,       &file->mesh_file,
+                          &file->modal_file,     &file->field_file, &file->mistuning.file,
+                          &file->converge_output};
+  for (size_t i = 0; i < sizeof texts / sizeof *texts; i++) drop(texts[i]);
+  for (int i = 0; i < CASE_MAX_LOADS; i++) drop(&file->loads[i].field);
 }

@@ -98,7 +98,21 @@ static shb_status read_elements(mesh_deck *deck, const mesh_card *card, mesh_inp
   }
 }
 
-static shb_status generate(mesh_deck *deck, const mesh_row *row, mesh_inp_set *set) {
+/* Before n members join a set by a range or the name of a set. A set that names itself doubles each
+ * time. Every node, element and name takes bytes of the file. */
+static shb_status admit(const mesh_deck *deck, mesh_inp *inp, int into, const char *what, long n) {
+  enum { MOST_IN_ALL = 16 }; /* a byte */
+  MESH_DECK_CHECK(n <= deck->bytes - inp->set[into].n, deck, deck->line,
+                  "%s: %ld more members are too many for a file of %lld bytes", what, n,
+                  deck->bytes);
+  inp->referred += n;
+  MESH_DECK_CHECK(inp->referred <= MOST_IN_ALL * deck->bytes, deck, deck->line,
+                  "%s: now sets have %lld members in all, too many for a file of %lld bytes", what,
+                  inp->referred, deck->bytes);
+  return SHB_OK;
+}
+
+static shb_status generate(mesh_deck *deck, const mesh_row *row, mesh_inp *inp, int into) {
   long range[3] = {0, 0, 1};
   MESH_DECK_CHECK(row->n == 2 || row->n == 3, deck, row->line,
                   "GENERATE: %d values; expected first, last, step", row->n);
@@ -106,12 +120,10 @@ static shb_status generate(mesh_deck *deck, const mesh_row *row, mesh_inp_set *s
   MESH_DECK_CHECK(range[1] >= range[0], deck, row->line, "GENERATE: %ld to %ld counts down",
                   range[0], range[1]);
   long last = (range[1] - range[0]) / range[2];
-  /* a node or an element takes several bytes of the file */
-  MESH_DECK_CHECK(last < deck->bytes - set->n, deck, row->line,
-                  "GENERATE: %ld members are too many for a file of %lld bytes", last + 1,
-                  deck->bytes);
+  SHB_TRY(admit(deck, inp, into, "GENERATE", last + 1));
   for (long i = 0; i <= last; i++)
-    SHB_TRY(mesh_inp_add_member(set, &(mesh_inp_member){range[0] + i * range[2], row->line, 0}));
+    SHB_TRY(mesh_inp_add_member(&inp->set[into],
+                                &(mesh_inp_member){range[0] + i * range[2], row->line, 0}));
   return SHB_OK;
 }
 
@@ -127,6 +139,7 @@ static shb_status add_named(mesh_deck *deck, mesh_inp *inp, int into, const char
   const mesh_inp_set *from = mesh_inp_find(inp, kind, field);
   MESH_DECK_CHECK(from, deck, deck->line, "%s '%.40s' is not defined before this line",
                   kind == MESH_INP_NSET ? "node set" : "element set", field);
+  SHB_TRY(admit(deck, inp, into, inp->set[into].name, from->n));
   for (int i = 0, n = from->n; i < n; i++) {
     member.id = from->member[i].id;
     SHB_TRY(mesh_inp_add_member(&inp->set[into], &member));
@@ -147,7 +160,7 @@ static shb_status read_set(mesh_deck *deck, const mesh_card *card, mesh_inp_kind
     SHB_TRY(mesh_deck_row(deck, &row, &more));
     if (!more) return SHB_OK;
     if (mesh_card_has(card, "GENERATE")) {
-      SHB_TRY(generate(deck, &row, &inp->set[set]));
+      SHB_TRY(generate(deck, &row, inp, set));
       continue;
     }
     for (int i = 0; i < row.n; i++) SHB_TRY(add_named(deck, inp, set, row.field[i], 0));

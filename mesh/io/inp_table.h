@@ -41,6 +41,7 @@ typedef struct {
   mesh_inp_element *element;
   mesh_inp_set     *set;
   int               n_nodes, node_room, n_elements, element_room, n_sets, set_room;
+  long long         referred; /* members that sets have by ranges and names of other sets */
 } mesh_inp;
 
 /* Append. SHB_ERR_IO no memory. */

@@ -10,7 +10,7 @@ enum {
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size) {
   case_file file;
   if (size > FUZZ_MOST) return 0;
-  const char *path   = fuzz_file("case.yaml", data, size);
+  const char *path   = fuzz_text("random.yaml", data, size);
   int         stages = size % 2 ? EVERY_STAGE : CASE_MODAL | CASE_OR_MODES;
   fuzz_messages_end(case_read(path, stages, fuzz_messages(), &file) != SHB_OK);
   case_free(&file);

@@ -16,6 +16,10 @@ enum { FUZZ_MOST = 1 << 16 };
  * name is a literal. The folder is removed at the end of the process. */
 const char *fuzz_file(const char *name, const void *data, size_t size);
 
+/* The same without a file: whoever opens the path by fopen reads the bytes. Both are borrowed, and
+ * the path is a literal. */
+const char *fuzz_text(const char *path, const void *data, size_t size);
+
 /* Begin a stream for messages. */
 FILE *fuzz_messages(void);
 

@@ -7,7 +7,7 @@
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size) {
   case_motion motion;
   if (size > FUZZ_MOST) return 0;
-  const char *path   = fuzz_file("motion.yaml", data, size);
+  const char *path   = fuzz_text("motion.yaml", data, size);
   shb_status  status = case_motion_read(path, fuzz_messages(), &motion);
   fuzz_messages_end(status != SHB_OK);
   if (status == SHB_OK)

@@ -8,7 +8,7 @@
 
 enum { MOST_OVERRIDES = 16 };
 
-/* Path of the example, a copy in memory. */
+/* The example, from memory. */
 static const char *example(void) {
   static const char *path;
   static char        text[FUZZ_MOST];
@@ -18,7 +18,7 @@ static const char *example(void) {
   size_t length = fread(text, 1, FUZZ_MOST, file);
   fclose(file);
   fuzz_assert(length > 0, SHROUDHB_EXAMPLE " is empty");
-  path = fuzz_file("case.yaml", text, length);
+  path = fuzz_text("example.yaml", text, length);
   return path;
 }
 

@@ -11,7 +11,7 @@ static void place_example(void) {
   fuzz_assert(file != NULL, SHROUDHB_EXAMPLE " cannot be opened");
   size_t length = fread(text, 1, sizeof text, file);
   fclose(file);
-  fuzz_file("case.yaml", text, length);
+  fuzz_text("case.yaml", text, length);
 }
 
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size) {
@@ -19,7 +19,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size) {
   study_spec spec;
   if (size > FUZZ_MOST) return 0;
   if (!placed++) place_example();
-  const char *path   = fuzz_file("study.yaml", data, size);
+  const char *path   = fuzz_text("study.yaml", data, size);
   shb_status  status = study_spec_read(path, false, fuzz_messages(), &spec);
   fuzz_messages_end(status != SHB_OK);
   if (status == SHB_OK)

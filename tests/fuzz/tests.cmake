@@ -6,6 +6,7 @@ add_custom_target(fuzzers)
 function(shb_fuzz noun)
   add_executable(fuzz_${noun} fuzz/fuzz_${noun}.c fuzz/fuzz_file.c)
   target_link_libraries(fuzz_${noun} PRIVATE ${ARGN} shb_base)
+  target_link_options(fuzz_${noun} PRIVATE -Wl,--wrap=fopen)
   target_compile_definitions(fuzz_${noun} PRIVATE
     SHROUDHB_EXAMPLE="${PROJECT_SOURCE_DIR}/cases/z_notch_blade/case.yaml")
   add_dependencies(fuzzers fuzz_${noun})

@@ -248,6 +248,8 @@ static void other_ways_to_write_are_read(void **state) {
   "9,.5,0,.5\n10,0,.5,.5\n"
 #define ELEMENT "*ELEMENT, TYPE=C3D10, ELSET=E\n1,1,2,3,4,5,6,7,8,9,10\n"
 
+#define A(name) "*NSET, NSET=" name "\na\n"
+
 typedef struct {
   const char *text;
   int         line;
@@ -337,7 +339,13 @@ static void faults_are_named_with_their_line(void **state) {
       {NODES ELEMENT "*NSET, NSET=root, GENERATE\n5\n", 15, "expected first, last, step"},
       {NODES ELEMENT "*NSET, NSET=root, GENERATE\n1, 999999999999\n", 15, "are too many"},
       {NODES ELEMENT "*NSET, NSET=root, GENERATE\n1, 1000000000\n", 15,
-       "GENERATE: 1000000000 members are too many for a file of "},
+       "GENERATE: 1000000000 more members are too many for a file of "},
+      {NODES ELEMENT "*NSET, NSET=top\n1\ntop,top,top,top\ntop,top,top,top\ntop,top,top,top\n", 17,
+       "top: 128 more members are too many for a file of "},
+      {NODES ELEMENT "*NSET, NSET=a, GENERATE\n1, 480\n" A("b") A("c") A("d") A("e") A("f") A("g")
+           A("h") A("i") A("j") A("k") A("l") A("m") A("n") A("o") A("p") A("q") A("r") A("s")
+               A("t") A("u"),
+       47, "now sets have 8160 members in all, too many for a file of "},
       {NODES ELEMENT "*NSET, NSET=root\n", 14, "group root is empty"},
       {NODES ELEMENT "*SURFACE, NAME=root\n1\n", 15, "'1 alone'; expected"},
       {NODES ELEMENT "*SURFACE, NAME=root\n1, S7\n", 15, "expected an element or element set"},
