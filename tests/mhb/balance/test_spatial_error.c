@@ -50,7 +50,7 @@ static void open_patches(const modal_model *all, int patches, solved *s) {
   *s = (solved){.settings = shroud_face_settings(HARMONICS), .omega = SHB_TWO_PI * HERTZ};
   assert_int_equal(modal_joining_create(all, patches, &s->joining), SHB_OK);
   assert_int_equal(modal_join(all, &s->joining, &s->model), SHB_OK);
-  s->pairs                = (mhb_other_pairs){all, &s->joining, true};
+  s->pairs                = (mhb_other_pairs){.model = all, .joining = &s->joining, .finer = true};
   s->settings.other_pairs = &s->pairs;
 }
 
@@ -151,7 +151,7 @@ static void coarser_pairs_bound_the_error(void **state) {
   const double error = distance(all.balance, all.x, all.x, NULL);
   assert_true(error == 0);
   open_patches(&n.model, 4, &half); /* 8 pairs joined to 4 */
-  n.pairs                   = (mhb_other_pairs){&half.model, &half.joining, false};
+  n.pairs                   = (mhb_other_pairs){.model = &half.model, .joining = &half.joining};
   n.balance->settings       = &n.settings;
   n.settings.other_pairs    = &n.pairs;
   half.settings.other_pairs = NULL;
@@ -164,7 +164,7 @@ static void coarser_pairs_bound_the_error(void **state) {
     sum += pow(coarse->x[i] - half.x[i], 2);
     size += i % half.balance->nb ? pow(coarse->x[i], 2) : 0;
   }
-  n.pairs = (mhb_other_pairs){&all.model, &n.joining, true};
+  n.pairs = (mhb_other_pairs){.model = &all.model, .joining = &n.joining, .finer = true};
   assert_int_equal(mhb_spatial_error_create(n.balance, &fine), SHB_OK);
   double left = mhb_spatial_error_at(fine, n.x);
   print_message("8 pairs: from 4 told %.2e, true %.2e; error to 16 %.2e\n", told, sqrt(sum / size),
