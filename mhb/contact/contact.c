@@ -47,9 +47,9 @@ shb_status mhb_contact_evaluator_create(int m, int H, double tolerance,
   c->slider_column = 3 * c->nb;
   c->stride        = mhb_whole_lanes(c->slider_column + 1);
   c->tolerance     = tolerance;
-  mhb_collocation_create(&c->rule);
   take_arrays(c);
-  if (c->arena.failed || mhb_signals_create(m, &c->signals) != SHB_OK ||
+  if (c->arena.failed || mhb_collocation_create(&c->rule) != SHB_OK ||
+      mhb_signals_create(m, &c->signals) != SHB_OK ||
       mhb_contact_intervals_create(m, &c->intervals) != SHB_OK ||
       mhb_dense_output_create(&c->rule, &c->dense_output) != SHB_OK) {
     mhb_contact_evaluator_destroy(c);

@@ -116,22 +116,12 @@ MHB_HOT static void add_force(mhb_contact_evaluator *c, double growth) {
     add_to_sums(p, c->H, 2, 4, g, c->slip_sums);
     return;
   }
-  mhb_lanes ones = p->inverse[0];
-  for (int j = 1; j < MHB_NODES; j++) ones += p->inverse[j];
-  g[2] = -growth * ones * g[1];
-  g[3] = growth * ones * g[0];
+  g[2] = -growth * p->transfer * g[1];
+  g[3] = growth * p->transfer * g[0];
   add_to_sums(p, c->H, 4, 4, g, c->slip_sums);
   mhb_lanes across = p->e[0] * p->dy[2] - p->e[1] * p->dy[1];
-  c->lap.work += growth * lanes_sum(weight * ones / p->eKe * (across - 2 * p->beta * p->gamma));
-}
-
-/* dtheta(end) for dtheta(start) = 1: 1 + h sum w F_th (I - h A F_th)^-1 1. */
-MHB_HOT static double panel_growth(const mhb_contact_evaluator *c) {
-  const mhb_panel *p    = &c->panel;
-  mhb_lanes        ones = p->inverse[0];
-  for (int j = 1; j < MHB_NODES; j++) ones += p->inverse[j];
-  if (p->stiff) return lanes_sum(c->rule.end * ones);
-  return 1 + p->h * lanes_sum(c->rule.weight * p->F_theta * ones);
+  c->lap.work +=
+      growth * lanes_sum(weight * p->transfer / p->eKe * (across - 2 * p->beta * p->gamma));
 }
 
 /* The basis at the nodes by lanes, [nf], and its rows times mu n w q_k, [2][nf]. */
@@ -175,21 +165,16 @@ MHB_INLINE void fill_drive(const mhb_contact_evaluator *c) {
 
 /* T_nodes and T at the panel's end: the collocation equations linearised, with the same matrix. */
 MHB_INLINE void columns_through(const mhb_contact_evaluator *c) {
-  const mhb_panel *p    = &c->panel;
-  mhb_lanes        ones = p->inverse[0], hA[MHB_NODES], end = p->h * c->rule.weight;
+  const mhb_panel *p = &c->panel;
+  mhb_lanes        hA[MHB_NODES], end = p->h * c->rule.weight;
   mhb_lanes        last = p->stiff ? c->rule.end : end * p->F_theta;
   double           keep = p->stiff ? 0 : 1;
   if (p->stiff) end = lanes_all(0);
-  for (int j = 1; j < MHB_NODES; j++) ones += p->inverse[j];
-  for (int q = 0; q < MHB_NODES; q++) { /* columns of (I - h A F_th)^-1 h A */
-    hA[q] = p->inverse[0] * c->rule.A[q][0];
-    for (int j = 1; j < MHB_NODES; j++) hA[q] += p->inverse[j] * c->rule.A[q][j];
-    hA[q] *= p->h;
-  }
+  mhb_slip_response(&c->slip, p, hA);
   for (int j = 0; j < c->stride; j += MHB_LANES) {
     mhb_lanes T = lanes_load(c->T + j), sum = keep * T, value[MHB_NODES];
 #pragma GCC unroll 8
-    for (int l = 0; l < MHB_NODES; l++) value[l] = ones[l] * T;
+    for (int l = 0; l < MHB_NODES; l++) value[l] = p->transfer[l] * T;
 #pragma GCC unroll 8
     for (int q = 0; q < MHB_NODES; q++) {
       mhb_lanes r = lanes_load(c->rhs + q * c->stride + j);
@@ -242,7 +227,7 @@ MHB_HOT static void add_derivative(const mhb_contact_evaluator *c) {
 
 void mhb_sensitivity_panel(mhb_contact_evaluator *c) {
   double growth = c->T[c->slider_column], before = growth;
-  if (growth != 0) growth *= panel_growth(c);
+  growth *= c->panel.growth;
   if (c->record) add_force(c, before);
   if (c->mode == MHB_ALL_COLUMNS) add_derivative(c);
   c->T[c->slider_column] = growth;

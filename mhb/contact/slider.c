@@ -14,6 +14,11 @@ typedef struct {
   double    onset; /* phase at which stick turned to slip; z is that of the stick before */
 } slider;
 
+/* Forces are in units of the largest in sight: squares neither overflow nor vanish. */
+static double length_of(double a, double b) {
+  return sqrt(a * a + b * b);
+}
+
 /* ---- pieces ---- */
 
 static void add_stick(mhb_contact_evaluator *c, double t0, double t1, const double z[2]) {
@@ -141,8 +146,9 @@ static void set_panels(mhb_contact_evaluator *c, double tolerance) {
   double reach          = sqrt(sqrt(sqrt(sqrt(.2 * tolerance / 1.7e-23))));
   double wanted         = c->record ? c->H : 0;
   c->slip.top_harmonic  = wanted + .5 * c->mean_harmonic;
-  c->slip.longest_panel = fmin(1.5, reach / (wanted + 2 * c->mean_harmonic + 1));
+  c->slip.longest_panel = mhb_least(1.5, reach / (wanted + 2 * c->mean_harmonic + 1));
   c->slip.tolerance     = .2 * tolerance * c->force_level;
+  c->slip.mild          = 4 * sqrt(sqrt(sqrt(400 * tolerance)));
 }
 
 /* theta may be held over tau before an opening: the error in force is about mu |n'| tau^2/2. */
@@ -150,7 +156,7 @@ static void set_frozen_length(mhb_contact_evaluator *c, double opening) {
   double y[3], dy[3];
   mhb_signals_at(&c->signals, opening, y, dy, NULL);
   c->slip.frozen_length =
-      fmin(.05, fmax(1e-10, sqrt(c->slip.tolerance / (c->slip.mu * fabs(dy[0])))));
+      mhb_least(.05, mhb_most(1e-10, sqrt(c->slip.tolerance / (c->slip.mu * fabs(dy[0])))));
 }
 
 /* ---- the contact opens: every closing is a fresh start (eqs. 13-15) ---- */
@@ -166,7 +172,7 @@ int mhb_slider_with_openings(mhb_contact_evaluator *c) {
     slider s = {.t = c->intervals.closing[i], .onset = -1};
     double y[3], dy[3], ddy[3], d[2], D;
     mhb_signals_at(&c->signals, s.t, y, dy, ddy);
-    double pull = hypot(dy[1], dy[2]), limit = c->slip.mu * dy[0];
+    double pull = length_of(dy[1], dy[2]), limit = c->slip.mu * dy[0];
     s.z[0]  = y[1];
     s.z[1]  = y[2];
     s.state = pull < limit ? MHB_STICK : MHB_SLIDE;
@@ -187,7 +193,7 @@ int mhb_slider_with_openings(mhb_contact_evaluator *c) {
     mhb_dense_output_open(&c->dense_output, c->intervals.opening[i]);
     open -= (c->intervals.opening[i] - c->intervals.closing[i]) / SHB_TWO_PI;
   }
-  c->info->share[MHB_SEPARATE] = fmax(0, open);
+  c->info->share[MHB_SEPARATE] = mhb_most(open, 0);
   return ok;
 }
 
@@ -198,12 +204,14 @@ enum { MAX_LAPS = 100, MAX_RECORDS = 5 };
 /* Error of the slider of the contact that sticks, in units of the friction. */
 static const double FAR = .03;
 
-/* One lap from slider z0: P(z0) and, in the columns, its derivative. 0: a panel failed. */
-static int run_lap(mhb_contact_evaluator *c, const double z0[2], double P[2]) {
-  slider s = {.state = MHB_STICK, .t = 0, .z = {z0[0], z0[1]}, .onset = -1};
+/* From slider z0 at phase t0 to the end of the lap: P(z0) and, in the columns, its derivative. 0: a
+ * panel failed. */
+static int run_from(mhb_contact_evaluator *c, double t0, const double z0[2], double P[2]) {
+  slider s = {.state = MHB_STICK, .t = t0, .z = {z0[0], z0[1]}, .onset = -1};
   double y[3], dy[3];
-  mhb_signals_at(&c->signals, 0, y, dy, NULL);
-  double f[2] = {y[1] - z0[0], y[2] - z0[1]}, limit = c->slip.mu * y[0], size = hypot(f[0], f[1]);
+  mhb_signals_at(&c->signals, t0, y, dy, NULL);
+  double f[2] = {y[1] - z0[0], y[2] - z0[1]}, limit = c->slip.mu * y[0],
+         size = length_of(f[0], f[1]);
   mhb_sensitivity_clear(c);
   if (size >= limit * (1 - 1e-9)) { /* begins on the friction circle: project, slip if gamma > 0 */
     double d[2], over[2] = {f[0] / limit, f[1] / limit};
@@ -211,8 +219,8 @@ static int run_lap(mhb_contact_evaluator *c, const double z0[2], double P[2]) {
     s.theta            = atan2(d[1], d[0]);
     mhb_direction at   = mhb_slip_direction(c->K, s.theta);
     int           pull = mhb_slip_gamma(&c->slip, &at, dy) > 0;
-    if (pull || size > limit) mhb_sensitivity_stick_to_slip(c, 0, s.theta, y[0]);
-    if (!pull && size > limit) mhb_sensitivity_slip_to_stick(c, 0, s.theta, y[0]);
+    if (pull || size > limit) mhb_sensitivity_stick_to_slip(c, t0, s.theta, y[0]);
+    if (!pull && size > limit) mhb_sensitivity_slip_to_stick(c, t0, s.theta, y[0]);
     if (pull) s.state = MHB_SLIDE;
     if (pull) c->slip.initial_rate = mhb_slip_rate(&c->slip, s.theta, y, dy);
     if (!pull && size > limit)
@@ -222,14 +230,37 @@ static int run_lap(mhb_contact_evaluator *c, const double z0[2], double P[2]) {
   int       ok    = run_closed(c, &s, SHB_TWO_PI, 0);
   if (s.state != began) mhb_note_transition(c, 0, began);
   if (s.state == MHB_SLIDE) {
-    P[0] = y[1] - limit * cos(s.theta);
-    P[1] = y[2] - limit * sin(s.theta);
+    if (t0 != 0) mhb_signals_at(&c->signals, 0, y, dy, NULL);
+    limit = c->slip.mu * y[0];
+    P[0]  = y[1] - limit * cos(s.theta);
+    P[1]  = y[2] - limit * sin(s.theta);
     mhb_sensitivity_slip_to_stick(c, 0, s.theta, y[0]);
   } else {
     P[0] = s.z[0];
     P[1] = s.z[1];
   }
   return ok;
+}
+
+static int run_lap(mhb_contact_evaluator *c, const double z0[2], double P[2]) {
+  return run_from(c, 0, z0, P);
+}
+
+/* Phase at which the force of a slider that rests at z would be furthest beyond the friction limit,
+ * in the second half of the period if it is half as far there. */
+MHB_HOT static double furthest_beyond(const mhb_signals *s, double mu, const double z[2]) {
+  double most[2] = {-INFINITY, -INFINITY}, at[2] = {0, 0};
+  for (int i = 0; i < s->n_grid; i += MHB_LANES) {
+    mhb_lanes n = lanes_load(s->value[0] + i), a = lanes_load(s->value[1] + i) - z[0],
+              b = lanes_load(s->value[2] + i) - z[1], over = a * a + b * b - mu * mu * n * n;
+    double top  = lanes_top(over);
+    int    half = 2 * i >= s->n_grid;
+    if (!(top > most[half])) continue;
+    most[half] = top;
+    for (int l = 0; l < MHB_LANES; l++)
+      if (over[l] == top) at[half] = SHB_TWO_PI * (i + l) / s->n_grid;
+  }
+  return at[most[1] > .5 * most[0]];
 }
 
 /* Progress of Newton's method on the periodic slider; lengths in units of the friction. */
@@ -248,8 +279,9 @@ static double remaining_error(const mhb_contact_evaluator *c, newton_progress *a
   double ratio = length / a->last_step;
   a->linear    = ratio > .1 && a->last_step < 1;
   a->last_step = length;
-  if (a->linear) return length * fmin(1, ratio);
-  return fmax(fmin(length * length, 4) * fmin(1, mhb_sensitivity_contraction(c)), 1e-4 * accuracy);
+  if (a->linear) return length * mhb_least(1, ratio);
+  return mhb_most(mhb_least(length * length, 4) * mhb_least(1, mhb_sensitivity_contraction(c)),
+                  1e-4 * accuracy);
 }
 
 /* Newton's method on P(z) = z. 0: not reached. A plain iteration z <- P(z), which never expands,
@@ -261,10 +293,10 @@ static int iterate_slider(mhb_contact_evaluator *c, newton_progress *a, double z
   c->record = 0;
   c->mode   = MHB_SLIDER_COLUMN;
   for (; c->info->laps < MAX_LAPS; c->info->laps++) {
-    double accuracy = fmax(a->tolerance, fmin(1e-2, .3 * left));
+    double accuracy = mhb_most(a->tolerance, mhb_least(1e-2, .3 * left));
     set_panels(c, accuracy);
     if (!run_lap(c, z, P)) return 0;
-    double r[2] = {P[0] - z[0], P[1] - z[1]}, size = hypot(r[0], r[1]);
+    double r[2] = {P[0] - z[0], P[1] - z[1]}, size = length_of(r[0], r[1]);
     if (newton && size > .9 * before) plain = 2;
     before = size;
     newton = !plain;
@@ -275,9 +307,9 @@ static int iterate_slider(mhb_contact_evaluator *c, newton_progress *a, double z
       continue;
     }
     mhb_sensitivity_close(c, r, step);
-    double length = hypot(step[0], step[1]) / c->friction_level, ratio = length / a->last_step;
+    double length = length_of(step[0], step[1]) / c->friction_level, ratio = length / a->last_step;
     double stretch = ratio > .3 && ratio < .7 ? 1 / (1 - ratio) : 1;
-    double beyond  = hypot(step[0] - r[0], step[1] - r[1]) / c->friction_level;
+    double beyond  = length_of(step[0] - r[0], step[1] - r[1]) / c->friction_level;
     double cut     = beyond > 1 ? 1 / beyond : 1; /* shortens the difference to a plain iteration */
     for (int k = 0; k < 2; k++) z[k] += stretch * (r[k] + cut * (step[k] - r[k]));
     left = remaining_error(c, a, length, accuracy);
@@ -287,6 +319,19 @@ static int iterate_slider(mhb_contact_evaluator *c, newton_progress *a, double z
     }
   }
   return 0;
+}
+
+/* Carries z from where the contact surely slips to the end of the period: slip forgets. Returns the
+ * error expected of it then, in units of the friction. */
+static double approach(mhb_contact_evaluator *c, double z[2]) {
+  double P[2], accuracy = .3 * FAR;
+  c->record = 0;
+  c->mode   = MHB_SLIDER_COLUMN;
+  set_panels(c, accuracy);
+  if (!run_from(c, furthest_beyond(&c->signals, c->slip.mu, z), z, P)) return FAR;
+  z[0] = P[0];
+  z[1] = P[1];
+  return mhb_most(FAR * mhb_least(1, mhb_sensitivity_contraction(c)), 1e-4 * accuracy);
 }
 
 /* The lap that records the force, from z. The last Newton step is applied to the force, not by
@@ -304,14 +349,14 @@ static double record_lap(mhb_contact_evaluator *c, mhb_sensitivity_mode columns,
   int ok = run_lap(c, z, P);
   mhb_sensitivity_close(c, (double[2]){P[0] - z[0], P[1] - z[1]}, dz);
   mhb_force_integrals_collect(c);
-  *gap         = hypot(P[0] - z[0], P[1] - z[1]) / c->friction_level;
-  *step        = hypot(dz[0], dz[1]) / c->friction_level;
+  *gap         = length_of(P[0] - z[0], P[1] - z[1]) / c->friction_level;
+  *step        = length_of(dz[0], dz[1]) / c->friction_level;
   double along = c->lap.v[0] * dz[0] + c->lap.v[1] * dz[1], work = c->lap.work * along;
   for (int k = 0; k < 2; k++) {
     for (int i = 0; i < c->nf; i++) {
       double change = c->f_slider[k * c->nf + i] * along - c->first_stick[i] * dz[k];
       c->f[k * c->nf + i] += change;
-      most = fmax(most, fabs(change));
+      most = mhb_most(most, fabs(change));
     }
     z[k] += dz[k];
     work += c->lap.onset[k] * dz[k];
@@ -328,14 +373,17 @@ int mhb_slider_periodic(mhb_contact_evaluator *c, int near, double z[2]) {
                        .last_step = INFINITY,
                        .left      = near ? 0 : FAR};
   int             reached = 0, close = 0;
-  double          accept = wanted == MHB_ALL_COLUMNS ? 30 * sharp : 3 * a.tolerance;
+  /* it seldom serves the force alone to a small tolerance: a whole lap of Newton's does */
+  if (!near && (wanted == MHB_ALL_COLUMNS || a.tolerance > 1e-4)) a.left = approach(c, z);
+  double accept = wanted == MHB_ALL_COLUMNS ? 30 * sharp : 3 * a.tolerance;
   if (near && wanted == MHB_SLIDER_COLUMN) { /* the lap that it may end with */
     left    = record_lap(c, wanted, z, &gap, &step);
-    a.left  = fmin(step * step, FAR);
+    a.left  = mhb_least(step * step, FAR);
     reached = close = left >= 0 && left < accept && step * step < .01 * c->tolerance;
   }
   for (int tries = 0; tries < MAX_RECORDS && !close && left >= 0; tries++) {
-    reached     = iterate_slider(c, &a, z);
+    reached     = (a.left > 0 && a.left < a.tolerance) || iterate_slider(c, &a, z);
+    a.left      = FAR;
     double last = a.last_step;
     left        = record_lap(c, wanted, z, &gap, &step);
     a.last_step = left;
@@ -347,7 +395,7 @@ int mhb_slider_periodic(mhb_contact_evaluator *c, int near, double z[2]) {
   for (int tries = 0; c->dense_output.enabled && gap > 1e-12 && tries < MAX_RECORDS; tries++)
     left = record_lap(c, wanted, z, &gap, &step);
   double miss = left < 0               ? SHB_TWO_PI * c->force_level / c->friction_level
-                : reached && !a.linear ? fmax(left * left, step * step)
+                : reached && !a.linear ? mhb_most(left * left, step * step)
                                        : left;
   c->info->error += c->friction_level * (miss + mhb_sensitivity_roundoff(c));
   if (wanted == MHB_ALL_COLUMNS) mhb_sensitivity_eliminate_slider(c);

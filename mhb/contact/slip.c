@@ -1,6 +1,7 @@
 #include "mhb/contact/slip.h"
 
 #include <float.h>
+#include <lapacke.h>
 
 #include "mesh/base/constants.h"
 
@@ -67,7 +68,35 @@ static void table_column(mhb_collocation *rule, const double *node, const double
     rule->legendre[j][k] = (2 * k + 1) * weight[j] * legendre(k, x, NULL);
 }
 
-void mhb_collocation_create(mhb_collocation *rule) {
+/* Eigenvectors and eigenvalues of A: four conjugate pairs. */
+static shb_status take_modes(mhb_collocation *rule) {
+  double matrix[MHB_NODES * MHB_NODES], vectors[MHB_NODES * MHB_NODES], left[1];
+  double inverse[MHB_NODES * MHB_NODES] = {0}, real[MHB_NODES], imag[MHB_NODES], two[MHB_NODES];
+  int    pivots[MHB_NODES];
+  for (int j = 0; j < MHB_NODES; j++) lanes_store(matrix + j * MHB_NODES, rule->A[j]);
+  for (int j = 0; j < MHB_NODES; j++) inverse[j * (MHB_NODES + 1)] = 1;
+  int info = LAPACKE_dgeev(LAPACK_COL_MAJOR, 'N', 'V', MHB_NODES, matrix, MHB_NODES, real, imag,
+                           left, 1, vectors, MHB_NODES);
+  for (int j = 0; j < MHB_NODES; j++) {
+    rule->from_modes[j] = lanes_load(vectors + j * MHB_NODES);
+    two[j]              = real[j] * real[j] + imag[j] * imag[j];
+  }
+  if (info == 0)
+    info = LAPACKE_dgesv(LAPACK_COL_MAJOR, MHB_NODES, MHB_NODES, vectors, MHB_NODES, pivots,
+                         inverse, MHB_NODES);
+  SHB_CHECK(info == 0, SHB_ERR_IO, "out of memory");
+  rule->one_in_modes = lanes_all(0);
+  for (int j = 0; j < MHB_NODES; j++) {
+    rule->to_modes[j] = lanes_load(inverse + j * MHB_NODES);
+    rule->one_in_modes += rule->to_modes[j];
+  }
+  rule->real     = lanes_load(real);
+  rule->imag     = lanes_load(imag);
+  rule->modulus2 = lanes_load(two);
+  return SHB_OK;
+}
+
+shb_status mhb_collocation_create(mhb_collocation *rule) {
   double node[MHB_NODES], weight[MHB_NODES];
   for (int i = 0; i < MHB_NODES; i++) {
     double x = -cos(SHB_PI * (i + .75) / (MHB_NODES + .5)), slope = 1;
@@ -79,6 +108,7 @@ void mhb_collocation_create(mhb_collocation *rule) {
   rule->node   = lanes_load(node);
   rule->weight = lanes_load(weight);
   for (int j = 0; j < MHB_NODES; j++) table_column(rule, node, weight, j);
+  return take_modes(rule);
 }
 
 /* ---- the differential equation ---- */
@@ -163,6 +193,9 @@ MHB_INLINE int invert(const mhb_collocation *rule, mhb_panel *p) {
   return lanes_bottom(lanes_abs(pivots)) > .02;
 }
 
+/* Exponents of a panel up to which Newton's steps need no inverse, and what they err by there. */
+static const double MILD = 3, ROUGH = 1e-4;
+
 MHB_INLINE void place_nodes(const mhb_slip *slip, double t, double h, mhb_panel *p) {
   p->t0     = t;
   p->h      = h;
@@ -208,14 +241,82 @@ MHB_INLINE double panel_error(const mhb_slip *slip, const mhb_panel *p) {
   return p->h * slip->mu * (turned * carried + 1.7e-23 * power16(wave) * n);
 }
 
-/* e and gamma after the last small step of theta, to its third power; K = k I. */
-MHB_INLINE void rotate(mhb_panel *p, mhb_lanes step) {
-  mhb_lanes along  = p->e[0] * p->dy[1] + p->e[1] * p->dy[2],
-            across = p->e[0] * p->dy[2] - p->e[1] * p->dy[1];
-  mhb_lanes c = 1 - .5 * step * step, e0 = p->e[0];
-  p->gamma += step * across + (c - 1) * along;
-  p->e[0] = c * e0 - step * p->e[1];
-  p->e[1] = c * p->e[1] + step * e0;
+/* F, F_theta, e after a step of theta, K = k I: there F_theta is the quarter turn of F. gamma and
+ * the others are left to `complete`. */
+MHB_INLINE void turn(mhb_panel *p, mhb_lanes step, double size) {
+  mhb_lanes c, s, F = p->F, e0 = p->e[0];
+  if (size < .78) {
+    lanes_cos_sin_small(step, &c, &s);
+  } else {
+    lanes_cos_sin(step, &c, &s);
+  }
+  p->F       = c * F + s * p->F_theta;
+  p->F_theta = c * p->F_theta - s * F;
+  p->e[0]    = c * e0 - s * p->e[1];
+  p->e[1]    = c * p->e[1] + s * e0;
+}
+
+/* f(A) x in the eigenvectors, f(lambda) = even + j odd */
+MHB_INLINE mhb_lanes in_modes(mhb_lanes even, mhb_lanes odd, mhb_lanes x) {
+  return even * x + odd * __builtin_shuffle(x, (mhb_lanes_bits){1, 0, 3, 2, 5, 4, 7, 6});
+}
+
+/* The linearised panel, T' = F_theta T + r. With s = exp int (F_theta - m), m the mean of F_theta,
+ * y = T/s obeys y' = m y + r/s, of constant coefficients: its collocation matrix is a function of
+ * A. The rule integrates F_theta - m and r/s instead of F_theta T; that errs by about (z/4)^8/8!
+ * e^z, z the largest exponent. Beyond `mildest` the collocation matrix itself is inverted. 0: it
+ * has no inverse. */
+MHB_INLINE int linearise(const mhb_slip *slip, double mildest, mhb_panel *p) {
+  const mhb_collocation *rule = slip->rule;
+  p->mean                     = lanes_sum(rule->weight * p->F_theta);
+  mhb_lanes apart             = p->h * (p->F_theta - p->mean);
+  p->dense                    = !(lanes_top(lanes_abs(apart)) < mildest);
+  if (p->dense) return invert(rule, p);
+  double    hm   = p->h * p->mean;
+  mhb_lanes over = 1 / (1 - 2 * hm * rule->real + hm * hm * rule->modulus2);
+  p->swing       = lanes_exp(apply(rule->A, apart));
+  p->even        = p->h * over * (rule->real - hm * rule->modulus2);
+  p->odd         = p->h * over * rule->imag;
+  return 1;
+}
+
+/* (I - h A diag(F_theta))^-1 r = r + s (I - h m A)^-1 h A (F_theta/s r); weight = F_theta/s */
+MHB_INLINE mhb_lanes newton_step(const mhb_slip *slip, const mhb_panel *p, mhb_lanes weight,
+                                 mhb_lanes r) {
+  const mhb_collocation *rule = slip->rule;
+  if (p->dense) return apply(p->inverse, r);
+  return r + p->swing * apply(rule->from_modes,
+                              in_modes(p->even, p->odd, apply(rule->to_modes, weight * r)));
+}
+
+/* T at the nodes and the end for T = 1 at the start: s (I - h m A)^-1 1. */
+MHB_INLINE void set_transfer(const mhb_slip *slip, mhb_panel *p) {
+  const mhb_collocation *rule = slip->rule;
+  if (p->dense) {
+    p->transfer = p->inverse[0];
+    for (int j = 1; j < MHB_NODES; j++) p->transfer += p->inverse[j];
+  } else { /* 1/(1 - h m lambda) = 1 + m (h lambda/(1 - h m lambda)) */
+    p->transfer = p->swing * (1 + p->mean * apply(rule->from_modes,
+                                                  in_modes(p->even, p->odd, rule->one_in_modes)));
+  }
+  p->growth = p->stiff ? lanes_sum(rule->end * p->transfer)
+                       : 1 + p->h * lanes_sum(rule->weight * p->F_theta * p->transfer);
+}
+
+MHB_HOT void mhb_slip_response(const mhb_slip *slip, const mhb_panel *p,
+                               mhb_lanes response[MHB_NODES]) {
+  const mhb_collocation *rule = slip->rule;
+  mhb_lanes              over = 1 / p->swing;
+  for (int q = 0; q < MHB_NODES; q++) {
+    if (p->dense) {
+      mhb_lanes sum = p->inverse[0] * rule->A[q][0];
+      for (int j = 1; j < MHB_NODES; j++) sum += p->inverse[j] * rule->A[q][j];
+      response[q] = p->h * sum;
+    } else {
+      response[q] = p->swing * over[q] *
+                    apply(rule->from_modes, in_modes(p->even, p->odd, rule->to_modes[q]));
+    }
+  }
 }
 
 /* Newton's method on the collocation equations from theta; the matrix is kept while it converges
@@ -224,39 +325,43 @@ MHB_INLINE void rotate(mhb_panel *p, mhb_lanes step) {
  * Gauss collocation carries an error of the start to the end undamped where h F_theta -> -infinity,
  * though it hardly shows at the nodes. There the end is extrapolated from the nodes. */
 MHB_INLINE int collocate(const mhb_slip *slip, mhb_panel *p) {
-  const mhb_collocation *rule   = slip->rule;
-  mhb_lanes              over   = 1 / (slip->mu * p->y[0]);
+  const mhb_collocation *rule = slip->rule;
+  mhb_lanes              over = 1 / (slip->mu * p->y[0]), weight = over;
   double                 before = INFINITY, left = INFINITY, enough = .3 * slip->tolerance;
-  int                    fresh = 0;
-  mhb_lanes              step  = lanes_all(0);
+  int                    fresh = 0, isotropic = slip->half == 0 && slip->skew == 0;
+  rate(slip, over, p);
   for (int i = 0; left > enough; i++) {
-    rate(slip, over, p);
     if (i == 16) return 0;
-    if (!fresh && !invert(rule, p)) return 0;
-    step           = apply(p->inverse, p->theta0 + p->h * apply(rule->A, p->F) - p->theta);
+    if (!fresh) {
+      if (!linearise(slip, MILD, p)) return 0;
+      weight = p->F_theta / p->swing;
+    }
+    mhb_lanes step =
+        newton_step(slip, p, weight, p->theta0 + p->h * apply(rule->A, p->F) - p->theta);
     double size    = lanes_top(lanes_abs(step));
     int    stalled = i > 1 && size > .5 * before && size < 1e-7; /* at the rounding of F */
     if (!(size < 4) || (i > 5 && size > .5 * before && size > 1e-7)) return 0;
     p->theta += step;
-    p->F += p->F_theta * step;
-    /* the error is quadratic in the last step, or its product with the one before */
-    left  = size * fmin(1, fresh ? size / before : size);
+    /* the error is quadratic in the last step, or its product with the one before; or that of the
+     * matrix */
+    left  = size * mhb_most(mhb_least(1, fresh ? size / before : size), p->dense ? 0 : ROUGH);
     fresh = size < .1 * before || i == 0; /* as good a matrix as any */
     if (size > .05) fresh = 0;
     before = size;
+    if (isotropic) {
+      turn(p, step, size);
+    } else {
+      rate(slip, over, p);
+    }
     if (size < 1e-14 || stalled) break;
   }
-  if (slip->linearized || before * before * before > slip->tolerance || slip->half != 0 ||
-      slip->skew != 0) {
-    rate(slip, over, p);
-    if (slip->linearized && !invert(rule, p)) return 0;
-  } else {
-    rotate(p, step);
-  }
+  if (isotropic) p->gamma = -p->F_theta / over - slip->mu * p->dy[0];
+  if (slip->linearized && !linearise(slip, slip->mild, p)) return 0;
   p->stiff  = p->h * lanes_top(p->F_theta) < -20;
   p->theta1 = p->stiff ? lanes_sum(rule->end * p->theta)
                        : p->theta0 + p->h * lanes_sum(rule->weight * p->F);
-  p->error  = panel_error(slip, p);
+  set_transfer(slip, p);
+  p->error = panel_error(slip, p);
   return isfinite(p->theta1);
 }
 
@@ -411,7 +516,7 @@ static double slip_end(const mhb_slip *slip, const mhb_panel *p) {
 
 /* Shorten the panel until gamma = 0 at its end. If gamma only comes near zero, slip goes on. */
 static mhb_slip_outcome find_end(const mhb_slip *slip, double fraction, mhb_panel *p) {
-  double close = fmax(1e-12, .01 * slip->tolerance), whole = p->h;
+  double close = mhb_most(1e-12, .01 * slip->tolerance), whole = p->h;
   for (int i = 0; i < 8; i++) {
     double c[MHB_NODES], slope, size;
     if (fraction * p->h < 1e-12) {
@@ -425,7 +530,7 @@ static mhb_slip_outcome find_end(const mhb_slip *slip, double fraction, mhb_pane
     double gamma = gamma_at(slip, p, 1, &size), step = -gamma / slope;
     if (fabs(step * p->h) <= close) break;
     if (!(fabs(step) <= .5)) return gamma > 1e-10 * size ? MHB_SLIP_CONTINUES : MHB_SLIP_ENDS;
-    fraction = fmin(1 + step, whole / p->h);
+    fraction = mhb_least(1 + step, whole / p->h);
   }
   return MHB_SLIP_ENDS;
 }
@@ -435,15 +540,16 @@ MHB_HOT static void freeze(const mhb_slip *slip, double t, double h, double thet
   place_nodes(slip, t, h, p);
   p->theta = lanes_all(theta);
   rate(slip, 1 / (slip->mu * p->y[0]), p);
-  double change = fmin(1, fabs(p->F[0]) * h); /* of theta, neglected, over half of the force */
+  double change = mhb_least(1, fabs(p->F[0]) * h); /* of theta, neglected, over half of the force */
   p->error      = .25 * slip->mu * p->y[0][0] * h * change;
   p->F = p->F_theta = lanes_all(0);
   p->theta0 = p->theta1 = theta;
-  for (int j = 0; j < MHB_NODES; j++) {
-    p->inverse[j]    = lanes_all(0);
-    p->inverse[j][j] = 1;
-  }
-  p->frozen = 1;
+  p->swing = p->transfer = lanes_all(1);
+  p->even                = h * slip->rule->real;
+  p->odd                 = h * slip->rule->imag;
+  p->growth              = 1;
+  p->dense               = 0;
+  p->frozen              = 1;
 }
 
 static const double SHORTEST = 1e-13;
@@ -458,12 +564,12 @@ mhb_slip_outcome mhb_slip_panel(const mhb_slip *slip, double t, double theta, do
   panel->remaining = opening ? left : 1;
   predictor guess;
   extrapolate(slip, panel, t, &guess);
-  double h = opening ? fmin(*suggested, .8 * left) : left / ceil(left / *suggested - 1e-9);
+  double h = opening ? mhb_least(*suggested, .8 * left) : left / ceil(left / *suggested - 1e-9);
   for (;;) {
     double shrink = .5;
     if (solve_panel(slip, &guess, t, h, theta, panel)) {
       if (panel->error < slip->tolerance || h < 1e-4 * panel->remaining) break;
-      shrink = fmax(.25, .9 * pow(slip->tolerance / panel->error, 1. / 16));
+      shrink = mhb_most(.9 * sqrt(sqrt(sqrt(sqrt(slip->tolerance / panel->error)))), .25);
     } else {
       memset(&guess, 0, sizeof guess);
     }
@@ -471,8 +577,8 @@ mhb_slip_outcome mhb_slip_panel(const mhb_slip *slip, double t, double theta, do
     if (h < SHORTEST) return MHB_SLIP_FAILED;
   }
   int    at_limit = !opening && h >= left * (1 - 1e-15);
-  double room     = slip->tolerance / fmax(panel->error, 1e-30);
-  *suggested      = fmin(slip->longest_panel, room > 100 ? 1.5 * h : h);
+  double room     = slip->tolerance / mhb_most(panel->error, 1e-30);
+  *suggested      = mhb_least(slip->longest_panel, room > 100 ? 1.5 * h : h);
   double end      = slip_end(slip, panel);
   if (end <= 1) return find_end(slip, end, panel);
   return at_limit ? MHB_SLIP_INTERVAL_ENDS : MHB_SLIP_CONTINUES;
@@ -496,12 +602,19 @@ double mhb_slip_rate(const mhb_slip *slip, double theta, const double y[3], cons
 /* In the eigenbasis of K: sum_i (x_i/(a + lambda k_i))^2 = 1, lambda >= 0. The sum is decreasing
  * and convex in lambda, so that Newton's method from below is monotone. */
 void mhb_slip_return(const double (*K)[2], double a, const double x[2], double d[2]) {
+  if (K[0][0] == K[1][1] && K[0][1] == 0) {
+    double size = hypot(x[0], x[1]);
+    d[0]        = size > 0 ? x[0] / size : 1;
+    d[1]        = size > 0 ? x[1] / size : 0;
+    return;
+  }
   double mean = .5 * (K[0][0] + K[1][1]), half = .5 * (K[0][0] - K[1][1]);
   double radius = hypot(half, K[0][1]), angle = .5 * atan2(K[0][1], half);
   double c = cos(angle), s = sin(angle), k[2] = {mean + radius, mean - radius};
   double xi[2] = {c * x[0] + s * x[1], -s * x[0] + c * x[1]}, size = hypot(xi[0], xi[1]);
-  double low = fmax(0, (size - a) / k[0]), high = fmax(low, (size - a) / k[1]), lambda = low;
-  double di[2] = {0, 0};
+  double low = mhb_most(0, (size - a) / k[0]), high = mhb_most(low, (size - a) / k[1]),
+         lambda = low;
+  double di[2]  = {0, 0};
   for (int i = 0; i < 100; i++) {
     double sum = 0, slope = 0;
     for (int j = 0; j < 2; j++) {
@@ -510,7 +623,7 @@ void mhb_slip_return(const double (*K)[2], double a, const double x[2], double d
       slope -= 2 * di[j] * di[j] * k[j] / (a + lambda * k[j]);
     }
     if (fabs(1 - sum) < 1e-15) break;
-    double next = fmin(high, fmax(low, lambda + (1 - sum) / slope));
+    double next = mhb_least(high, mhb_most(low, lambda + (1 - sum) / slope));
     if (!(fabs(next - lambda) > 1e-16 * high)) break;
     lambda = next;
   }

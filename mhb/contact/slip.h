@@ -15,6 +15,7 @@
 #ifndef MHB_CONTACT_SLIP_H
 #define MHB_CONTACT_SLIP_H
 
+#include "mesh/base/status.h"
 #include "mhb/numerics/fourier.h"
 #include "mhb/numerics/simd.h"
 
@@ -30,9 +31,14 @@ typedef struct {
   mhb_lanes bernstein[MHB_NODES];     /* Bernstein coefficients of the interpolant, degree 7 */
   mhb_lanes end;                      /* weights of the interpolant's value at s = 1 */
   mhb_lanes legendre[MHB_NODES];      /* Legendre coefficients of the interpolant */
+  /* the eigenvectors V of A in real form, two lanes a conjugate pair: V, V^-1, V^-1 1, and of the
+   * eigenvalues real part, imaginary part with the signs of a turn, square of the modulus */
+  mhb_lanes from_modes[MHB_NODES], to_modes[MHB_NODES], one_in_modes;
+  mhb_lanes real, imag, modulus2;
 } mhb_collocation;
 
-void mhb_collocation_create(mhb_collocation *rule);
+/* SHB_ERR_IO: no memory. */
+shb_status mhb_collocation_create(mhb_collocation *rule);
 
 /* The slip problem of one lap. */
 typedef struct {
@@ -47,6 +53,7 @@ typedef struct {
   double                 tolerance;     /* bound on a panel's error, force units */
   double                 frozen_length; /* rad before an opening over which theta is held */
   double                 initial_rate;  /* th' where slip begins: predicts the first panel */
+  double                 mild;          /* exponent up to which T needs no inverse: see slip.c */
   int                    linearized;    /* F_theta and inverse are wanted at the solution itself */
 } mhb_slip;
 
@@ -60,8 +67,15 @@ typedef struct {
   mhb_lanes cosine, sine; /* of the phase at the nodes */
   mhb_lanes theta, e[2];  /* direction of the friction */
   mhb_lanes F, F_theta, gamma, eKe, beta;
-  mhb_lanes y[3], dy[3];        /* signals and their slopes */
-  mhb_lanes inverse[MHB_NODES]; /* columns of (I - h A diag(F_theta))^-1 */
+  mhb_lanes y[3], dy[3]; /* signals and their slopes */
+  /* the panel linearised, see linearise in slip.c */
+  int       dense;              /* the matrix was inverted; else the next three stand for it */
+  mhb_lanes inverse[MHB_NODES]; /* dense: columns of (I - h A diag(F_theta))^-1 */
+  double    mean;               /* of F_theta over the panel */
+  mhb_lanes swing;              /* exp int (F_theta - mean) */
+  mhb_lanes even, odd;          /* h A (I - h mean A)^-1 in the eigenvectors of A */
+  mhb_lanes transfer;           /* dtheta at the nodes by dtheta at the start */
+  double    growth;             /* the same at the end */
 } mhb_panel;
 
 /* Slip goes on; its rate is zero at the panel's end; the interval ends with the panel; Newton
@@ -80,6 +94,9 @@ typedef enum {
  * At MHB_SLIP_ENDS panel->h may be 0: slip ended at once. */
 mhb_slip_outcome mhb_slip_panel(const mhb_slip *slip, double t, double theta, double limit,
                                 int opening, double *suggested, mhb_panel *panel);
+
+/* dtheta at the nodes, response[q], for a unit drive of dtheta' at node q of a solved panel. */
+void mhb_slip_response(const mhb_slip *slip, const mhb_panel *panel, mhb_lanes response[MHB_NODES]);
 
 /* Directional quantities at theta. */
 typedef struct {

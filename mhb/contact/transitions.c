@@ -52,11 +52,11 @@ static sample sample_grid(const event_function *f, int i) {
 }
 
 static double min4(double a, double b, double c, double d) {
-  return fmin(fmin(a, b), fmin(c, d));
+  return mhb_least(mhb_least(a, b), mhb_least(c, d));
 }
 
 static double max4(double a, double b, double c, double d) {
-  return fmax(fmax(a, b), fmax(c, d));
+  return mhb_most(mhb_most(a, b), mhb_most(c, d));
 }
 
 /* Root of the cubic Hermite interpolant in a bracket with one sign change. */
@@ -105,7 +105,8 @@ static int first_crossing(const event_function *f, double sign, sample a, sample
    * sqrt(3)/216 */
   double steep  = h * h * h * f->bound4 * .0081;
   double middle = 3 * (q - p) / h;
-  double top = fmax(fmax(a.dy, b.dy), middle), bottom = fmin(fmin(a.dy, b.dy), middle);
+  double top    = mhb_most(mhb_most(a.dy, b.dy), middle),
+         bottom = mhb_least(mhb_least(a.dy, b.dy), middle);
   double least = sign > 0 ? -top : bottom, away = sign > 0 ? bottom : -top;
   if (away > steep && sign * a.y >= 0) return 0;
   if (least > steep) {
@@ -252,8 +253,8 @@ static sample stick_start(const event_function *f, double from, double to) {
   double limit = f->mu * v[0];
   if (s.y < -1e-11 * limit * limit - 4e-15 * scale) return s;
   double second = curvature(f, from), step = 1e-6;
-  if (second < 0 && f->bound3 > 0) step = fmax(step, fmin(1.0, -1.5 * second / f->bound3));
-  return sample_at(f, fmin(from + step, to));
+  if (second < 0 && f->bound3 > 0) step = mhb_most(step, mhb_least(1.0, -1.5 * second / f->bound3));
+  return sample_at(f, mhb_least(from + step, to));
 }
 
 double mhb_slip_onset(const mhb_signals *signals, double mu, const double z[2], double from,
@@ -263,7 +264,7 @@ double mhb_slip_onset(const mhb_signals *signals, double mu, const double z[2], 
   sample a = stick_start(&f, from, to);
   if (a.t >= to) return to + 1;
   if (a.y > 0 && a.dy > 0) return a.t;
-  a.y         = fmin(a.y, 0); /* rounding */
+  a.y         = mhb_least(a.y, 0); /* rounding */
   double cell = SHB_TWO_PI / signals->n_grid;
   int    i = (int)floor(a.t / cell) + 1, last = (int)floor(to / cell);
   for (double root; a.t < to; i++) {

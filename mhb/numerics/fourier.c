@@ -4,6 +4,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "mesh/base/constants.h"
+
 void mhb_to_real(int m, const double complex *A, double *a) {
   a[0] = creal(A[0]);
   for (int k = 1; k <= m; k++) {
@@ -94,8 +96,15 @@ shb_status mhb_signals_create(int m, mhb_signals *signals) {
   signals->derivative   = shb_arena_take(arena, size, sizeof(double));
   signals->spectrum     = shb_arena_take(arena, 6 * (size_t)half, sizeof(fftw_complex));
   signals->samples      = shb_arena_take(arena, 6 * (size_t)room, sizeof(double));
+  signals->wave         = shb_arena_take(arena, 2 * MHB_TABLE * MHB_LEAST_GRID, sizeof(double));
   bool ok               = !arena->failed;
-  for (int i = 0; i <= grid && ok; i++) {
+  for (int k = 0; k < MHB_TABLE && ok; k++)
+    for (int i = 0; i < MHB_LEAST_GRID; i++) {
+      double *wave = signals->wave + 2 * k * MHB_LEAST_GRID + i, t = SHB_TWO_PI * i;
+      wave[0]              = cos((k + 1) * t / MHB_LEAST_GRID);
+      wave[MHB_LEAST_GRID] = sin((k + 1) * t / MHB_LEAST_GRID);
+    }
+  for (int i = 1; i <= grid && ok; i++) {
     int n = MHB_LEAST_GRID << i;
 #pragma omp critical(fftw_planner) /* FFTW's planner is not thread safe */
     signals->plan[i] =
@@ -138,23 +147,58 @@ static int highest_harmonic(int m, const double *const a[3]) {
   return 0;
 }
 
-void mhb_signals_set(mhb_signals *signals, const double *const a[3]) {
-  int top = highest_harmonic(signals->m, a), grid = grid_of(top), n = MHB_LEAST_GRID << grid,
-      half        = signals->largest_grid / 2 + 1;
-  signals->top    = top;
-  signals->n_grid = n;
+/* Values and slopes on the least grid by the table. */
+MHB_HOT static void sum_on_table(mhb_signals *signals) {
+  for (int at = 0; at < MHB_LEAST_GRID; at += MHB_LANES) {
+    const double *a = signals->coefficient, *b = signals->derivative;
+    mhb_lanes     y[3], dy[3];
+    for (int i = 0; i < 3; i++) {
+      y[i]  = lanes_all(a[i]);
+      dy[i] = lanes_all(0);
+    }
+    a += 3;
+    b += 3;
+    for (int k = 0; k < signals->top; k++, a += 6, b += 6) {
+      const double *wave = signals->wave + 2 * k * MHB_LEAST_GRID + at;
+      mhb_lanes     c = lanes_load(wave), s = lanes_load(wave + MHB_LEAST_GRID);
+      for (int i = 0; i < 3; i++) {
+        y[i] += a[i] * c - a[i + 3] * s;
+        dy[i] -= b[i] * s + b[i + 3] * c;
+      }
+    }
+    for (int i = 0; i < 3; i++) {
+      lanes_store(signals->value[i] + at, y[i]);
+      lanes_store(signals->slope[i] + at, dy[i]);
+    }
+  }
+}
+
+/* The same on a finer grid by FFT. */
+static void transform(mhb_signals *signals, int grid, const double *const a[3]) {
+  int half = signals->largest_grid / 2 + 1;
   for (int i = 0; i < 6; i++)
     memset(signals->spectrum + (size_t)i * (size_t)half, 0,
-           sizeof(fftw_complex) * (size_t)(n / 2 + 1));
+           sizeof(fftw_complex) * (size_t)(signals->n_grid / 2 + 1));
   for (int i = 0; i < 3; i++) {
     fftw_complex *X = signals->spectrum + (size_t)i * (size_t)half, *dX = X + 3 * (size_t)half;
-    double       *coefficient = signals->coefficient + i, *rate = signals->derivative + i;
-    X[0]           = a[i][0];
+    X[0] = a[i][0];
+    for (int k = 1; k <= signals->top; k++) {
+      X[k]  = CMPLX(.5 * a[i][2 * k - 1], .5 * a[i][2 * k]);
+      dX[k] = CMPLX(-.5 * k * a[i][2 * k], .5 * k * a[i][2 * k - 1]);
+    }
+  }
+  fftw_execute(signals->plan[grid]);
+}
+
+void mhb_signals_set(mhb_signals *signals, const double *const a[3]) {
+  int top = highest_harmonic(signals->m, a), grid = grid_of(top), n = MHB_LEAST_GRID << grid;
+  signals->top    = top;
+  signals->n_grid = n;
+  for (int i = 0; i < 3; i++) {
+    double *coefficient = signals->coefficient + i, *rate = signals->derivative + i;
     coefficient[0] = a[i][0];
     for (int k = 1; k <= top; k++) {
       double even = a[i][2 * k - 1], odd = a[i][2 * k];
-      X[k]                   = CMPLX(.5 * even, .5 * odd);
-      dX[k]                  = CMPLX(-.5 * k * odd, .5 * k * even);
       coefficient[6 * k - 3] = even;
       coefficient[6 * k]     = odd;
       rate[6 * k - 3]        = k * even;
@@ -162,16 +206,29 @@ void mhb_signals_set(mhb_signals *signals, const double *const a[3]) {
     }
     set_bounds(signals, i, a[i]);
   }
-  fftw_execute(signals->plan[grid]);
+  if (grid == 0) {
+    sum_on_table(signals);
+  } else {
+    transform(signals, grid, a);
+  }
   for (int i = 0; i < 3; i++) {
     memcpy(signals->value[i] + n, signals->value[i], sizeof(double) * MHB_LANES);
     memcpy(signals->slope[i] + n, signals->slope[i], sizeof(double) * MHB_LANES);
   }
 }
 
-void mhb_signals_at(const mhb_signals *signals, double t, double y[3], double dy[3],
-                    double ddy[3]) {
-  double        c1 = cos(t), s1 = sin(t), c = 1, s = 0;
+/* cos and sin, faster than the library's where vectors are wide. */
+MHB_INLINE void cos_sin(double t, double *c, double *s) {
+  mhb_lanes cosine, sine;
+  lanes_cos_sin(lanes_all(t), &cosine, &sine);
+  *c = cosine[0];
+  *s = sine[0];
+}
+
+MHB_HOT void mhb_signals_at(const mhb_signals *signals, double t, double y[3], double dy[3],
+                            double ddy[3]) {
+  double c1, s1, c = 1, s = 0;
+  cos_sin(t, &c1, &s1);
   const double *a = signals->coefficient;
   for (int i = 0; i < 3; i++) {
     y[i]  = a[i];

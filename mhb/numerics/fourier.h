@@ -31,8 +31,8 @@ void mhb_basis_integral(int n, double t0, double t1, double *integral);
  * + Hankel). integral: of the basis up to harmonic p + q. */
 void mhb_basis_product(int p, int q, const double *integral, double *product, int ld);
 
-/* Grids of 64, 128, ... points. */
-enum { MHB_LEAST_GRID = 64, MHB_GRIDS = 12 };
+/* Grids of 64, 128, ... points; the least one serves MHB_TABLE harmonics. */
+enum { MHB_LEAST_GRID = 64, MHB_GRIDS = 12, MHB_TABLE = 7 };
 
 /* Three signals of up to m harmonics: values and slopes on a grid, evaluation anywhere. The grid
  * has as many points as the highest harmonic that is not zero needs. */
@@ -48,8 +48,9 @@ typedef struct {
   double        bound[3][5]; /* [signal][j] = sum_k k^j |A_k| >= |d^j x/dt^j| */
   fftw_complex *spectrum;    /* [6][largest_grid/2 + 1] */
   double       *samples;     /* [6][largest_grid + MHB_LANES]: value, slope */
-  fftw_plan     plan[MHB_GRIDS]; /* for 64 points, 128, ... as far as m needs them */
-  shb_arena     arena;
+  double   *wave; /* [MHB_TABLE][2][MHB_LEAST_GRID] cos kt, sin kt, k from 1, on the least grid */
+  fftw_plan plan[MHB_GRIDS]; /* for 128 points, ... as far as m needs them; 64 have the table */
+  shb_arena arena;
 } mhb_signals;
 
 /* FFTW plans are made here and only here. SHB_ERR_IO: no memory, or more harmonics than the largest

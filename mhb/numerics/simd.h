@@ -23,6 +23,15 @@ typedef long long mhb_lanes_bits __attribute__((vector_size(64)));
 #define MHB_HOT
 #endif
 
+/* The smaller and the larger of two numbers, without a call; b if a is not a number. */
+MHB_INLINE double mhb_least(double a, double b) {
+  return a < b ? a : b;
+}
+
+MHB_INLINE double mhb_most(double a, double b) {
+  return a > b ? a : b;
+}
+
 /* n rounded up to whole vectors. */
 static inline int mhb_whole_lanes(int n) {
   return (n + MHB_LANES - 1) / MHB_LANES * MHB_LANES;
@@ -69,7 +78,7 @@ MHB_INLINE mhb_lanes lanes_max(mhb_lanes a, mhb_lanes b) {
 }
 
 MHB_INLINE mhb_lanes lanes_abs(mhb_lanes x) {
-  return lanes_max(x, -x);
+  return (mhb_lanes)((mhb_lanes_bits)x & ~(1LL << 63));
 }
 
 /* Largest and smallest lane; NaN lanes may be ignored. */
@@ -85,30 +94,51 @@ MHB_INLINE double lanes_bottom(mhb_lanes x) {
   return -lanes_top(-x);
 }
 
-/* cos x and sin x to rounding for |x| < 1e5. The argument is reduced by multiples of pi/2, which is
- * held in two parts. Minimax polynomials on [-pi/4, pi/4] follow, with coefficients of fdlibm. */
-MHB_INLINE void lanes_cos_sin(mhb_lanes x, mhb_lanes *cosine, mhb_lanes *sine) {
-  const double   magic = 6755399441055744.0; /* 1.5 2^52: adding it rounds to an integer */
-  mhb_lanes      turns = x * 0.63661977236758134308 + magic;
-  mhb_lanes_bits n     = (mhb_lanes_bits)turns;
-  turns -= magic;
-  mhb_lanes r = x - turns * 1.57079632673412561417;
-  r -= turns * 6.07710050650619224932e-11;
+/* cos r and sin r to rounding for |r| <= pi/4: minimax polynomials with coefficients of fdlibm. */
+MHB_INLINE void lanes_cos_sin_small(mhb_lanes r, mhb_lanes *cosine, mhb_lanes *sine) {
   mhb_lanes z = r * r;
   mhb_lanes s = 2.75573137070700676789e-06 +
                 z * (-2.50507602534068634195e-08 + z * 1.58969099521155010221e-10);
   s = -1.66666666666666324348e-01 +
       z * (8.33333333332248946124e-03 + z * (-1.98412698298579493134e-04 + z * s));
-  s           = r + r * z * s;
   mhb_lanes c = -2.75573143513906633035e-07 +
                 z * (2.08757232129817482790e-09 - z * 1.13596475577881948265e-11);
   c = 4.16666666666666019037e-02 +
       z * (-1.38888888888741095749e-03 + z * (2.48015872894767294178e-05 + z * c));
-  c                       = 1 - .5 * z + z * z * c;
+  *sine   = r + r * z * s;
+  *cosine = 1 - .5 * z + z * z * c;
+}
+
+/* cos x and sin x to rounding for |x| < 1e5. The argument is reduced by multiples of pi/2, which is
+ * held in two parts. */
+MHB_INLINE void lanes_cos_sin(mhb_lanes x, mhb_lanes *cosine, mhb_lanes *sine) {
+  const double   magic = 6755399441055744.0; /* 1.5 2^52: adding it rounds to an integer */
+  mhb_lanes      turns = x * 0.63661977236758134308 + magic;
+  mhb_lanes_bits n     = (mhb_lanes_bits)turns;
+  turns -= magic;
+  mhb_lanes r = x - turns * 1.57079632673412561417, c, s;
+  r -= turns * 6.07710050650619224932e-11;
+  lanes_cos_sin_small(r, &c, &s);
   mhb_lanes_bits swap     = -(n & 1);
   mhb_lanes_bits sin_sign = (n & 2) << 62, cos_sign = ((n + 1) & 2) << 62;
   *sine   = (mhb_lanes)((mhb_lanes_bits)lanes_where(swap, c, s) ^ sin_sign);
   *cosine = (mhb_lanes)((mhb_lanes_bits)lanes_where(swap, s, c) ^ cos_sign);
+}
+
+/* exp x for |x| < 700 to a few units of rounding: the argument is reduced by multiples of ln 2,
+ * Taylor's series to degree 11 follows (its rest is 4e-15 of the value). */
+MHB_INLINE mhb_lanes lanes_exp(mhb_lanes x) {
+  const double   magic = 6755399441055744.0;
+  mhb_lanes      turns = x * 1.44269504088896338700 + magic;
+  mhb_lanes_bits n     = (mhb_lanes_bits)turns << 52; /* the low bits of magic are zero */
+  turns -= magic;
+  mhb_lanes r  = (x - turns * 6.93147180369123816490e-01) - turns * 1.90821492927058770002e-10;
+  mhb_lanes r2 = r * r, r4 = r2 * r2;
+  mhb_lanes low    = (1 + r) + r2 * (.5 + r * (1. / 6)),
+            middle = (1. / 24 + r * (1. / 120)) + r2 * (1. / 720 + r * (1. / 5040)),
+            high   = (1. / 40320 + r * (1. / 362880)) + r2 * (1. / 3628800 + r * (1. / 39916800));
+  mhb_lanes y      = low + r4 * (middle + r4 * high);
+  return (mhb_lanes)((mhb_lanes_bits)y + n);
 }
 
 #endif

@@ -138,7 +138,7 @@ static void print_times(const method *all, const summary *sum, int n) {
   static const struct {
     const char *accuracy;
     double      median[2], worst[2];
-  } wanted[]                       = {{"exact", {20, 40}, {50, 80}}, {"fast", {5, 12}, {0, 0}}};
+  } wanted[]                       = {{"exact", {6, 20}, {50, 80}}, {"fast", {5, 12}, {0, 0}}};
   static const char *const what[2] = {"force", "force + derivative"};
   for (int i = 0; i < 2; i++)
     for (int H = SUITE_HARMONICS; H <= METHOD_H; H += METHOD_H - SUITE_HARMONICS)

@@ -14,7 +14,7 @@ typedef struct {
 /* n = 2 + cos t, x = (3 cos t, -sin t) */
 static void start(fixture *f) {
   const double n[SIZE] = {2, 1}, x1[SIZE] = {0, 3}, x2[SIZE] = {0, 0, 1};
-  mhb_collocation_create(&f->rule);
+  assert_ok(mhb_collocation_create(&f->rule));
   assert_ok(mhb_signals_create(M, &f->signals));
   mhb_signals_set(&f->signals, (const double *const[3]){n, x1, x2});
   assert_ok(mhb_dense_output_create(&f->rule, &f->output));

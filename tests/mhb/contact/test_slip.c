@@ -9,7 +9,7 @@ enum { M = 3, SIZE = 2 * M + 1 };
 static void rule_is_exact_for_polynomials(void **state) {
   (void)state;
   mhb_collocation rule;
-  mhb_collocation_create(&rule);
+  assert_ok(mhb_collocation_create(&rule));
   for (int k = 0; k < 2 * MHB_NODES; k++) {
     double sum = 0, end = 0;
     for (int i = 0; i < MHB_NODES; i++) sum += rule.weight[i] * pow(rule.node[i], k);
@@ -32,7 +32,7 @@ typedef struct {
 } fixture;
 
 static void start(fixture *f, const double *n, const double *x1, const double *x2, double mu) {
-  mhb_collocation_create(&f->rule);
+  assert_ok(mhb_collocation_create(&f->rule));
   assert_ok(mhb_signals_create(M, &f->signals));
   mhb_signals_set(&f->signals, (const double *const[3]){n, x1, x2});
   f->slip = (mhb_slip){.signals       = &f->signals,
@@ -74,6 +74,54 @@ static void circular_motion(void **state) {
   assert_near(t, end, 1e-15);
   assert_true(worst < 1e-10);
   mhb_signals_destroy(&f.signals);
+}
+
+/* The linearised panel of the same motion, of length h: by the inverted matrix if mild = 0, by
+ * separation of the mean of F_theta if it is large. *miss: of the growth, against the closed
+ * form. */
+static void linearised_panel(double mild, double h, mhb_lanes response[MHB_NODES], double *miss) {
+  const double n[SIZE] = {2}, x1[SIZE] = {0, 3}, x2[SIZE] = {0, 0, -3}, mu = .4;
+  const double r = 3 / (mu * 2), c = sqrt((r - 1) / (r + 1)), phi0 = .3;
+  const double b = atanh(tan(phi0 / 2) / c), late = b + c * (r + 1) * h / 2;
+  double       suggested = h, growth = 1;
+  fixture      f;
+  mhb_panel    panel = {.h = 0};
+  start(&f, n, x1, x2, mu);
+  f.slip.initial_rate = r * cos(phi0);
+  f.slip.linearized   = 1;
+  f.slip.mild         = mild;
+  f.slip.tolerance    = 1e-6; /* one panel */
+  assert_int_equal(mhb_slip_panel(&f.slip, 0, phi0, 9, 0, &suggested, &panel), MHB_SLIP_CONTINUES);
+  assert_int_equal(panel.dense, mild == 0);
+  for (int i = 0; i < 2; i++) { /* dtheta/db late over dtheta/db at 0 */
+    double T = tanh(i ? b : late), slope = (1 - T * T) / (1 + c * c * T * T);
+    growth = i ? growth / slope : slope;
+  }
+  *miss = fabs(panel.growth - growth);
+  mhb_slip_response(&f.slip, &panel, response);
+  mhb_signals_destroy(&f.signals);
+}
+
+/* Both ways differ by the eighth power of the panel's length. */
+static void panels_are_linearised_without_an_inverse(void **state) {
+  (void)state;
+  double apart[2];
+  for (int half = 0; half < 2; half++) {
+    double    h = half ? .3 : .6, miss[2], largest = 0;
+    mhb_lanes dense[MHB_NODES], apart_from_mean[MHB_NODES];
+    linearised_panel(0, h, dense, &miss[0]);
+    linearised_panel(100, h, apart_from_mean, &miss[1]);
+    apart[half] = 0;
+    for (int q = 0; q < MHB_NODES; q++) {
+      apart[half] = fmax(apart[half], lanes_top(lanes_abs(dense[q] - apart_from_mean[q])));
+      largest     = fmax(largest, lanes_top(lanes_abs(dense[q])));
+    }
+    apart[half] /= largest;
+    print_message("h %.1f: apart %.1e, growth %.1e and %.1e off\n", h, apart[half], miss[0],
+                  miss[1]);
+    assert_true(miss[0] < 1e-10 && miss[1] < 1e-10);
+  }
+  assert_true(apart[0] > 128 * apart[1] && apart[0] < 1e-5);
 }
 
 /* Along a line, x = 2 sin t, slip ends where x turns: t = pi/2. */
@@ -143,6 +191,7 @@ int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(rule_is_exact_for_polynomials),
       cmocka_unit_test(circular_motion),
+      cmocka_unit_test(panels_are_linearised_without_an_inverse),
       cmocka_unit_test(slip_ends_where_the_motion_turns),
       cmocka_unit_test(slip_may_end_at_once),
       cmocka_unit_test(direction_by_differences),
