@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include "mesh/base/constants.h"
+#include "mhb/search/ring_motion.h"
 
 static void record_signals(mhb_response *response, mhb_branch *branch, int point,
                            const mhb_balance *b, const double *x) {
@@ -35,6 +36,18 @@ static void record_states(mhb_branch *branch, int point, const mhb_balance *b) {
   branch->error_sampling[point] = worst;
 }
 
+/* How the motion is spread over the blades of a ring. */
+static void record_ring(const mhb_response *response, mhb_branch *branch, int point,
+                        const mhb_balance *b) {
+  const int N      = response->ring;
+  double   *energy = branch->ring_energy + (size_t)point * (size_t)N;
+  double   *wave   = branch->ring_wave + (size_t)point * (size_t)N;
+  mhb_ring_motion_energies(b, energy, wave, &branch->ring_standing[point]);
+  branch->ring_participation[point] = mhb_ring_participation(N, energy);
+  branch->ring_kind[point] =
+      mhb_ring_kind_of(branch->ring_participation[point], wave[0], branch->ring_standing[point]);
+}
+
 shb_status mhb_record(mhb_response *response, int index, mhb_balance *b,
                       const mhb_curve_point *point, int special, double seconds) {
   int at;
@@ -58,6 +71,7 @@ shb_status mhb_record(mhb_response *response, int index, mhb_balance *b,
   if (branch->error_spatial) branch->error_spatial[at] = -1;
   if (branch->truncation_kind) branch->truncation_kind[at] = point->truncation_kind;
   branch->error_modal[at] = point->modal;
+  if (branch->ring_kind) record_ring(response, branch, at, b);
   return SHB_OK;
 }
 

@@ -4,11 +4,11 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "mhb/balance/multistart.h"
 #include "mhb/balance/subharmonics.h"
 #include "mhb/branches/branch_completion.h"
 #include "mhb/branches/period_doubling.h"
 #include "mhb/numerics/fourier.h"
+#include "mhb/search/multistart.h"
 
 static const double TOLERANCE = 1e-10;
 
@@ -141,7 +141,7 @@ static shb_status add_crossing(const branch_search *h, const mhb_branch *b, int 
   for (int k = 0; k < 3; k++) {
     interpolate(h, b, i, shares[k], s, x);
     if (mhb_newton_solve(s->newton, s->balance, value, TOLERANCE, x, &iterations) == MHB_CONVERGED)
-      return mhb_solution_set_add_shifts(&s->known, s->balance, x);
+      return mhb_solution_set_add_copies(&s->known, s->balance, x);
   }
   return SHB_OK;
 }
@@ -212,11 +212,25 @@ static shb_status trace_both_ways(mhb_tracer *tracer, const mhb_seed *seed, mhb_
   return status;
 }
 
+/* Of the middle half of a branch, the point where the parameter changes fastest. At a fold a
+ * solution is known to the root of the tolerance only. */
+static int middle_point(const mhb_branch *b) {
+  int    best = b->n_points / 2;
+  double most = -1;
+  for (int i = b->n_points / 4 + 1; i + 1 < b->n_points && i < 3 * b->n_points / 4; i++) {
+    const double rate =
+        fmin(fabs(b->value[i + 1] - b->value[i]), fabs(b->value[i] - b->value[i - 1]));
+    if (rate > most) best = i;
+    most = fmax(most, rate);
+  }
+  return best;
+}
+
 /* Whether the middle of a branch lies on another one. The branch then ran into that one, or is that
  * one, traced from its other end. */
 static shb_status is_another(branch_search *h, subharmonic_problem *s, int index, bool *another) {
   const mhb_branch *b     = branch_at(h, index);
-  int               point = b->n_points / 2, iterations;
+  int               point = middle_point(b), iterations;
   double            value = value_at(h, b, point), x[s->balance->n];
   interpolate(h, b, point, 0, s, x);
   *another = false;
@@ -347,6 +361,7 @@ static int n_branches(const branch_search *h) {
 static shb_status search_at(branch_search *h, subharmonic_problem *s, double value, double size,
                             int starts, unsigned long long seed, double share) {
   static const double sizes[] = {1, 2, 4, 0.5};
+  const int           seeded  = (int)seed;
   int                 before = n_branches(h), done = 0;
   double              x[s->balance->n];
   for (; size > 0 && done < starts && go_on_searching(h, value, share); done++) {
@@ -358,11 +373,12 @@ static shb_status search_at(branch_search *h, subharmonic_problem *s, double val
     SHB_TRY(trace_found(h, s, x, value));
     SHB_TRY(collect_known(h, s, value, -1));
     /* whether it was traced or not */
-    SHB_TRY(mhb_solution_set_add_shifts(&s->known, s->balance, x));
+    SHB_TRY(mhb_solution_set_add_copies(&s->known, s->balance, x));
   }
   mhb_search made = {.value  = mhb_parameter_shown(h->settings->parameter, value),
                      .order  = s->order,
                      .starts = done,
+                     .seed   = seeded,
                      .found  = n_branches(h) - before};
   return mhb_response_note_search(branch_at(h, 0), &made);
 }

@@ -8,6 +8,7 @@
 #include "mhb/balance/subharmonics.h"
 #include "mhb/branches/record.h"
 #include "mhb/continuation/outputs.h"
+#include "mhb/search/ring_symmetry.h"
 
 /* A curve has closed if it comes this near to its start, relative to the motion. */
 static const double SAME = 1e-5;
@@ -129,6 +130,14 @@ static bool is_recorded(const mhb_tracer *t) {
   return false;
 }
 
+/* A curve of waves in a ring has no part beside them but round-off. */
+static bool is_beside_wave(const mhb_balance *b, const double *x) {
+  if (!mhb_ring_has_waves(b)) return false;
+  double part[b->n];
+  mhb_ring_beside_wave(b, x, part);
+  return mhb_norm(part, b->n) > VANISHED * mhb_norm(x, b->n);
+}
+
 /* Decide where the segment ends by its motion. That is at its own start, at a target, at the start
  * of the curve that it continues, or nowhere. */
 static shb_status started(mhb_segment_host *host, const mhb_seed *seed, mhb_end *end) {
@@ -143,6 +152,7 @@ static shb_status started(mhb_segment_host *host, const mhb_seed *seed, mhb_end 
     return SHB_OK;
   }
   if (begins) SHB_TRY(note_start(t));
+  t->is_beside_wave = t->joins && is_beside_wave(mhb_tracer_balance(t), first->x);
   if (seed->kind == MHB_SEED_CROSSING) mhb_curve_place_free(&t->start);
   const mhb_curve_place *place = plan->target ? plan->target : plan->closes ? &t->start : NULL;
   if (place && !place->x) place = NULL;
@@ -187,31 +197,43 @@ static double slope_of_output(mhb_arclength *curve, const mhb_curve_point *point
   return mhb_output_slope(mhb_curve_balance(curve), point, *(const int *)context);
 }
 
-/* Part of a motion that does not repeat after d periods: its size |z|, and the rate z.dz/|z| of the
- * size along the tangent. */
-static double part_of_order(const mhb_balance *b, const mhb_curve_point *point, int d,
-                            double *rate) {
+/* Part of a motion x that a motion of higher symmetry does not have. With d < nu, d dividing nu, it
+ * does not repeat after d periods. With d = nu it is beside the wave of a ring. */
+static void part_of(const mhb_balance *b, const double *x, int d, double *part) {
+  if (d < b->receptance->nu)
+    mhb_subharmonic_component(b, x, d, part);
+  else
+    mhb_ring_beside_wave(b, x, part);
+}
+
+/* Whether that part may vanish. */
+static bool has_part(const mhb_tracer *t, const mhb_balance *b, int d) {
+  const int nu = b->receptance->nu;
+  return d < nu ? nu % d == 0 : t->is_beside_wave;
+}
+
+/* Size |z| of that part, and the rate z.dz/|z| of the size along the tangent. */
+static double size_of_part(const mhb_balance *b, const mhb_curve_point *point, int d,
+                           double *rate) {
   double z[b->n], dz[b->n];
-  mhb_subharmonic_component(b, point->x, d, z);
-  mhb_subharmonic_component(b, point->tangent, d, dz);
+  part_of(b, point->x, d, z);
+  part_of(b, point->tangent, d, dz);
   double size = mhb_norm(z, b->n);
   *rate       = 0;
   for (int i = 0; i < b->n && size > 0; i++) *rate += z[i] * dz[i] / size;
   return size;
 }
 
-/* Where its subharmonic part vanishes the curve meets one of lower order, or its own time-shifted
- * copy. The test function is VANISHED less the smallest part that falls or is 0, relative to the
- * motion. */
+/* Where such a part vanishes the curve meets one of higher symmetry, or its own copy. The test
+ * function is VANISHED less the smallest part that falls or is 0, relative to the motion. */
 static double vanished(mhb_arclength *curve, const mhb_curve_point *point, void *context) {
+  const mhb_tracer  *t    = context;
   const mhb_balance *b    = mhb_curve_balance(curve);
-  int                nu   = b->receptance->nu;
   double             size = mhb_norm(point->x, b->n), most = -1;
-  (void)context;
-  for (int d = 1; d < nu; d++) {
-    double rate = 0, part = nu % d == 0 ? part_of_order(b, point, d, &rate) : INFINITY;
-    if (nu % d == 0 && (rate < 0 || part <= ROUND_OFF * size))
-      most = fmax(most, VANISHED - part / size);
+  for (int d = 1; d <= b->receptance->nu; d++) {
+    if (!has_part(t, b, d)) continue;
+    double rate, part = size_of_part(b, point, d, &rate);
+    if (rate < 0 || part <= ROUND_OFF * size) most = fmax(most, VANISHED - part / size);
   }
   return most;
 }
@@ -220,17 +242,17 @@ static double vanished(mhb_arclength *curve, const mhb_curve_point *point, void 
 static void limit_step(mhb_segment_host *host) {
   const mhb_balance     *b     = mhb_curve_balance(host->curve);
   const mhb_curve_point *point = &host->curve->current;
-  int                    nu    = b->receptance->nu;
   double                 least = ROUND_OFF * mhb_norm(point->x, b->n);
-  for (int d = 1; d < nu; d++) {
-    double rate = 0, part = nu % d == 0 ? part_of_order(b, point, d, &rate) : 0;
+  for (int d = 1; d <= b->receptance->nu; d++) {
+    if (!has_part(of(host), b, d)) continue;
+    double rate, part = size_of_part(b, point, d, &rate);
     if (rate < 0 && part > least && part / -rate < 2 * host->curve->step)
       host->curve->step = 0.5 * part / -rate;
   }
 }
 
 static shb_status make_tests(mhb_tracer *t, const mhb_balance *b) {
-  int copies = b->receptance->nu, n = 0;
+  int copies = mhb_motion_copies(b), n = 0;
   int outputs  = b->settings->outline ? 0 : mhb_outputs(b);
   t->returns   = calloc((size_t)copies, sizeof *t->returns);
   t->output    = calloc((size_t)outputs + 1, sizeof *t->output);
@@ -248,8 +270,9 @@ static shb_status make_tests(mhb_tracer *t, const mhb_balance *b) {
   mhb_events_range_ends(test + n);
   n += 2;
   if (t->joins)
-    test[n++] = (mhb_event_test){.name      = "curve of lower order",
+    test[n++] = (mhb_event_test){.name      = "curve of higher symmetry",
                                  .g         = vanished,
+                                 .context   = t,
                                  .direction = 1,
                                  .at_next   = true,
                                  .end       = MHB_END_JOINED};

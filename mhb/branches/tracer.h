@@ -33,7 +33,8 @@ struct mhb_tracer {
   mhb_response        *store;   /* the segments */
   int                  segment; /* under way; -1: none */
   mhb_monitor         *monitor;
-  bool              joins; /* curves of higher order: they end where they meet one of lower order */
+  bool joins; /* curves beside the main one: they end where they meet one of higher symmetry */
+  bool is_beside_wave; /* with joins: the curve under way is of other motions than the wave */
   mhb_segment_plan  plan;
   mhb_curve_place   start;            /* of the curve under way */
   bool              returns_to_start; /* it ends there; noted anew when more harmonics move it */
@@ -49,7 +50,8 @@ struct mhb_tracer {
   void *context;
 };
 
-/* For a branch of a response; joins: segments end where they meet a curve of lower order.
+/* For a branch of a response. joins: segments end where they meet a curve of lower order, or in a
+ * ring the wave.
  * SHB_ERR_IO: no memory. */
 shb_status mhb_tracer_create(mhb_balance *balance, const mhb_response *response, int branch,
                              bool joins, mhb_monitor *monitor, mhb_tracer **tracer);

@@ -4,9 +4,9 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "mhb/balance/subharmonics.h"
 #include "mhb/continuation/corrector.h"
 #include "mhb/continuation/resonance_detection.h"
+#include "mhb/search/ring_symmetry.h"
 
 /* A law with a larger tolerance has jumps that mislead chord steps. */
 static const double SMOOTH = 1e-5;
@@ -80,7 +80,7 @@ static mhb_reason solve_at_value(mhb_curve_system *system, double tolerance,
 
 /* The same motion, j periods of the excitation later. */
 static void copy(const mhb_curve_system *system, const double *x, int j, double *to) {
-  mhb_subharmonic_shift(of(system)->balance, x, j, to);
+  mhb_motion_copy(of(system)->balance, x, j, to);
 }
 
 /* The open limit (0) and the stuck limit (1). */
@@ -154,7 +154,7 @@ shb_status mhb_balance_curve_create(mhb_balance *b, double low, double high, mhb
                                       .relative           = frequency,
                                       .smooth             = b->settings->tolerance <= SMOOTH,
                                       .row_length         = b->nb,
-                                      .copies             = b->receptance->nu,
+                                      .copies             = mhb_motion_copies(b),
                                       .copy               = copy,
                                       .destroy            = destroy,
                                       .evaluation_create  = evaluation_create,

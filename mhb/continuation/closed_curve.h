@@ -1,5 +1,5 @@
 /* Closed curves: whether a curve has come back to its start. The motion there is the same, or its
- * copy some periods of the excitation later. */
+ * copy some periods of the excitation later, or some blades further in a ring of equal blades. */
 #ifndef MHB_CONTINUATION_CLOSED_CURVE_H
 #define MHB_CONTINUATION_CLOSED_CURVE_H
 

@@ -9,6 +9,7 @@
 #include "mhb/response/face_wear.h"
 #include "mhb/response/response.h"
 #include "mhb/response/response_fields.h"
+#include "mhb/response/ring_description.h"
 
 static const char *const origin_name[] = {"end", "search", "flip", "aside"};
 enum { N_ORIGINS = sizeof origin_name / sizeof *origin_name };
@@ -75,19 +76,21 @@ static shb_status write_searches(hid_t group, const mhb_response *response,
   const h5_shape shape = H5_SHAPE((hsize_t)n);
   const char    *units = mhb_parameter_unit(response->parameter);
   double         value[n + 1];
-  int            order[n + 1], starts[n + 1], found[n + 1];
+  int            order[n + 1], starts[n + 1], found[n + 1], seed[n + 1];
   if (n == 0) return SHB_OK;
   for (int i = 0; i < n; i++) {
     value[i]  = branch->search[i].value;
     order[i]  = branch->search[i].order;
     starts[i] = branch->search[i].starts;
     found[i]  = branch->search[i].found;
+    seed[i]   = branch->search[i].seed;
   }
   SHB_TRY(h5_write_double(group, "search/parameter", shape, value, *units ? units : "-",
                           "value of the parameter at which other curves were searched for"));
   SHB_TRY(h5_write_int(group, "search/order", shape, order, "-",
                        "periods of the excitation after which the motions searched for repeat"));
   SHB_TRY(h5_write_int(group, "search/starts", shape, starts, "-", "random starts made"));
+  SHB_TRY(h5_write_int(group, "search/seed", shape, seed, "-", "seed of their random numbers"));
   return h5_write_int(group, "search/found", shape, found, "-", "curves found");
 }
 
@@ -250,6 +253,7 @@ static shb_status write_unfinished(hid_t group, const mhb_response *response,
 }
 
 static shb_status fill_branch(hid_t group, const mhb_response *response, const mhb_branch *branch) {
+  char motion[MHB_RING_TEXT];
   SHB_TRY(h5_write_attribute_text(group, ".", "kind", mhb_branch_kind_name(branch->kind)));
   SHB_TRY(h5_write_attribute_text(group, ".", "reason", branch->reason));
   SHB_TRY(h5_write_attribute_int(group, ".", "complete", branch->complete));
@@ -263,6 +267,8 @@ static shb_status fill_branch(hid_t group, const mhb_response *response, const m
     SHB_TRY(h5_write_counter(
         group, "harmonic", (hsize_t)branch->n_harmonics + 1,
         "harmonic k of omega / order; x(t) = Re sum_k A_k exp(j k omega t / order)"));
+  mhb_ring_describe(response, branch, motion);
+  if (*motion) SHB_TRY(h5_write_attribute_text(group, ".", "ring_motion", motion));
   SHB_TRY(write_fields(group, response, branch));
   SHB_TRY(write_unfinished(group, response, branch->unfinished));
   SHB_TRY(write_searches(group, response, branch));
@@ -374,21 +380,25 @@ static shb_status read_descent(hid_t group, const char *path, int index, mhb_bra
 static shb_status read_searches(hid_t group, const char *path, int index, mhb_branch *branch) {
   h5_shape shape;
   double  *value    = NULL;
-  int     *count[3] = {NULL};
+  int     *count[4] = {NULL};
   if (!h5_exists(group, "search")) return SHB_OK;
   SHB_TRY(h5_shape_of(group, "search/parameter", &shape));
   SHB_CHECK(shape.rank == 1 && shape.dim[0] <= MHB_MOST_ENTRIES, SHB_ERR_INPUT,
             "%s: /branch_%d/search/parameter must be a list of at most %d", path, index,
             MHB_MOST_ENTRIES);
-  static const char *const name[] = {"search/order", "search/starts", "search/found"};
+  static const char *const name[] = {"search/order", "search/starts", "search/found",
+                                     "search/seed"}; /* earlier versions lack the seed */
   shb_status               status = h5_read_double(group, "search/parameter", &shape, &value);
-  for (int k = 0; k < 3 && status == SHB_OK; k++)
-    status = h5_read_int(group, name[k], &shape, &count[k]);
+  for (int k = 0; k < 4 && status == SHB_OK; k++)
+    if (k < 3 || h5_exists(group, name[k])) status = h5_read_int(group, name[k], &shape, &count[k]);
   for (hsize_t i = 0; i < shape.dim[0] && status == SHB_OK; i++)
-    status = mhb_response_note_search(
-        branch, &(mhb_search){value[i], count[0][i], count[1][i], count[2][i]});
+    status = mhb_response_note_search(branch, &(mhb_search){.value  = value[i],
+                                                            .order  = count[0][i],
+                                                            .starts = count[1][i],
+                                                            .seed   = count[3] ? count[3][i] : 0,
+                                                            .found  = count[2][i]});
   free(value);
-  for (int k = 0; k < 3; k++) free(count[k]);
+  for (int k = 0; k < 4; k++) free(count[k]);
   return status;
 }
 
@@ -413,6 +423,8 @@ static shb_status check_points(const char *path, int index, const mhb_branch *br
   SHB_TRY(check_codes(path, index, "judged", n, branch->judged, 0, MHB_N_JUDGED - 1, "0 to 5"));
   SHB_TRY(check_codes(path, index, "lasting/kind", n, branch->lasting_kind, 0,
                       MHB_LASTING_KINDS - 1, "0 to 5"));
+  SHB_TRY(
+      check_codes(path, index, "ring/kind", n, branch->ring_kind, 0, MHB_RING_KINDS - 1, "0 to 4"));
   return check_codes(path, index, "loss", n, branch->loss, 0, MHB_N_LOSSES - 1, "0 to 3");
 }
 

@@ -73,6 +73,19 @@ const mhb_field mhb_fields[] = {
      "periods of the fundamental that were integrated, both starts"},
     {"lasting/kind", "", MHB_INT, AT(lasting_kind), "-",
      "0 not computed, 1 the wave, 2 mildly modulated, 3 modulated, 4 irregular, 5 several motions"},
+    {"ring/energy", "b", MHB_DOUBLE, AT(ring_energy), "J", "mean kinetic energy of each blade"},
+    {"ring/wave", "b", MHB_DOUBLE, AT(ring_wave), "-",
+     "share of the kinetic energy in waves of j = 0, 1, .. nodal diameters more than the load's; "
+     "of "
+     "harmonic k of the excitation the load drives k times the engine order"},
+    {"ring/standing", "", MHB_DOUBLE, AT(ring_standing), "-",
+     "share of the kinetic energy in waves that meet an equal one running backwards"},
+    {"ring/participation", "", MHB_DOUBLE, AT(ring_participation), "-",
+     "share of the blades that take part: (sum e)^2/(N sum e^2) of their kinetic energies e; 1/N: "
+     "one blade alone"},
+    {"ring/kind", "", MHB_INT, AT(ring_kind), "-",
+     "0 at rest, 1 the wave that the load drives, 2 other waves beside it, 3 a standing wave, 4 "
+     "localised: participation below 1/2"},
     /* the last N_INTEGRATION: of integration branches only */
     {"multiple", "", MHB_INT, AT(multiple), "-",
      "the motion repeats after so many periods of the fundamental; 0: it does not"},
@@ -82,7 +95,7 @@ const mhb_field mhb_fields[] = {
      "lines of the contact motion where it does not repeat, largest first; 0: none"},
     {"spectrum/amplitude", "l", MHB_DOUBLE, AT(line_amplitude), "m", "amplitude of the line"},
 };
-enum { N_TRACKED = 1, N_LATER = 13, N_INTEGRATION = 5 };
+enum { N_TRACKED = 1, N_LATER = 18, N_INTEGRATION = 5 };
 _Static_assert(sizeof mhb_fields / sizeof *mhb_fields == MHB_N_FIELDS, "MHB_N_FIELDS counts them");
 
 size_t mhb_field_bytes(mhb_number kind) {
@@ -103,6 +116,8 @@ static hsize_t size_of(const mhb_response *response, const mhb_branch *branch, c
       return (hsize_t)response->n_multipliers;
     case 'l':
       return (hsize_t)response->n_lines;
+    case 'b':
+      return (hsize_t)response->ring;
     case 'i':
       return (hsize_t)response->n_interfaces;
     default:
@@ -137,6 +152,7 @@ mhb_branch_kind mhb_field_owner(const mhb_field *f) {
 bool mhb_field_kept(const mhb_response *response, const mhb_branch *branch, const mhb_field *f) {
   mhb_branch_kind owner = mhb_field_owner(f);
   if (owner == MHB_BRANCH_TRACKED && !response->tracks_multiplier) return false;
+  if (strncmp(f->name, "ring/", 5) == 0 && !response->ring) return false;
   return width_of(response, branch, f) > 0 &&
          (owner == MHB_N_BRANCH_KINDS || owner == branch->kind);
 }

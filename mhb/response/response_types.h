@@ -67,6 +67,7 @@ typedef struct {
   double value;  /* as mhb_branch.value */
   int    order;  /* of the motions searched for */
   int    starts; /* that were made */
+  int    seed;   /* of their random numbers */
   int    found;  /* branches that they led to and that were not known */
 } mhb_search;
 
@@ -80,6 +81,16 @@ enum {
   MHB_LASTING_SEVERAL,   /* different starts end differently, or on another wave */
   MHB_LASTING_KINDS
 };
+
+/* ring_kind of mhb_branch: the motion of a ring of single blades (mhb/search/ring_motion.h). */
+typedef enum {
+  MHB_RING_UNKNOWN,   /* at rest, or not known */
+  MHB_RING_WAVE,      /* the wave that the load drives, to 1e-6 of the energy */
+  MHB_RING_WAVES,     /* others beside it; half of the blades take part, or more */
+  MHB_RING_STANDING,  /* the same, 0.9 of the energy in waves that meet an equal one */
+  MHB_RING_LOCALISED, /* fewer than half of the blades take part */
+  MHB_RING_KINDS
+} mhb_ring_kind;
 
 /* A slow sweep of the ring: running windows. */
 typedef struct {
@@ -195,7 +206,13 @@ typedef struct {
   double *lasting_offset;                 /* [point] of the strongest side wave */
   int    *lasting_side, *lasting_periods; /* [point] its nodal diameter, -1: none; integrated */
   int    *lasting_kind;                   /* [point] MHB_LASTING_UNKNOWN ... */
-  char   *lasting;                        /* what was computed, or why not; NULL: not yet */
+  /* how the motion is spread over a ring of single blades; of such rings only */
+  double *ring_energy;        /* [point][blade] J, mean kinetic energy */
+  double *ring_wave;          /* [point][blade] share of the energy j diameters beside the load's */
+  double *ring_standing;      /* [point] share of the energy in standing waves */
+  double *ring_participation; /* [point] share of the blades that take part; 0: at rest */
+  int    *ring_kind;          /* [point] MHB_RING_UNKNOWN ... */
+  char   *lasting;            /* what was computed, or why not; NULL: not yet */
   mhb_lasting_curve lasting_curve;
   mhb_modal_motion  modal;
   mhb_face_wear     wear;

@@ -249,7 +249,7 @@ static shb_status create(const modal_model *model, const mhb_settings *settings,
                          const mhb_residual_terms *like, mhb_receptance **out) {
   SHB_CHECK(settings->to_ground || model->has_left, SHB_ERR_INPUT,
             "contact.to is neighbour, but the modal file has no /contact/left; set it to ground");
-  SHB_CHECK(settings->to_ground || mhb_wave_shift(settings) >= 0, SHB_ERR_INPUT,
+  SHB_CHECK(settings->to_ground || settings->ring || mhb_wave_shift(settings) >= 0, SHB_ERR_INPUT,
             "mhb.subharmonics is %d, but a wave of that many periods does not close around %d "
             "blades at engine order %d; set it to 1",
             settings->subharmonics, settings->blades, settings->engine_order);

@@ -1,5 +1,6 @@
 #include "postproc/analysis/findings.h"
 
+#include <limits.h>
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
@@ -411,6 +412,19 @@ static void put_search_places(const post_analysis *analysis, const mhb_branch *b
   post_put(out, "%s%s", *x->unit.name ? "\u00a0" : "", x->unit.name);
 }
 
+/* What others were not looked for by: the seeds of the random starts. */
+static void put_seeds(const mhb_response *r, post_buffer *out) {
+  int least = INT_MAX, most = 0;
+  for (int b = 0; b < r->n_branches; b++)
+    for (int i = 0; i < r->branch[b].n_searches; i++) {
+      const int seed = r->branch[b].search[i].seed;
+      least          = seed < least ? seed : least;
+      most           = seed > most ? seed : most;
+    }
+  if (most > 0)
+    post_put(out, " Their seeds are %d to %d; other starts may find other motions.", least, most);
+}
+
 /* Where random starts looked for other curves, and what they found. */
 static void put_searches(const post_analysis *analysis, post_buffer *out) {
   int starts = 0, found = 0, places = 0;
@@ -432,6 +446,7 @@ static void put_searches(const post_analysis *analysis, post_buffer *out) {
     post_put(out, ". %d random starts there found %d.", starts, found);
   else if (places > 0)
     post_put(out, ". %d random starts there found none.", starts);
+  if (places > 0 && analysis->response->ring) put_seeds(analysis->response, out);
   if (places > 0)
     post_put(out, " None was looked for elsewhere (<code>mhb.search</code>).</li>\n");
   else if (analysis->tracking.n > 0)

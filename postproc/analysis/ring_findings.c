@@ -3,6 +3,7 @@
 #include <math.h>
 #include <stdbool.h>
 
+#include "mhb/response/ring_description.h"
 #include "postproc/draw/number_format.h"
 
 /* The main curve with the largest or the least factor; -1: none has one. */
@@ -54,17 +55,50 @@ static bool tuned_at_end(const mhb_branch *b) {
   return at <= low + hair || at >= high - hair;
 }
 
+/* "localised: 2 of 6 blades take part (unstable), at 1.03 Hz, n0 = 3 N": one item a curve that was
+ * found beside the main ones. */
+static void put_motion(const post_analysis *analysis, const mhb_branch *b, post_buffer *out) {
+  static const char *const verdict[] = {"not judged", "unstable", "stable"};
+  char                     text[MHB_RING_TEXT], at[POST_NUMBER], n0[POST_NUMBER];
+  const post_abscissa     *x     = &analysis->abscissa;
+  const int                point = mhb_ring_most_localised(analysis->response, b);
+  if (point < 0) return;
+  mhb_ring_describe(analysis->response, b, text);
+  post_put(out, "<li>Another motion of the ring, <b>%s</b>, at %s%s%s, n0 = %s\u00a0N", text,
+           post_abscissa_number(x, b->value[point], 5, at), *x->unit.name ? "\u00a0" : "",
+           x->unit.name, post_plain(n0, b->n0[point], 4));
+  if (b->order > analysis->response->subharmonics)
+    post_put(out, ", repeats after %d periods", b->order);
+  post_put(out, "; %s there.</li>\n", verdict[b->stable[point] + 1]);
+}
+
+static void put_motions(const post_analysis *analysis, post_buffer *out) {
+  const mhb_response *r      = analysis->response;
+  int                 others = 0;
+  for (int b = 0; b < r->n_branches; b++) {
+    if (r->branch[b].kind != MHB_BRANCH_NONLINEAR || r->branch[b].origin == MHB_FROM_END) continue;
+    put_motion(analysis, &r->branch[b], out);
+    others++;
+  }
+  if (others > 0)
+    post_put(out,
+             "<li>Each of them is given where the fewest blades take part. Motions that differ "
+             "by a turn of equal blades, or by periods of the excitation, are one.</li>\n");
+}
+
 void post_put_ring(const post_analysis *analysis, post_buffer *out) {
   const mhb_response *r    = analysis->response;
   const int           most = extreme(r, 1), least = extreme(r, -1);
-  if (!r->ring || most < 0) return;
+  if (!r->ring) return;
+  put_motions(analysis, out);
+  if (most < 0) return;
   post_put(out, "<li>%d blades that differ: the worst blade's peak is ", r->ring);
   put_factor(&r->branch[most], out);
   if (least != most) {
     post_put(out, " to ");
     put_factor(&r->branch[least], out);
   }
-  post_put(out, " that of equal blades. Blades count from 0. Stability is not judged.</li>\n");
+  post_put(out, " that of equal blades. Blades count from 0.</li>\n");
   if (tuned_at_end(&r->branch[most]))
     post_put(out,
              "<li>Equal blades are highest at an end of the range, where they have no peak: "

@@ -1,4 +1,5 @@
 #include "postproc/report/csv.h"
+#include "mhb/response/ring_description.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -45,7 +46,10 @@ static void put_header(const mhb_response *response, post_buffer *out) {
   for (int i = 0; i < response->n_interfaces; i++)
     put_name(out, "n0_", response->interface_name[i], "_N");
   if (followed(response)) post_put(out, ",%s", followed(response));
-  if (response->ring) post_put(out, ",worst_blade,worst_amplitude_m,mean_amplitude_m");
+  if (response->ring)
+    post_put(out,
+             ",worst_blade,worst_amplitude_m,mean_amplitude_m,"
+             "ring_motion,participation,load_wave_share,standing_share");
   for (int q = 0; q < response->n_probes; q++) place_names(out, response->probe_name[q], probe);
   for (int p = 0; p < response->n_pairs; p++) {
     char place[128];
@@ -146,6 +150,11 @@ static void put_ring(const mhb_response *response, const mhb_branch *branch, int
     if (place == POST_PLACE_WORST) post_put(out, ",%d", post_worst_blade(response, branch, point));
     put_number(out, post_amplitude(response, branch, point, output, first));
   }
+  const bool known = branch->ring_kind != NULL;
+  post_put(out, ",%s", known ? mhb_ring_kind_name(branch->ring_kind[point]) : "");
+  put_number(out, known ? branch->ring_participation[point] : NAN);
+  put_number(out, known ? branch->ring_wave[(size_t)point * (size_t)response->ring] : NAN);
+  put_number(out, known ? branch->ring_standing[point] : NAN);
 }
 
 static void put_point(const mhb_response *response, int b, int point, post_buffer *out) {

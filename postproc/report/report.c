@@ -13,9 +13,9 @@
 #include "postproc/draw/plot.h"
 #include "postproc/report/charts.h"
 #include "postproc/report/convergence_chart.h"
-#include "postproc/report/factor_chart.h"
 #include "postproc/report/page.h"
 #include "postproc/report/page_data.h"
+#include "postproc/report/ring_charts.h"
 #include "postproc/report/safe_diagram.h"
 #include "postproc/report/still_blade.h"
 #include "postproc/report/tables.h"
@@ -329,6 +329,7 @@ shb_status post_report(const post_analysis *analysis, const post_origin *source,
   if (chosen >= 0) put_point(analysis, out);
   if (moving) post_blade_section(analysis, blade, out);
   put_tracking(analysis, out);
+  post_put_blades(analysis->response, out);
   post_put_factors(analysis->response->samples, out);
   put_details(analysis, chosen, out);
   if (analysis->stress) post_put_bytes(out, analysis->stress, strlen(analysis->stress));

@@ -35,7 +35,7 @@ shb_test(mhb/response face_wear tests_models)
 shb_test(mhb/response direct_stress tests_fem tests_models shb_modal)
 shb_test(mhb/branches stiff_disc tests_fem tests_box tests_models shb_modal shb_mesh_blade)
 shb_test(mhb/branches disc_run_up tests_fem tests_models shb_modal)
-foreach(noun balance stick_stiffness condensation multistart newton ring_system subharmonics
+foreach(noun balance stick_stiffness condensation newton ring_system subharmonics
     truncation_error truncation_step modal_error spatial_error stuck_solver coriolis
     disc_contacts)
   shb_test(mhb/balance ${noun} tests_models)
@@ -45,6 +45,9 @@ target_sources(test_mhb_balance_spatial_error PRIVATE bench/shroud_face.c)
 target_sources(test_mhb_balance_stuck_solver PRIVATE bench/shroud_face.c)
 target_sources(test_mhb_balance_disc_contacts PRIVATE bench/shroud_face.c)
 shb_counts_allocations(test_mhb_balance_condensation)
+foreach(noun multistart ring_symmetry ring_motion)
+  shb_test(mhb/search ${noun} tests_models)
+endforeach()
 foreach(noun multipliers floquet disc_stability mistuned_stability friction_limit hill
         linearised_law ring_band bloch hessenberg_qr curve_verdicts)
   shb_test(mhb/floquet ${noun} tests_models)
@@ -73,7 +76,7 @@ foreach(noun whitehead ring_response)
 endforeach()
 foreach(noun branch_completion branch_stability chain forced_response harmonic_selection
     lasting_motion linear_limits main_branch peak_search period_doubling record run_up
-    secondary_branches tracer unfinished_curve verdicts)
+    secondary_branches ring_search tracer unfinished_curve verdicts)
   shb_test(mhb/branches ${noun} tests_models)
 endforeach()
 foreach(noun corner output_amplitude peak_derivatives peak_system tracked_curve tracked_multiplier

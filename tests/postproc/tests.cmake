@@ -5,7 +5,7 @@ foreach(noun outputs abscissa curves curve_distance convergence response_analysi
     file_origin findings resonances stability_findings)
   shb_test(postproc/analysis ${noun} tests_responses)
 endforeach()
-foreach(noun csv factor_chart report publish page_data tables picture)
+foreach(noun csv ring_charts report publish page_data tables picture)
   shb_test(postproc/report ${noun} tests_responses)
 endforeach()
 foreach(noun diameter_table inspect mac mode_table phase_table value_range value_table)

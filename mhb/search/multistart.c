@@ -1,32 +1,13 @@
-#include "mhb/balance/multistart.h"
+#include "mhb/search/multistart.h"
 
 #include <math.h>
-#include <stdlib.h>
 #include <string.h>
 
-#include "mhb/balance/subharmonics.h"
 #include "mhb/numerics/random.h"
+#include "mhb/structure/ring_receptance.h"
 
-static const double TOLERANCE = 1e-10, SAME = 1e-5, SMALL = 1e-6;
+static const double TOLERANCE = 1e-10, SMALL = 1e-6;
 enum { MAX_STEPS = 40, MAX_HALVINGS = 6 };
-
-void mhb_solution_set_free(mhb_solution_set *set) {
-  free(set->x);
-  *set = (mhb_solution_set){0};
-}
-
-shb_status mhb_solution_set_add(mhb_solution_set *set, int n, const double *x) {
-  if (set->n_solutions == set->capacity) {
-    int     room = 2 * set->capacity + 8;
-    double *more = realloc(set->x, sizeof(double) * (size_t)room * (size_t)n);
-    SHB_CHECK(more, SHB_ERR_IO, "out of memory for %d solutions", room);
-    set->x        = more;
-    set->capacity = room;
-  }
-  set->n = n;
-  memcpy(set->x + (size_t)set->n_solutions++ * (size_t)n, x, sizeof(double) * (size_t)n);
-  return SHB_OK;
-}
 
 /* A random motion with jumps of acceleration: harmonic k is bounded by that of the fundamental over
  * k^2. */
@@ -38,16 +19,42 @@ static void draw(const mhb_balance *b, double size, unsigned long long *seed, do
     }
 }
 
-static double distance(const double *a, const double *b, int n) {
-  double d[n];
-  for (int i = 0; i < n; i++) d[i] = a[i] - b[i];
-  return mhb_norm(d, n);
+/* A number from 0 to n - 1. */
+static int choose(int n, unsigned long long *seed) {
+  return (int)(0.5 * (mhb_random(seed) + 1) * n);
 }
 
-/* Newton's method from x with steps of 2 size at most. 1: |r| has become small. */
+/* In a ring: a known motion, but for up to half of the contacts next to each other, which are
+ * random. Motions of few blades are hardly met from random motions of all. */
+static void draw_beside(const mhb_balance *b, double size, const mhb_solution_set *set,
+                        unsigned long long *seed, double *x) {
+  const mhb_ring_receptance *g     = b->receptance->ring;
+  const size_t               own   = (size_t)g->n * (size_t)b->nb;
+  const int                  known = choose(set->n_solutions, seed);
+  const int length = 1 + choose(g->blades / 2, seed), first = choose(g->blades, seed);
+  double    random[b->n];
+  draw(b, size, seed, random);
+  memcpy(x, set->x + (size_t)known * (size_t)set->n, sizeof random);
+  for (int i = 0; i < length; i++) {
+    const size_t at = (size_t)((first + i) % g->blades) * own;
+    memcpy(x + at, random + at, own * sizeof *x);
+  }
+}
+
+static void start_at(const mhb_balance *b, double size, const mhb_solution_set *set,
+                     unsigned long long *seed, double *x) {
+  if (b->receptance->ring && set->n_solutions > 0 && mhb_random(seed) < 0)
+    draw_beside(b, size, set, seed, x);
+  else
+    draw(b, size, seed, x);
+}
+
+/* Newton's method from x with steps of 2 size at most, for each blade of a ring. 1: |r| has become
+ * small. */
 static int descend(mhb_newton *w, mhb_balance *b, double value, double size, double *x) {
   int    n = b->n;
   double start[n];
+  if (b->receptance->ring) size *= sqrt(b->receptance->ring->blades);
   for (int step = 0; step < MAX_STEPS; step++) {
     mhb_balance_linearise(b, x, value, w->r, NULL);
     double before = mhb_norm(w->r, n), part = 1;
@@ -70,26 +77,6 @@ static int descend(mhb_newton *w, mhb_balance *b, double value, double size, dou
   return 0;
 }
 
-bool mhb_solution_set_has(const mhb_solution_set *set, const double *x) {
-  for (int f = 0; f < set->n_solutions; f++) {
-    const double *y = set->x + (size_t)f * (size_t)set->n;
-    if (distance(x, y, set->n) <= SAME * fmax(mhb_norm(x, set->n), mhb_norm(y, set->n)))
-      return true;
-  }
-  return false;
-}
-
-shb_status mhb_solution_set_add_shifts(mhb_solution_set *set, const mhb_balance *b,
-                                       const double *x) {
-  double later[b->n];
-  set->n = b->n;
-  for (int j = 0; j < b->receptance->nu; j++) {
-    mhb_subharmonic_shift(b, x, j, later);
-    if (!mhb_solution_set_has(set, later)) SHB_TRY(mhb_solution_set_add(set, b->n, later));
-  }
-  return SHB_OK;
-}
-
 shb_status mhb_multistart_once(mhb_newton *w, mhb_balance *b, double value, double size,
                                unsigned long long *seed, mhb_solution_set *set, double *x,
                                bool *is_new) {
@@ -97,9 +84,9 @@ shb_status mhb_multistart_once(mhb_newton *w, mhb_balance *b, double value, doub
   *is_new = false;
   SHB_TRY(mhb_newton_bind(w, b));
   set->n = b->n;
-  draw(b, size, seed, x);
+  start_at(b, size, set, seed, x);
   if (!descend(w, b, value, size, x)) return SHB_OK;
   if (mhb_newton_solve(w, b, value, TOLERANCE, x, &iterations) != MHB_CONVERGED) return SHB_OK;
   *is_new = !mhb_solution_set_has(set, x);
-  return *is_new ? mhb_solution_set_add_shifts(set, b, x) : SHB_OK;
+  return *is_new ? mhb_solution_set_add_copies(set, b, x) : SHB_OK;
 }

@@ -1,5 +1,5 @@
 /* Sets of solutions, and Newton's method from random starts. */
-#include "mhb/balance/multistart.h"
+#include "mhb/search/multistart.h"
 
 #include "mhb/balance/subharmonics.h"
 #include "tests/support/check.h"
@@ -59,16 +59,16 @@ static void a_motion_is_added_with_its_copies(void **state) {
   double x[b->n], later[b->n];
   for (int i = 0; i < b->n; i++) x[i] = random_unit(&seed);
   for (int again = 0; again < 2; again++) {
-    assert_ok(mhb_solution_set_add_shifts(&set, b, x));
+    assert_ok(mhb_solution_set_add_copies(&set, b, x));
     assert_int_equal(set.n_solutions, 3);
   }
   mhb_subharmonic_shift(b, x, 2, later);
   assert_true(mhb_solution_set_has(&set, later));
-  assert_ok(mhb_solution_set_add_shifts(&set, b, later));
+  assert_ok(mhb_solution_set_add_copies(&set, b, later));
   assert_int_equal(set.n_solutions, 3);
   for (int i = 0; i < b->n; i++)
     if (i % b->nb == 1 || i % b->nb == 2 || i % b->nb == 3 || i % b->nb == 4) x[i] = 0;
-  assert_ok(mhb_solution_set_add_shifts(&set, b, x)); /* harmonics 0 and 3 alone */
+  assert_ok(mhb_solution_set_add_copies(&set, b, x)); /* harmonics 0 and 3 alone */
   assert_int_equal(set.n_solutions, 4);
   mhb_solution_set_free(&set);
   mhb_balance_destroy(b);

@@ -1,5 +1,5 @@
 /* The share of random rings over the amplification factor. */
-#include "postproc/report/factor_chart.h"
+#include "postproc/report/ring_charts.h"
 
 #include <string.h>
 
