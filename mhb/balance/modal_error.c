@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "mesh/base/constants.h"
+#include "mhb/balance/ring_condensation.h"
 #include "mhb/numerics/lu.h"
 #include "mhb/numerics/vector.h"
 
@@ -39,26 +40,47 @@ static int last_term(void *const term[MODAL_TERMS]) {
   return t;
 }
 
+/* to[n] <- what the motion of one structure lacks at harmonic k, by the forces p[n]; NULL: by its
+ * load. */
+static void missing_motion(const mhb_receptance *r, int k, double ratio, const double complex *p,
+                           double complex *to) {
+  const mhb_residual_terms *terms = r->residual_terms;
+  const modal_series        s = modal_series_at(mhb_receptance_model(r, k), k * r->omega / r->nu);
+  const int                 t = last_term(terms->own[0] ? (void *const *)terms->own
+                                                        : (void *const *)terms->contact),
+            u                 = last_term((void *const *)terms->load);
+  for (int i = 0; i < r->n; i++)
+    if (p)
+      to[i] = -ratio * s.weight[t] * mhb_residual_terms_row(terms, t, k, i, p);
+    else
+      to[i] =
+          terms->load[u] ? ratio * s.load_weight[u] * r->scale * terms->load[u][k * r->n + i] : 0;
+}
+
+/* The same of all blades of a ring, to[n]. */
+static void missing_in_ring(const mhb_ring_receptance *g, int k, double ratio,
+                            const double complex *p, double complex *to) {
+  double complex force[2 * g->n], motion[2 * g->n];
+  memset(to, 0, sizeof *to * (size_t)g->blades * (size_t)g->n);
+  for (int i = 0; i < g->blades; i++) {
+    missing_motion(g->blade[i], k, ratio, mhb_ring_forces_of_blade(g, i, p, force), motion);
+    mhb_ring_add_blade(g, i, motion, to);
+  }
+}
+
 /* One part of e[k][n]; ratio[k] by series_ratio. */
 static void set_missing_motion(const mhb_balance *b, const double *ratio, part by,
                                double complex *e) {
-  const mhb_receptance     *r     = b->receptance;
-  const mhb_residual_terms *terms = r->residual_terms;
-  const int                 t     = last_term(terms->own[0] ? (void *const *)terms->own
-                                                            : (void *const *)terms->contact),
-            u                     = last_term((void *const *)terms->load);
-  double complex p[r->n];
+  const mhb_receptance *r = b->receptance;
+  double complex        p[3 * b->n_pairs];
   for (int k = 1; k <= b->m; k++) {
-    const modal_series s  = modal_series_at(mhb_receptance_model(r, k), k * r->omega / r->nu);
-    double complex    *to = e + k * r->n;
-    if (by == BY_CONTACT) mhb_balance_contact_force(b, k, p);
-    for (int i = 0; i < r->n; i++)
-      if (by == BY_CONTACT)
-        to[i] = -ratio[k] * s.weight[t] * mhb_residual_terms_row(terms, t, k, i, p);
-      else
-        to[i] = terms->load[u]
-                    ? ratio[k] * s.load_weight[u] * r->scale * terms->load[u][k * r->n + i]
-                    : 0;
+    const double complex *on = by == BY_CONTACT ? p : NULL;
+    double complex       *to = e + k * 3 * b->n_pairs;
+    if (on) mhb_balance_contact_force(b, k, p);
+    if (r->ring)
+      missing_in_ring(r->ring, k, ratio[k], on, to);
+    else
+      missing_motion(r, k, ratio[k], on, to);
   }
 }
 
@@ -81,7 +103,8 @@ static double solve_by_system(const mhb_balance *b, mhb_truncation *t, double si
       du[(size_t)i * (size_t)larger->nb + (size_t)(2 * k)]     = cimag(e[k * n + i]);
     }
   if (du && mhb_truncation_solve(t, du)) length = mhb_norm(du, larger->n);
-  if (length > LONG * size) length *= fmin(1, mhb_truncation_part(t, du));
+  /* in a ring the system with twice the harmonics would have to be factored for that */
+  if (length > LONG * size && !b->receptance->ring) length *= fmin(1, mhb_truncation_part(t, du));
   free(du);
   return length;
 }
@@ -96,6 +119,10 @@ static void solve_by_harmonic(const mhb_balance *b, double complex *A, int *pivo
   for (int k = 1; k <= b->m; k++) {
     if (!(norm_of(n, e + k * n) > 0)) continue;
     mhb_receptance_update(b->receptance, k);
+    if (b->receptance->ring) {
+      if (mhb_ring_linear_limit(b->receptance->ring, b->law, k, kind, e + k * n) != SHB_OK) return;
+      continue;
+    }
     mhb_stick_matrix(b->n_pairs, b->law, kind, k,
                      b->receptance->R + (size_t)k * (size_t)n * (size_t)n, A);
     if (mhb_factor_complex(n, A, pivot)) mhb_solve_complex(n, A, pivot, 1, e + k * n);
@@ -103,21 +130,22 @@ static void solve_by_harmonic(const mhb_balance *b, double complex *A, int *pivo
 }
 
 double mhb_modal_error(const mhb_balance *b, const double *x, mhb_truncation *t) {
-  const mhb_receptance *r = b->receptance;
-  if (r->ring) return -1;
-  const int    n = r->n, all = (b->m + 1) * n;
-  const bool   linear = !t && n <= MOST_SOLVED && mhb_balance_is_linear(b);
-  const double size   = mhb_balance_vibration(b, x);
-  double       ratio[b->m + 1], sum = 0;
-  int          pivot[n];
-  if (!r->residual_terms->contact[0] && !r->residual_terms->own[0]) return -1;
-  double complex *e = calloc((size_t)all + (linear ? (size_t)(n * n) : 0), sizeof *e);
+  const mhb_receptance *r   = b->receptance;
+  const mhb_receptance *one = r->ring ? r->ring->blade[0] : r; /* what residual terms are of */
+  const int             n = r->n, all = (b->m + 1) * n;
+  const bool            linear = !t && (r->ring || n <= MOST_SOLVED) && mhb_balance_is_linear(b);
+  const double          size   = mhb_balance_vibration(b, x);
+  double                ratio[b->m + 1], sum = 0;
+  int                   pivot[n];
+  if (!one->residual_terms->contact[0] && !one->residual_terms->own[0]) return -1;
+  double complex *e =
+      calloc((size_t)all + (linear && !r->ring ? (size_t)n * (size_t)n : 0), sizeof *e);
   if (!e || !(size > 0)) {
     free(e);
     return e ? 0 : -1;
   }
   for (int k = 1; k <= b->m; k++)
-    ratio[k] = series_ratio(mhb_receptance_model(r, k), k * r->omega / r->nu);
+    ratio[k] = series_ratio(mhb_receptance_model(one, k), k * r->omega / r->nu);
   for (part by = 0; by < PARTS; by++) {
     set_missing_motion(b, ratio, by, e);
     if (linear) solve_by_harmonic(b, e + all, pivot, e);

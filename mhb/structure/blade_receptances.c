@@ -67,18 +67,16 @@ static size_t size_of(const mhb_ring_receptance *g) {
   return (size_t)g->n * sizeof(double complex);
 }
 
-/* own[2n] <- the forces of a blade: those of its contact and of the one before. NULL of NULL. */
-static const double complex *gather(const mhb_ring_receptance *g, int b, const double complex *p,
-                                    double complex *own) {
+const double complex *mhb_ring_forces_of_blade(const mhb_ring_receptance *g, int b,
+                                               const double complex *p, double complex *own) {
   if (!p) return NULL;
   memcpy(own, p + (size_t)b * (size_t)g->n, size_of(g));
   memcpy(own + g->n, p + (size_t)before(g, b) * (size_t)g->n, size_of(g));
   return own;
 }
 
-/* all[blades n] += the motions own[2n] of a blade. */
-static void scatter(const mhb_ring_receptance *g, int b, const double complex *own,
-                    double complex *all) {
+void mhb_ring_add_blade(const mhb_ring_receptance *g, int b, const double complex *own,
+                        double complex *all) {
   double complex *right = all + (size_t)b * (size_t)g->n;
   double complex *left  = all + (size_t)before(g, b) * (size_t)g->n;
   for (int i = 0; i < g->n; i++) right[i] += own[i];
@@ -118,8 +116,8 @@ static void set_load(const mhb_ring_receptance *g, int k, double complex *free,
   memset(free, 0, (size_t)g->blades * size_of(g));
   memset(unit, 0, (size_t)g->blades * size_of(g));
   for (int b = 0; b < g->blades; b++) {
-    scatter(g, b, g->blade[b]->free + (size_t)k * 2 * (size_t)g->n, free);
-    scatter(g, b, g->blade[b]->free_response_unit + (size_t)k * 2 * (size_t)g->n, unit);
+    mhb_ring_add_blade(g, b, g->blade[b]->free + (size_t)k * 2 * (size_t)g->n, free);
+    mhb_ring_add_blade(g, b, g->blade[b]->free_response_unit + (size_t)k * 2 * (size_t)g->n, unit);
   }
 }
 
@@ -176,8 +174,8 @@ void mhb_ring_receptance_motion(const mhb_ring_receptance *g, int k, const doubl
                                 double complex *motion) {
   memset(motion, 0, (size_t)g->blades * size_of(g));
   for (int b = 0; b < g->blades; b++) {
-    mhb_receptance_motion(g->blade[b], k, gather(g, b, p, g->p), g->part);
-    scatter(g, b, g->part, motion);
+    mhb_receptance_motion(g->blade[b], k, mhb_ring_forces_of_blade(g, b, p, g->p), g->part);
+    mhb_ring_add_blade(g, b, g->part, motion);
   }
 }
 
@@ -185,30 +183,33 @@ void mhb_ring_receptance_slope(const mhb_ring_receptance *g, int k, const double
                                double complex *slope) {
   memset(slope, 0, (size_t)g->blades * size_of(g));
   for (int b = 0; b < g->blades; b++) {
-    mhb_equal_shapes_slope(g->shapes, g->blade[b], k, gather(g, b, p, g->p), g->part);
-    scatter(g, b, g->part, slope);
+    mhb_equal_shapes_slope(g->shapes, g->blade[b], k, mhb_ring_forces_of_blade(g, b, p, g->p),
+                           g->part);
+    mhb_ring_add_blade(g, b, g->part, slope);
   }
 }
 
 void mhb_ring_receptance_amplitudes(const mhb_ring_receptance *g, int k, const double complex *p,
                                     double complex *amplitude) {
   for (int b = 0; b < g->blades; b++, amplitude += g->ring->n_modes)
-    mhb_receptance_amplitudes(g->blade[b], k, gather(g, b, p, g->p), amplitude);
+    mhb_receptance_amplitudes(g->blade[b], k, mhb_ring_forces_of_blade(g, b, p, g->p), amplitude);
 }
 
 void mhb_ring_receptance_probe_change(const mhb_ring_receptance *g, int k, const double complex *p,
                                       const double complex *dp, double d_omega, double d_scale,
                                       double complex *change) {
   for (int b = 0; b < g->blades; b++, change += g->q)
-    mhb_receptance_probe_change(g->blade[b], k, gather(g, b, p, g->p), gather(g, b, dp, g->dp),
-                                d_omega, d_scale, change);
+    mhb_receptance_probe_change(g->blade[b], k, mhb_ring_forces_of_blade(g, b, p, g->p),
+                                mhb_ring_forces_of_blade(g, b, dp, g->dp), d_omega, d_scale,
+                                change);
 }
 
 void mhb_ring_receptance_by_damping(const mhb_ring_receptance *g, int k, const double complex *p,
                                     double complex *motion, double complex *probe) {
   memset(motion, 0, (size_t)g->blades * size_of(g));
   for (int b = 0; b < g->blades; b++, probe += g->q) {
-    mhb_receptance_by_damping(g->blade[b], k, gather(g, b, p, g->p), g->part, probe);
-    scatter(g, b, g->part, motion);
+    mhb_receptance_by_damping(g->blade[b], k, mhb_ring_forces_of_blade(g, b, p, g->p), g->part,
+                              probe);
+    mhb_ring_add_blade(g, b, g->part, motion);
   }
 }

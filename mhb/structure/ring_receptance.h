@@ -51,6 +51,15 @@ static inline const double complex *mhb_ring_receptance_block(const mhb_ring_rec
   return ring->R + (row * MHB_RING_BLOCKS + (size_t)which) * n * n;
 }
 
+/* own[2n] <- of p[blades n] the forces on a blade: those of its contact and of the one before. It
+ * returns own; NULL where p is NULL. */
+const double complex *mhb_ring_forces_of_blade(const mhb_ring_receptance *ring, int blade,
+                                               const double complex *p, double complex *own);
+
+/* all[blades n] += the motions own[2n] of a blade's faces. */
+void mhb_ring_add_blade(const mhb_ring_receptance *ring, int blade, const double complex *own,
+                        double complex *all);
+
 /* out[3] <- row `row` of R_k, columns of a pair. */
 void mhb_ring_receptance_row(const mhb_ring_receptance *ring, int k, int row, int pair,
                              double complex out[3]);
