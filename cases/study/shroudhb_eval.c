@@ -75,17 +75,8 @@ static shb_status write_study(evaluation *e) {
 
 /* The number of the derivative by a variable; -1: the program has none. */
 static int derivative_by(const evaluation *e, int variable) {
-  const char *path = e->spec.keys.key[variable].path, *dot = strrchr(path, '.');
-  int         n = study_derivatives(e->spec.n_outputs, e->spec.output);
-  for (int i = 0; i < n; i++) {
-    char   name[STUDY_UNIT_TEXT], unit[STUDY_UNIT_TEXT];
-    double value;
-    study_derivative(&e->spec.base, i, name, unit, &value);
-    bool block = strncmp(path, "contact.", 8) == 0 || strcmp(path, "excitation.scale") == 0 ||
-                 strcmp(path, "modal.damping") == 0;
-    if (block && dot && strcmp(dot + 1, name) == 0) return i;
-  }
-  return -1;
+  bool any = study_derivatives(e->spec.n_outputs, e->spec.output) > 0;
+  return any ? study_key_derivative(&e->spec.base, &e->spec.keys.key[variable]) : -1;
 }
 
 /* Values and gradients from the design; false with a reason. */

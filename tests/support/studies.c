@@ -172,9 +172,9 @@ static void make_statistics(design_study *s) {
     u->deviation[o] = sqrt(square / (s->n - 1));
     qsort(list, (size_t)s->n, sizeof *list, ascending);
     for (int q = 0; q < 3; q++) {
-      double at                     = level[q] / 100 * s->n;
-      u->percentile[3 * o + q]      = list[(int)at];
-      u->percentile_low[3 * o + q]  = list[(int)fmax(0, at - 7)];
+      double at                    = level[q] / 100 * s->n;
+      u->percentile[3 * o + q]     = list[(int)at];
+      u->percentile_low[3 * o + q] = list[(int)fmax(0, at - 7)];
       /* as of few samples: the highest percentile has no upper bound */
       if (q < 2) u->percentile_high[3 * o + q] = list[(int)fmin(s->n - 1, at + 7)];
     }

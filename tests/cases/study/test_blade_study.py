@@ -86,6 +86,22 @@ def check_common_modes():
         near(row['peak'], whole, 1e-5)
 
 
+def check_damping():
+    """The derivative by the damping is that of differences, at a slipping and at a stuck peak."""
+    step, damping = 1e-3, 0.005
+    write('damping.csv', 'contact.n0,modal.damping\n' + ''.join(
+        f'{n0},{damping * (1 + k * step)!r}\n' for n0 in (20, 1e5) for k in (0, -2, -1, 1, 2)))
+    write('damping.yaml', 'case: case.yaml\nplan: {table: damping.csv}\noutputs: [peak]\n')
+    run(program('shroudhb'), 'study', '--quiet', 'damping.yaml')
+    table = rows('damping.study.csv')
+    for i in 0, 5:
+        peak, a, b, c, d = (float(row['peak']) for row in table[i:i + 5])
+        own = float(table[i]['dpeak_ddamping']) * damping / peak
+        relative = (a - 8 * b + 8 * c - d) / (12 * step) / peak
+        print(f'{table[i]["contact.n0"]} N: damping {own:.9f}, by differences {relative:.9f}')
+        assert abs(own - relative) < 1e-6, (own, relative)
+
+
 def check_limit():
     """A limit of the stress holds at the optimum, and the safety may be one too."""
     write('best.yaml', 'case: case.yaml\nvary: {contact.n0: {from: 20 N, to: 60 N}}\n'
@@ -130,7 +146,8 @@ def main():
     os.chdir(folder)
     try:
         write('case.yaml', CASE)
-        for check in (check_values, check_common_modes, check_limit, check_digest, check_faults):
+        for check in (check_values, check_common_modes, check_damping, check_limit, check_digest,
+                      check_faults):
             check()
             print(check.__name__, 'passed')
     finally:

@@ -51,8 +51,8 @@ def evaluate(text, code=0):
         return source.read(), done.stderr
 
 
-def value_of(n0):
-    text, _ = evaluate(standard({'contact.n0': n0}, [('peak', 1)]))
+def value_of(variables):
+    text, _ = evaluate(standard(variables, [('peak', 1)]))
     return float(text.split()[0])
 
 
@@ -66,13 +66,14 @@ def check():
     other, _ = evaluate(aprepro(variables, responses, ['contact__mu', 'contact__n0']))
     assert other == text, (other, text)
 
-    text, _ = evaluate(standard({'contact.n0': 0.3}, [('peak', 2)], ['contact.n0']))
-    gradient = float(text.strip('[] \n'))
-    step = 3e-4
-    a, b, c, d = (value_of(0.3 + k * step) for k in (-2, -1, 1, 2))
-    difference = (a - 8 * b + 8 * c - d) / (12 * step)
-    print(f'gradient {gradient:.9f}, by differences {difference:.9f}')
-    assert abs(gradient - difference) < 1e-6 * abs(gradient), (gradient, difference)
+    at = {'contact.n0': 0.3, 'mhb.scale': 1.0}
+    text, _ = evaluate(standard(at, [('peak', 2)], list(at)))
+    for name, gradient in zip(at, map(float, text.strip('[] \n').split())):
+        step = 1e-3 * at[name]
+        a, b, c, d = (value_of({**at, name: at[name] + k * step}) for k in (-2, -1, 1, 2))
+        difference = (a - 8 * b + 8 * c - d) / (12 * step)
+        print(f'{name}: gradient {gradient:.9f}, by differences {difference:.9f}')
+        assert abs(gradient - difference) < 1e-6 * abs(gradient), (name, gradient, difference)
 
     for text, code, said in (
             (standard({'contact.n1': 1.0}, [('peak', 1)]), 2, 'is no key'),
