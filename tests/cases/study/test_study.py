@@ -160,6 +160,9 @@ def check_one_key():
     write('scan.yaml', 'case: case.yaml\nplan: {table: scan.csv}\noutputs: [peak]\n')
     run(program('shroudhb-study'), '--quiet', 'scan.yaml')
     assert min(float(row['peak']) for row in rows('scan.study.csv')) > peak * (1 - 1e-7)
+    write('bound.yaml', ONE_KEY.replace('from: 0.1 N', 'from: 0.6 N'))
+    said = run(program('shroudhb-study'), 'bound.yaml')
+    assert 'contact.n0 lies on the lower bound of its range' in said, said
     for text, fault in (((': peak, ', ': frequency, algorithm: slope, '), 'slope minimises peak'),
                         ((': peak, ', ': peak, algorithm: slope, at_most: {peak: 1 m}, '),
                          'slope has no limits'),
