@@ -39,8 +39,8 @@ static inline int mhb_basis_parts(int k) {
   return k ? 2 : 1;
 }
 
-/* On the receptance of a product, for excitation frequencies low..high rad/s. The bound is raised from 0.05, up to 0.8, until size
- * is at most `most`.
+/* On the receptance of a product, for excitation frequencies low..high rad/s. The bound is raised
+ * from 0.05, up to 0.8, until size is at most `most`.
  *   stiffness  in  [n] D, N/m, > 0
  * SHB_ERR_IO: no memory; SHB_NOT_CONVERGED: no eigenvalues. */
 shb_status mhb_contact_basis_create(const mhb_receptance_product *product, int m,

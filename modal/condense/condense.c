@@ -27,9 +27,9 @@ enum {
  * eigenvalue of the last mode. */
 static const double NEGLIGIBLE = 1e-10;
 
-/* Right-hand sides: contact dofs, then load patterns, whose residual terms are wanted. Then, if they
- * fit, the probes: residual modes made of them too are as accurate there. And the matrices of one
- * batch of them. V_i and mu_i are those of modal/condense/residual_modes.h. */
+/* Right-hand sides: contact dofs, then load patterns, whose residual terms are wanted. Then, if
+ * they fit, the probes: residual modes made of them too are as accurate there. And the matrices of
+ * one batch of them. V_i and mu_i are those of modal/condense/residual_modes.h. */
 typedef struct {
   int                       batch; /* columns */
   const fem_system         *system;

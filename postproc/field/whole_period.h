@@ -29,8 +29,8 @@ typedef struct {
  * SHB_ERR_IO no memory. */
 shb_status post_period_create(const post_blade_field *field, const mhb_response *response,
                               int branch, int kept, mesh_axis axis, post_period *period);
-/* Free vibration in a mode, such that the greatest displacement of a node is `size`, m. Of a disc it
- * is the wave of a nodal diameter that runs forwards.
+/* Free vibration in a mode, such that the greatest displacement of a node is `size`, m. Of a disc
+ * it is the wave of a nodal diameter that runs forwards.
  *   mode       in  from 1
  *   diameter   in  of a disc, one of field->diameter that was read; else -1
  *   frequency  in  Hz */

@@ -85,9 +85,10 @@ void face_disc(const modal_model *face, int blades, double coriolis, modal_nodal
   for (int i = 0; i < d->n; i++) {
     modal_model *re = &d->model[i], *im = &d->imaginary[i];
     const double self = face->residual_flexibility[0], inertia = face->residual_inertia[0];
-    d->diameter[i] = i;
-    *re            = (modal_model){
-                   .n_modes = face->n_modes, .n_pairs = n, .n_load = face->n_load, .n_probes = face->n_probes};
+    d->diameter[i]           = i;
+    *re                      = (modal_model){.n_modes = face->n_modes, .n_pairs = n};
+    re->n_load               = face->n_load;
+    re->n_probes             = face->n_probes;
     re->frequency            = malloc(m * sizeof(double));
     re->damping_ratio        = malloc(m * sizeof(double));
     re->right                = malloc(rows * m * sizeof(double));

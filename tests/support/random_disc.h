@@ -9,8 +9,8 @@
 void random_disc(int n_pairs, int blades, int parts, bool coriolis, unsigned long long seed,
                  modal_nodal_diameters *disc);
 
-/* The same of a shroud face with n pairs to ground (bench/shroud_face.h), which all nodal diameters
- * share but for modes and for motions of the face as a rigid body.
+/* The same of a shroud face with n pairs to ground (bench/shroud_face.h). Nodal diameters differ in
+ * modes, and in the flexibility for a few smooth motions of the face.
  *   coriolis  in  rad/s, size of the Coriolis terms; 0: none */
 void face_disc(const modal_model *face, int blades, double coriolis, modal_nodal_diameters *disc);
 

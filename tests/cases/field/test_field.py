@@ -448,7 +448,8 @@ def check_modes():
         scale = 1e-3 / np.sqrt((axes[0] + axes[1]).max() / 2)
         worst = np.argmax(axes[0] + axes[1])
         over = np.linalg.norm(np.real(scale * shape[worst] * instants), axis=1).max()
-        check(f'nodal diameter {n}, mode {mode}: greatest displacement', abs(over / 1e-3 - 1), 1e-5)
+        check(f'nodal diameter {n}, mode {mode}: greatest displacement',
+              abs(over / 1e-3 - 1), 1e-5)
         with h5py.File(f'disc.field_mode_{n}_{mode}.vtkhdf') as file:
             check_structure(file, 1)
             assert file.attrs['mode'] == mode and file.attrs['nodal_diameter'] == n
@@ -479,7 +480,8 @@ def check_modes():
               largest(file['VTKHDF/PointData/displacement'][:len(shape)] - scale * shape), 1e-15)
         assert 'nodal_diameter' not in file.attrs
     field = ['shroudhb', 'field']
-    refused(field + ['--mode', '9', 'disc.modal.h5'], '--mode 9: disc.modal.h5 has the modes 1 to 8')
+    refused(field + ['--mode', '9', 'disc.modal.h5'],
+            '--mode 9: disc.modal.h5 has the modes 1 to 8')
     refused(field + ['--mode', '1', '--nodal-diameter', '31', 'disc.modal.h5'],
             '--nodal-diameter 31: disc.modal.h5 does not hold it')
     refused(field + ['--mode', '1', '--nodal-diameter', '0', 'blade.modal.h5'],

@@ -134,7 +134,8 @@ static void products_are_those_of_R(void **state) {
   modal_model_free(&model);
 }
 
-/* The same of a disc: without and with Coriolis terms, forwards and backwards, random and smooth. */
+/* The same of a disc: without and with Coriolis terms, forwards and backwards, random and
+ * smooth. */
 static void products_of_a_disc(void **state) {
   (void)state;
   enum { BLADES = 6 };

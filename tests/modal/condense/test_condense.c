@@ -325,9 +325,9 @@ static void every_receptance_errs_by_the_first_term_left_out(void **state) {
   mesh_fe_free(&mesh);
 }
 
-/* Residual modes are built from the columns of contact, load and probes. At a third of the last kept
- * mode they make all receptances accurate to 1e-10, with an error of order 12 in omega. That is
- * twice the order of the three terms. */
+/* Residual modes are built from the columns of contact, load and probes. At a third of the last
+ * kept mode they make all receptances accurate to 1e-10, with an error of order 12 in omega. That
+ * is twice the order of the three terms. */
 static void residual_modes_double_the_order(void **state) {
   (void)state;
   const int           cells[3]   = {2, 2, 4};
