@@ -63,12 +63,12 @@ typedef struct {
                                 * the tuned wave lags at blade b */
   const mhb_pair_kind *assumed; /* [pair] kinds that stuck and open pairs are taken to have by
                                  * evaluations without derivative, without their law; or NULL */
-  const bool          *touching; /* [pair] true: stuck with the mean friction of two phases that touch
+  const bool     *touching; /* [pair] true: stuck with the mean friction of two phases that touch
                                   * (slip_onset.h), whether or not the motion is beyond that; or
                                   * NULL. Not in a mistuned ring */
-  mhb_evaluation      *eval;     /* in use: evaluations write it */
-  mhb_evaluation      *default_evaluation; /* in use after creation; owned */
-  shb_arena            arena;
+  mhb_evaluation *eval;     /* in use: evaluations write it */
+  mhb_evaluation *default_evaluation; /* in use after creation; owned */
+  shb_arena       arena;
 } mhb_balance;
 
 shb_status mhb_balance_create(const modal_model *model, const mhb_settings *settings,

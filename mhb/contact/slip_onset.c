@@ -91,12 +91,10 @@ static pair_of_phases phases_at(const mhb_law *law, int m, const double *x, cons
   for (int i = 0; i < 2; i++) p.across[i] = e[0] * p.at[i].df[1] - e[1] * p.at[i].df[0];
   p.g[0] = e[0] * a->df[0] + e[1] * a->df[1] - mu * a->dn;
   p.g[1] = -(e[0] * c->df[0] + e[1] * c->df[1]) - mu * c->dn;
-  p.h11 =
-      e[0] * a->ddf[0] + e[1] * a->ddf[1] - mu * a->ddn + part * p.across[0] * p.across[0];
-  p.h22 =
-      -(e[0] * c->ddf[0] + e[1] * c->ddf[1]) - mu * c->ddn + part * p.across[1] * p.across[1];
-  p.h12 = -part * p.across[0] * p.across[1];
-  p.det = p.h11 * p.h22 - p.h12 * p.h12;
+  p.h11  = e[0] * a->ddf[0] + e[1] * a->ddf[1] - mu * a->ddn + part * p.across[0] * p.across[0];
+  p.h22  = -(e[0] * c->ddf[0] + e[1] * c->ddf[1]) - mu * c->ddn + part * p.across[1] * p.across[1];
+  p.h12  = -part * p.across[0] * p.across[1];
+  p.det  = p.h11 * p.h22 - p.h12 * p.h12;
   return p;
 }
 
@@ -139,10 +137,8 @@ static touching touching_of(const mhb_law *law, const pair_of_phases *p) {
   for (int phase = 0; phase < 2; phase++) {
     const forces *f    = &p->at[phase];
     const double  sign = phase ? -1 : 1, turn = sign * t.between * t.part * p->across[phase];
-    t.c_by_time[phase][0] =
-        -0.5 * f->df[0] + sign * t.half_mu * f->dn * p->e[0] - turn * p->e[1];
-    t.c_by_time[phase][1] =
-        -0.5 * f->df[1] + sign * t.half_mu * f->dn * p->e[1] + turn * p->e[0];
+    t.c_by_time[phase][0] = -0.5 * f->df[0] + sign * t.half_mu * f->dn * p->e[0] - turn * p->e[1];
+    t.c_by_time[phase][1] = -0.5 * f->df[1] + sign * t.half_mu * f->dn * p->e[1] + turn * p->e[0];
   }
   return t;
 }
@@ -166,31 +162,30 @@ static void by_c(const mhb_law *law, const pair_of_phases *p, const touching *t,
   double       g[2], later[2];
   for (int phase = 0; phase < 2; phase++) {
     const double sign = phase ? -1 : 1;
-    g[phase] = sign * (p->e[0] * d->df[phase][0] + p->e[1] * d->df[phase][1] +
-                       turned * p->across[phase]) -
-               law->mu * d->dn[phase];
+    g[phase] =
+        sign * (p->e[0] * d->df[phase][0] + p->e[1] * d->df[phase][1] + turned * p->across[phase]) -
+        law->mu * d->dn[phase];
   }
-  later[0] = p->det > 0 ? -(p->h22 * g[0] - p->h12 * g[1]) / p->det : 0;
-  later[1] = p->det > 0 ? -(p->h11 * g[1] - p->h12 * g[0]) / p->det : 0;
+  later[0]           = p->det > 0 ? -(p->h22 * g[0] - p->h12 * g[1]) / p->det : 0;
+  later[1]           = p->det > 0 ? -(p->h11 * g[1] - p->h12 * g[0]) / p->det : 0;
   const double along = t->half_mu * (d->n[0] - d->n[1]), across = t->between * turned;
   c[0] = -0.5 * (d->f[0][0] + d->f[1][0]) + along * p->e[0] - across * p->e[1];
   c[1] = -0.5 * (d->f[0][1] + d->f[1][1]) + along * p->e[1] + across * p->e[0];
-  for (int i = 0; i < 2; i++)
-    c[i] += t->c_by_time[0][i] * later[0] + t->c_by_time[1][i] * later[1];
+  for (int i = 0; i < 2; i++) c[i] += t->c_by_time[0][i] * later[0] + t->c_by_time[1][i] * later[1];
 }
 
 void mhb_slip_onset_gradient(const mhb_law *law, int m, const double *x,
                              const mhb_slip_onset *onset, double *to_h, double *const to_c[2]) {
-  const int            nb = 2 * m + 1;
-  const pair_of_phases p  = phases_at(law, m, x, onset->time);
-  const touching       t  = touching_of(law, &p);
+  const int            nb      = 2 * m + 1;
+  const pair_of_phases p       = phases_at(law, m, x, onset->time);
+  const touching       t       = touching_of(law, &p);
   const double         k[3][2] = {{0, 0}, {law->ku[0], law->ku[1]}, {law->ku[1], law->ku[2]}};
   for (int axis = 0; axis < 3; axis++)
     for (int i = 0; i < nb; i++) {
-      change       d = {.f = {{0}}};
-      const int    h = (i + 1) / 2, at = axis * nb + i; /* harmonic */
-      double       c[2];
-      const bool   mean = i == 0;
+      change     d = {.f = {{0}}};
+      const int  h = (i + 1) / 2, at = axis * nb + i; /* harmonic */
+      double     c[2];
+      const bool mean = i == 0;
       for (int phase = 0; phase < 2; phase++) {
         const double angle = h * onset->time[phase], co = cos(angle), si = sin(angle);
         const double value = mean ? 1 : i % 2 ? co : -si, rate = h * (i % 2 ? -si : -co);

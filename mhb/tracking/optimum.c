@@ -7,7 +7,7 @@
 #include "mesh/base/root.h"
 #include "mhb/branches/record.h"
 #include "mhb/numerics/vector.h"
-#include "mhb/tracking/corner.h"
+#include "mhb/tracking/corner_point.h"
 
 /* Brackets of exchanges end at this length, relative to the parameter. */
 static const double EXACT = 1e-9;
@@ -15,6 +15,9 @@ static const double EXACT = 1e-9;
 /* A corner or stuck peak sticks for this share of the period at least. Its frequency is near to the
  * one interpolated between points, relative. */
 static const double NO_SLIP = 0.998, INTERPOLATED = 1e-3;
+
+/* At a recorded corner h is this part of the friction limit at most. */
+static const double AT_LIMIT = 1e-7;
 
 typedef struct {
   const modal_model  *model;
@@ -76,21 +79,45 @@ static double *all_values(const mhb_response *r, int *n) {
 
 /* ---- one peak, solved at a value ---- */
 
-/* The same of a corner or stuck peak. False: neither of them is where the branch is. */
-static bool corner_at(const search *s, mhb_balance *balance, const mhb_branch *branch, int i,
-                      double value, double *x, double *amplitude, double *frequency) {
-  if (balance->n_pairs != 1) return false;
-  for (int j = i; j < i + 2; j++)
-    if (branch->state[3 * j + MHB_STICK] < NO_SLIP) return false;
-  for (int stuck = 0; stuck < 2; stuck++) {
-    double omega = SHB_TWO_PI * *frequency, a;
-    if (!mhb_corner_at(balance, s->tracking, stuck, value, &omega, x, &a)) continue;
-    if (fabs(omega / (SHB_TWO_PI * *frequency) - 1) > INTERPOLATED) continue;
-    *amplitude = a;
-    *frequency = omega / SHB_TWO_PI;
-    return true;
+/* The pair whose corner recorded points i and i + 1 of a branch are; -1: all pairs stick there; -2:
+ * neither. */
+static int corner_of(const mhb_corner *corner, const mhb_branch *branch, int i, double *work) {
+  const int pairs = corner->balance->n_pairs;
+  int       first[pairs], second[pairs];
+  bool      stuck = true;
+  for (int j = 3 * i * pairs; j < 3 * (i + 2) * pairs; j += 3)
+    stuck = stuck && branch->state[j + MHB_STICK] >= NO_SLIP;
+  mhb_recorded_motion(branch, i, corner->balance, work);
+  const int n = mhb_corner_candidates(corner, branch->value[i], work, AT_LIMIT, first);
+  mhb_recorded_motion(branch, i + 1, corner->balance, work);
+  const int m = mhb_corner_candidates(corner, branch->value[i + 1], work, AT_LIMIT, second);
+  for (int j = 0; j < n; j++)
+    for (int k = 0; k < m; k++)
+      if (first[j] == second[k]) return first[j];
+  return stuck ? -1 : -2;
+}
+
+/* The same of a corner or stuck peak, from the motion x[n]. *found false: it is neither.
+ *   work  out  [n] */
+static shb_status corner_at(const search *s, mhb_balance *balance, const mhb_branch *branch, int i,
+                            double value, const double *x, double *work, double *amplitude,
+                            double *frequency, bool *found) {
+  mhb_corner *corner;
+  double      omega = SHB_TWO_PI * *frequency;
+  SHB_TRY(mhb_corner_create(balance, s->tracking, &corner));
+  const int pair = corner_of(corner, branch, i, work);
+  *found         = false;
+  if (pair >= -1) {
+    mhb_corner_take(corner, pair, value, x);
+    *found = mhb_corner_solve(corner, value, pair < 0 ? -1 : 0, &omega) &&
+             fabs(omega / (SHB_TWO_PI * *frequency) - 1) <= INTERPOLATED;
   }
-  return false;
+  if (*found) {
+    *amplitude = mhb_corner_evaluate(corner, omega, value).amplitude;
+    *frequency = omega / SHB_TWO_PI;
+  }
+  mhb_corner_destroy(corner);
+  return SHB_OK;
 }
 
 /* Amplitude and frequency (Hz) of the peak of a branch at a value inside it. NAN: not found. */
@@ -116,8 +143,9 @@ static shb_status peak_at(const search *s, int b, double value, double *amplitud
     for (size_t j = 0; j < n; j++) x[j] += part * (x[n + j] - x[j]);
     *frequency = branch->frequency[i] + part * (branch->frequency[i + 1] - branch->frequency[i]);
   }
-  bool corner =
-      status == SHB_OK && corner_at(s, balance, branch, i, value, x + n, amplitude, frequency);
+  bool corner = false;
+  if (status == SHB_OK)
+    status = corner_at(s, balance, branch, i, value, x, x + n, amplitude, frequency, &corner);
   if (status == SHB_OK && !corner)
     status = mhb_peak_system_create(
         balance, s->tracking->kind, s->tracking->output, s->tracking->parameter,

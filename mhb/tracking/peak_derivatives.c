@@ -6,7 +6,7 @@
 
 #include "mesh/base/constants.h"
 #include "mhb/numerics/vector.h"
-#include "mhb/tracking/corner.h"
+#include "mhb/tracking/corner_point.h"
 
 /* The peak solved here is the one that was found if amplitude and frequency agree, relative. */
 static const double SAME_AMPLITUDE = 1e-4, SAME_FREQUENCY = 1e-3;
@@ -17,8 +17,8 @@ enum { MOST_UNKNOWNS = 1300 };
 /* Newton's method for a peak ends at this residual, relative to the motion. */
 static const double SETTLED = 1e-10;
 
-/* Relative change of the damping ratios for the differences at corners. */
-static const double DAMPING_STEP = 1e-3;
+/* The solution may be at a corner of a pair whose h is this part of its friction limit. */
+static const double CANDIDATE = 0.01;
 
 typedef struct {
   mhb_balance  *balance;
@@ -86,81 +86,60 @@ static shb_status smooth(const search *s, mhb_peak_derivatives *out) {
 
 /* ---- a peak without slip ---- */
 
-/* Amplitude of the corner with all damping ratios times a factor; NAN: not found. */
-static double damped(const search *s, const mhb_tracking *tracking, bool stuck, double factor,
-                     double omega, double *x) {
-  modal_model  model = *s->balance->receptance->model;
-  int          m     = model.n_modes;
-  double      *ratio = malloc((size_t)m * sizeof *ratio), amplitude = NAN;
-  mhb_balance *other = NULL;
-  for (int i = 0; ratio && i < m; i++) ratio[i] = factor * model.damping_ratio[i];
-  model.damping_ratio = ratio;
-  if (ratio && mhb_balance_create(&model, s->balance->settings, &other) == SHB_OK) {
-    mhb_balance_set_operating_point(other, &s->balance->eval->at);
-    if (!mhb_corner_at(other, tracking, stuck, tracking->low, &omega, x, &amplitude))
-      amplitude = NAN;
-  }
-  mhb_balance_destroy(other);
-  free(ratio);
-  return amplitude;
-}
-
-static void corner_derivatives(const search *s, mhb_tracking *tracking, bool stuck, double *x,
-                               mhb_peak_derivatives *out) {
-  mhb_balance              *b  = s->balance;
-  const mhb_operating_point at = b->eval->at;
-  for (int i = 0; i < MHB_PEAK_BY_DAMPING; i++) {
-    tracking->parameter = mhb_peak_parameter(i);
-    tracking->low = tracking->high = mhb_parameter_get(&at, tracking->parameter);
-    out->by[i] = mhb_corner_slope(b, tracking, stuck, out->omega, tracking->low, x);
-    mhb_balance_set_operating_point(b, &at);
+static void corner_derivatives(const search *s, mhb_corner *corner, mhb_peak_derivatives *out) {
+  const mhb_operating_point at    = s->balance->eval->at;
+  const mhb_corner_state    state = mhb_corner_linearise(corner, out->omega, at.n0);
+  for (int i = 0; i < MHB_PEAK_PARAMETERS; i++) {
+    const bool          damping   = i == MHB_PEAK_BY_DAMPING;
+    const mhb_parameter parameter = damping ? MHB_IN_N0 : mhb_peak_parameter(i);
+    out->by[i] = mhb_corner_derivative(corner, &state, out->omega, parameter, damping);
     /* n0 and mu do not reach a stuck motion: what remains is round-off */
-    if (fabs(out->by[i] * tracking->low) < 1e-9 * out->amplitude) out->by[i] = 0;
+    const double value = damping ? 1 : mhb_parameter_get(&at, parameter);
+    if (fabs(out->by[i] * value) < 1e-9 * out->amplitude) out->by[i] = 0;
   }
-  static const double place[4] = {-2, -1, 1, 2}, weight[4] = {1, -8, 8, -1};
-  double              sum = 0;
-  tracking->parameter     = MHB_IN_N0;
-  tracking->low = tracking->high = at.n0;
-  const mhb_settings *settings   = s->balance->settings;
-  const bool          several = settings->run_up || settings->nodal_diameters; /* not one model */
-  for (int i = 0; i < 4 && !several; i++)
-    sum += weight[i] * damped(s, tracking, stuck, 1 + place[i] * DAMPING_STEP, out->omega, x) /
-           (12 * DAMPING_STEP);
-  out->by[MHB_PEAK_BY_DAMPING] = several ? NAN : sum;
+  const mhb_settings *settings = s->balance->settings;
+  if (settings->run_up || settings->nodal_diameters) /* not one model */
+    out->by[MHB_PEAK_BY_DAMPING] = NAN;
 }
 
-/* The corner (stuck false) or the stuck peak near the solution. Returns its relative distance in
- * amplitude; INFINITY: there is none. */
-static double distance_to(const search *s, const mhb_tracking *tracking, bool stuck, double *x,
-                          double *omega, double *amplitude) {
+/* A corner of a pair (or, below 0, the stuck peak) near the solution. Returns its relative distance
+ * in amplitude; INFINITY: there is none. */
+static double distance_to(const search *s, mhb_corner *corner, int pair, double *omega,
+                          double *amplitude) {
   const mhb_operating_point at = s->balance->eval->at;
-  mhb_stuck_state           state;
-  *omega     = s->omega;
-  bool found = mhb_corner_at(s->balance, tracking, stuck, at.n0, omega, x, amplitude) &&
-               is_same(s, *omega, *amplitude);
-  if (found && stuck)
-    found = mhb_stuck_response(s->balance, tracking, *omega, at.n0, x, &state) == SHB_OK &&
-            state.onset < 0;
+  *omega                       = s->omega;
+  mhb_corner_take(corner, pair, at.n0, s->x);
+  bool found = mhb_corner_solve(corner, at.n0, pair < 0 ? -1 : 0, omega);
+  if (found) {
+    const mhb_corner_state state = mhb_corner_evaluate(corner, *omega, at.n0);
+    *amplitude                   = state.amplitude;
+    found                        = is_same(s, *omega, *amplitude) && (pair >= 0 || state.onset < 0);
+  }
   mhb_balance_set_operating_point(s->balance, &at);
   return found ? fabs(*amplitude / s->found - 1) : INFINITY;
 }
 
-static void without_slip(const search *s, double *x, mhb_peak_derivatives *out) {
-  double       n0       = s->balance->eval->at.n0, omega[2], amplitude[2], distance[2];
-  mhb_tracking tracking = {.kind      = MHB_TRACK_PEAK,
-                           .output    = s->output,
-                           .parameter = MHB_IN_N0,
-                           .low       = n0,
-                           .high      = n0,
-                           .size      = s->size};
-  for (int stuck = 0; stuck < 2; stuck++)
-    distance[stuck] = distance_to(s, &tracking, stuck, x, &omega[stuck], &amplitude[stuck]);
-  int nearer = distance[1] < distance[0];
-  if (!isfinite(distance[nearer])) return;
-  out->kind      = nearer ? MHB_PEAK_STUCK : MHB_PEAK_CORNER;
-  out->omega     = omega[nearer];
-  out->amplitude = amplitude[nearer];
-  if (!s->near.no_derivatives) corner_derivatives(s, &tracking, nearer, x, out);
+static void without_slip(const search *s, mhb_corner *corner, mhb_peak_derivatives *out) {
+  const double n0      = s->balance->eval->at.n0;
+  const int    n_pairs = s->balance->n_pairs;
+  const double share   = n_pairs == 1 ? INFINITY : CANDIDATE;
+  int          pair[n_pairs + 1], nearest = 0;
+  const int    n        = mhb_corner_candidates(corner, n0, s->x, share, pair);
+  double       distance = INFINITY;
+  pair[n]               = -1; /* the stuck peak */
+  for (int i = 0; i <= n; i++) {
+    double omega, amplitude, here = distance_to(s, corner, pair[i], &omega, &amplitude);
+    if (!(here < distance)) continue;
+    distance       = here;
+    nearest        = i;
+    out->omega     = omega;
+    out->amplitude = amplitude;
+  }
+  if (!isfinite(distance)) return;
+  out->kind = pair[nearest] < 0 ? MHB_PEAK_STUCK : MHB_PEAK_CORNER;
+  if (s->near.no_derivatives) return;
+  distance_to(s, corner, pair[nearest], &out->omega, &out->amplitude);
+  corner_derivatives(s, corner, out);
 }
 
 shb_status mhb_peak_derivatives_find(mhb_balance *balance, int output, mhb_size size,
@@ -171,10 +150,17 @@ shb_status mhb_peak_derivatives_find(mhb_balance *balance, int output, mhb_size 
   for (int i = 0; i < MHB_PEAK_PARAMETERS; i++) out->by[i] = NAN;
   if (balance->n > MOST_UNKNOWNS) return SHB_OK;
   SHB_TRY(smooth(&s, out));
-  if (out->kind == MHB_PEAK_SMOOTH || near.smooth_only || balance->n_pairs != 1) return SHB_OK;
-  double *scratch = calloc((size_t)balance->n, sizeof *scratch);
-  SHB_CHECK(scratch, SHB_ERR_IO, "out of memory");
-  without_slip(&s, scratch, out);
-  free(scratch);
+  if (out->kind == MHB_PEAK_SMOOTH || near.smooth_only) return SHB_OK;
+  const double       n0       = balance->eval->at.n0;
+  const mhb_tracking tracking = {.kind      = MHB_TRACK_PEAK,
+                                 .output    = output,
+                                 .parameter = MHB_IN_N0,
+                                 .low       = n0,
+                                 .high      = n0,
+                                 .size      = size};
+  mhb_corner        *corner;
+  SHB_TRY(mhb_corner_create(balance, &tracking, &corner));
+  without_slip(&s, corner, out);
+  mhb_corner_destroy(corner);
   return SHB_OK;
 }

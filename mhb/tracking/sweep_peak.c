@@ -11,10 +11,20 @@ static const double LOCATED = 5e-4;
 /* Contacts stick for this share of the period at least. */
 static const double NO_SLIP = 0.998;
 
-static bool sticks(const mhb_branch *branch, int n_pairs, int point) {
-  for (int pair = 0; pair < n_pairs; pair++)
-    if (branch->state[3 * (point * n_pairs + pair) + MHB_STICK] < NO_SLIP) return false;
-  return true;
+/* Between three points some pair begins to slip, or all stick at one of them. */
+static bool some_pair_sticks(const mhb_branch *branch, int n_pairs, int first) {
+  int all[3] = {0};
+  for (int pair = 0; pair < n_pairs; pair++) {
+    int times = 0;
+    for (int i = 0; i < 3; i++) {
+      const double *state = branch->state + 3 * ((first + i) * n_pairs + pair);
+      const bool    stuck = state[MHB_STICK] >= NO_SLIP;
+      times += stuck;
+      all[i] += stuck;
+    }
+    if (times == 1 || times == 2) return true;
+  }
+  return all[0] == n_pairs || all[1] == n_pairs || all[2] == n_pairs;
 }
 
 /* The top of the parabola through three points, if it lies between the outer ones. */
@@ -38,11 +48,11 @@ bool mhb_sweep_peak_at(const mhb_response *sweep, const mhb_branch *branch, int 
   double f[3], a[3];
   *peak = (mhb_sweep_peak){.branch = branch, .point = point, .weight = {0, 1, 0}};
   for (int i = 0; i < 3; i++) {
-    f[i]         = branch->frequency[point - 1 + i];
-    a[i]         = mhb_response_amplitude(sweep, branch, point - 1 + i, output);
-    peak->sticks = peak->sticks || sticks(branch, sweep->n_pairs, point - 1 + i);
+    f[i] = branch->frequency[point - 1 + i];
+    a[i] = mhb_response_amplitude(sweep, branch, point - 1 + i, output);
   }
   if (a[0] > a[1] || a[2] > a[1]) return false;
+  peak->sticks    = some_pair_sticks(branch, sweep->n_pairs, point - 1);
   peak->frequency = f[1];
   peak->amplitude = a[1];
   peak->reach     = LOCATED;

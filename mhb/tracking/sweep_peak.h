@@ -16,7 +16,8 @@ typedef struct {
   double            amplitude; /* m, of the output */
   double            reach;     /* the peak's frequency is within this of the guess, relative */
   double            weight[3]; /* of the motions of the three points */
-  bool              sticks;    /* at one of the three points no contact slips or opens */
+  bool              sticks;    /* between the three points some contact begins to slip, or at one
+                                * of them all stick: the peak may be a corner */
 } mhb_sweep_peak;
 
 /* The peak at a point of a sweep's branch; the point is none of the branch's ends. False: a

@@ -9,6 +9,7 @@
 #include "mesh/base/progress.h"
 #include "mhb/balance/truncation_error.h"
 #include "mhb/branches/record.h"
+#include "mhb/contact/slip_onset.h"
 #include "mhb/continuation/corrector.h"
 #include "mhb/continuation/segment.h"
 #include "mhb/numerics/vector.h"
@@ -56,6 +57,7 @@ typedef struct {
   double              clock;
   bool                spoilt;      /* a point has too large a truncation error */
   mhb_multipliers     multipliers; /* of the point judged last */
+  bool               *stuck;       /* [pairs] at the point accepted last */
 } tracer;
 
 /* ---- what segments ask for ---- */
@@ -105,18 +107,27 @@ static shb_status estimate(mhb_segment_host *host, mhb_curve_point *point, bool 
   return SHB_OK;
 }
 
-static shb_status accept(mhb_segment_host *host, bool *moved) {
-  const tracer *t = (const tracer *)host;
-  if (by_multiplier(t->tracking))
-    mhb_peak_system_accept(host->curve->system, &host->curve->current);
-  *moved = false;
-  return SHB_OK;
+/* t->stuck <- the pairs that stick throughout. Returns whether all pairs do, but for open ones. */
+static bool note_stuck(tracer *t) {
+  const mhb_balance *b    = t->balance;
+  int                some = 0, others = 0;
+  for (int a = 0; a < b->n_pairs; a++) {
+    const mhb_pair_kind kind = b->eval->kind[a];
+    t->stuck[a]              = kind == MHB_PAIR_STUCK || kind == MHB_PAIR_AT_LIMIT;
+    some += t->stuck[a];
+    others += kind == MHB_PAIR_NONLINEAR;
+  }
+  return some > 0 && others == 0;
 }
 
-/* One pair that is stuck throughout. */
-static bool sticks(const mhb_balance *b) {
-  const mhb_pair_kind kind = b->eval->kind[0];
-  return b->n_pairs == 1 && (kind == MHB_PAIR_STUCK || kind == MHB_PAIR_AT_LIMIT);
+static shb_status accept(mhb_segment_host *host, bool *moved) {
+  tracer *t = (tracer *)host;
+  if (by_multiplier(t->tracking))
+    mhb_peak_system_accept(host->curve->system, &host->curve->current);
+  mhb_balance_use(t->balance, host->curve->current.evaluation);
+  note_stuck(t);
+  *moved = false;
+  return SHB_OK;
 }
 
 static shb_status started(mhb_segment_host *host, const mhb_seed *seed, mhb_end *end) {
@@ -125,7 +136,8 @@ static shb_status started(mhb_segment_host *host, const mhb_seed *seed, mhb_end 
   /* Without slip the peak is that of mhb_trace_corner. Here it would go on beyond the onset of
    * slip, along the hair of stuck solutions. */
   mhb_balance_use(t->balance, host->curve->current.evaluation);
-  if (t->tracking->kind == MHB_TRACK_PEAK && sticks(t->balance)) *end = MHB_END_NO_START;
+  const bool all_stick = note_stuck(t);
+  if (t->tracking->kind == MHB_TRACK_PEAK && all_stick) *end = MHB_END_NO_START;
   if (by_multiplier(t->tracking) && *end == MHB_END_NONE)
     mhb_peak_system_accept(host->curve->system, &host->curve->current);
   if (*end != MHB_END_NONE) return SHB_OK;
@@ -177,6 +189,23 @@ static double too_little_slip(mhb_arclength *curve, const mhb_curve_point *point
   return LEAST_SLIP - mhb_peak_system_report(curve->system, point).slip_share;
 }
 
+/* A pair that stuck at the point accepted last begins to slip: the largest h of those, relative to
+ * the friction limit. */
+static double slip_begins(mhb_arclength *curve, const mhb_curve_point *point, void *context) {
+  const tracer      *t    = context;
+  const mhb_balance *b    = t->balance;
+  double             most = -1;
+  (void)curve;
+  mhb_balance_use(t->balance, point->evaluation);
+  for (int a = 0; a < b->n_pairs; a++) {
+    mhb_slip_onset at;
+    if (!t->stuck[a]) continue;
+    mhb_slip_onset_find(&b->law[a], b->m, point->x + (size_t)a * 3 * (size_t)b->nb, &at);
+    if (at.limit > 0) most = fmax(most, at.h / at.limit);
+  }
+  return most;
+}
+
 /* Extremum of the amplitude along the peaks; of the frequency along folds. */
 static double amplitude_slope(mhb_arclength *curve, const mhb_curve_point *point, void *context) {
   (void)context;
@@ -205,7 +234,7 @@ static double meets_at_minus(mhb_arclength *curve, const mhb_curve_point *point,
   return meets(curve, point, -1);
 }
 
-enum { MOST_TESTS = 11 };
+enum { MOST_TESTS = 12 };
 
 static int make_tests(tracer *t, mhb_event_test test[MOST_TESTS]) {
   int  n    = 0;
@@ -241,6 +270,12 @@ static int make_tests(tracer *t, mhb_event_test test[MOST_TESTS]) {
   }
   test[n++] = (mhb_event_test){
       .name = "corner", .g = too_little_slip, .direction = 1, .end = MHB_END_CORNER};
+  if (peak)
+    test[n++] = (mhb_event_test){.name      = "a pair begins to slip",
+                                 .g         = slip_begins,
+                                 .context   = t,
+                                 .direction = 1,
+                                 .end       = MHB_END_CORNER};
   test[n++] = (mhb_event_test){.name      = "end of the frequency range",
                                .g         = beyond_frequency,
                                .context   = (void *)t->tracking,
@@ -427,8 +462,9 @@ shb_status mhb_trace_tracked(mhb_balance *balance, const mhb_tracking *tracking,
                                         .events         = &t.events};
   t.host.n_tests   = make_tests(&t, test);
   t.store          = mhb_response_like(response);
+  t.stuck          = calloc((size_t)balance->n_pairs, sizeof *t.stuck);
   shb_status status =
-      z && t.store ? SHB_OK : shb_fail(SHB_ERR_IO, __FILE__, __LINE__, "out of memory");
+      z && t.store && t.stuck ? SHB_OK : shb_fail(SHB_ERR_IO, __FILE__, __LINE__, "out of memory");
   if (status == SHB_OK) t.store->n_harmonics = response->branch[branch].n_harmonics;
   if (status == SHB_OK) status = make_curve(&t, mhb_norm(seed->x, balance->n));
   if (status == SHB_OK) status = trace_both(&t, seed, z, response, branch, found, end);
@@ -437,6 +473,7 @@ shb_status mhb_trace_tracked(mhb_balance *balance, const mhb_tracking *tracking,
   mhb_arclength_destroy(t.host.curve);
   mhb_truncation_destroy(t.truncation);
   mhb_response_destroy(t.store);
+  free(t.stuck);
   free(z);
   return status;
 }

@@ -28,6 +28,9 @@ static const double MINOR = 0.85;
 /* Sweeps at the ends of branches are this far beyond them, relative to the parameter. */
 static const double BEYOND = 2e-3;
 
+/* A peak that takes over at the end of a branch is this near to it in frequency, relative. */
+static const double BESIDE_END = 2e-3;
+
 /* Beyond ends of branches below this share of the highest peak there is no sweep. */
 static const double NEARLY_HIGHEST = 0.9;
 
@@ -130,6 +133,15 @@ static mhb_settings settings_at(const mhb_settings *settings, mhb_parameter para
   s.n_preloads = 1;
   s.n0[0]      = at.n0;
   memcpy(s.ku, at.ku, sizeof s.ku);
+  for (int i = 0; i < s.n_interfaces; i++) {
+    const mhb_operating_point own = mhb_interface_operating_point(&at, settings, i);
+    mhb_interface            *to  = &s.interface[i];
+    to->n0[0]                     = own.n0;
+    to->n_preloads                = 1;
+    to->mu                        = own.mu;
+    to->kv                        = own.kv;
+    memcpy(to->ku, own.ku, sizeof to->ku);
+  }
   return s;
 }
 
@@ -295,7 +307,8 @@ static shb_status follow_with(tracking_run *run, const mhb_sweep_peak *peak, dou
   SHB_TRY(mhb_response_branch(run->response, MHB_BRANCH_TRACKED, &index));
   run->response->branch[index].n_harmonics = m;
   SHB_TRY(mhb_balance_create(run->model, &settings, &balance));
-  double    *x      = calloc(2 * (size_t)balance->n, sizeof *x);
+  const int  n      = balance->n;
+  double    *x      = calloc(2 * (size_t)n, sizeof *x);
   shb_status status = x ? SHB_OK : shb_fail(SHB_ERR_IO, __FILE__, __LINE__, "out of memory");
   if (status == SHB_OK) {
     const mhb_tracking_seed seed = {.x         = x,
@@ -303,7 +316,7 @@ static shb_status follow_with(tracking_run *run, const mhb_sweep_peak *peak, dou
                                     .value     = value,
                                     .reach     = peak->reach,
                                     .amplitude = peak->amplitude};
-    mhb_sweep_peak_motion(peak, balance, x, x + balance->n);
+    mhb_sweep_peak_motion(peak, balance, x, x + n);
     if (peak->sticks)
       status = mhb_trace_corner(balance, &run->tracking, &seed, run->response, index, found, &end);
     if (status == SHB_OK && !*found)
@@ -444,8 +457,34 @@ static bool goes_on(const tracking_run *run, int b, int point, double value) {
   return false;
 }
 
-/* Where a branch ends inside the range another peak takes over. A sweep beyond each such end finds
- * it, unless a known branch is as high there. */
+/* Follow the peak that a branch goes over into at an end. It is a corner where slip of a pair begins
+ * or ends. Where a corner ends it is a smooth or stuck peak. */
+static shb_status follow_from_end(tracking_run *run, int b, int point, double value) {
+  mhb_response *store = mhb_response_like(run->response);
+  int           index;
+  bool          unused;
+  SHB_CHECK(store, SHB_ERR_IO, "out of memory");
+  store->n_harmonics = run->response->branch[b].n_harmonics;
+  shb_status status  = mhb_response_branch(store, MHB_BRANCH_TRACKED, &index);
+  if (status == SHB_OK)
+    status = mhb_response_copy_points(store, index, run->response, b, point, point);
+  if (status == SHB_OK) {
+    const mhb_branch    *end  = &store->branch[index];
+    const mhb_sweep_peak peak = {
+        .branch    = end,
+        .frequency = end->frequency[0],
+        .amplitude = mhb_response_amplitude(store, end, 0, run->tracking.output),
+        .reach     = BESIDE_END,
+        .weight    = {0, 1, 0},
+        .sticks    = true};
+    status = follow(run, &peak, value, &unused);
+  }
+  mhb_response_destroy(store);
+  return status;
+}
+
+/* Where a branch ends inside the range another peak takes over. The branch goes over into it, or a
+ * known branch is as high there, or a sweep beyond the end finds it. */
 static shb_status chain(tracking_run *run, int *budget) {
   for (int b = 0; b < run->response->n_branches; b++) {
     for (int end = 0; end < 2 && *budget > 0 && !shb_interrupted(); end++) {
@@ -457,6 +496,8 @@ static shb_status chain(tracking_run *run, int *budget) {
       if (value <= run->tracking.low || value >= run->tracking.high) continue;
       value += (end ? BEYOND : -BEYOND) * fabs(value);
       if (value <= run->tracking.low || value >= run->tracking.high) continue;
+      if (goes_on(run, b, point, value)) continue;
+      SHB_TRY(follow_from_end(run, b, point, value));
       if (goes_on(run, b, point, value)) continue;
       --*budget;
       SHB_TRY(sweep_and_follow(run, value, INFINITY, &unused));

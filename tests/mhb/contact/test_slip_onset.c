@@ -32,7 +32,7 @@ static void a_motion_along_a_line_has_the_closed_form(void **state) {
 
 static void derivatives_are_those_of_differences(void **state) {
   (void)state;
-  double         x[N], by_h[N], by_c[2][N], *const rows[2] = {by_c[0], by_c[1]};
+  double x[N], by_h[N], by_c[2][N], *const rows[2] = {by_c[0], by_c[1]};
   mhb_slip_onset at;
   double         worst_h = 0, worst_c = 0, size_h = 0, size_c = 0;
   fill(0.9, x);
@@ -63,9 +63,9 @@ static void derivatives_are_those_of_differences(void **state) {
 /* The law slips on one side of h = 0 and not on the other. At h = 0 it has the mean friction c. */
 static void the_law_begins_to_slip_there(void **state) {
   (void)state;
-  double                 low = 0.1, high = 2, x[N], force[N];
-  mhb_slip_onset         at;
-  mhb_contact_evaluator *contact;
+  double                  low = 0.1, high = 2, x[N], force[N];
+  mhb_slip_onset          at;
+  mhb_contact_evaluator  *contact;
   static mhb_contact_info info;
   assert_ok(mhb_contact_evaluator_create(M, M, 1e-10, &contact));
   while (high - low > 1e-14) {

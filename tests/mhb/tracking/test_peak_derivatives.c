@@ -5,7 +5,7 @@
 #include <string.h>
 
 #include "mesh/base/constants.h"
-#include "mhb/tracking/corner.h"
+#include "mhb/tracking/corner_point.h"
 #include "tests/support/check.h"
 #include "tests/support/settings.h"
 #include "tests/support/solution.h"
@@ -127,15 +127,22 @@ static void a_corner_peak_has_the_derivatives_of_solved_corners(void **state) {
   (void)state;
   const mhb_tracking tracking = {.parameter = MHB_IN_N0, .size = MHB_SIZE_HALF_AXIS};
   fixture            f;
-  double             x[N], amplitude, omega = 1.25;
+  mhb_corner        *corner;
+  double             x[N], omega = 1.25;
+  bool               found = false;
   set_up(&f, 0.45, 1e-10, -1, 1);
-  bool found = false;
+  assert_ok(mhb_corner_create(f.balance, &tracking, &corner));
   for (double guess = 1.15; guess < 1.35 && !found; guess += 0.02) {
     omega = guess;
-    found = mhb_corner_at(f.balance, &tracking, false, 0.45, &omega, x, &amplitude);
+    assert_ok(mhb_balance_linear_limit(f.balance, omega, 1, x));
+    mhb_corner_take(corner, 0, 0.45, x);
+    found = mhb_corner_solve(corner, 0.45, 0, &omega);
   }
   assert_true(found);
+  memcpy(x, corner->x, sizeof x);
+  const double amplitude = mhb_corner_evaluate(corner, omega, 0.45).amplitude;
   print_message("corner at %.9f rad/s, %.9f m\n", omega, amplitude);
+  mhb_corner_destroy(corner);
   tear_down(&f);
   assert_below(worst_of(0.45, 1e-10, 2e-5, x, omega, MHB_PEAK_CORNER), 1e-6);
 }
