@@ -39,8 +39,8 @@ set(INTEGRATION_TESTS cases.study.study cases.study.samples cases.study.eval
   hard.peaks hard.isolas hard.parameters bench.stability bench.modal bench.contact
   bench.integrate bench.lasting bench.study mhb.floquet.friction_limit docs.first_case
   mhb.ring.ring_step mhb.ring.neimark_sacker cases.install.install
-  mhb.tracking.corner mhb.tracking.corner_pairs mhb.tracking.tracked_curve mhb.tracking.tracked_multiplier
-  bench.tracking
+  mhb.tracking.corner mhb.tracking.corner_pairs mhb.tracking.tracked_curve
+  mhb.tracking.tracked_multiplier bench.tracking
   robust.same_bits robust.fail_nth_mesh mesh.blade.shroud_angle cases.converge.points_ladder
   robust.memory
   cases.commands.contact_points modal.hdf5.stamp)

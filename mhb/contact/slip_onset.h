@@ -1,8 +1,8 @@
 /* Where slip begins, by a motion whose contact is taken as stuck (docs/theory/tracking.md).
  *
  * f(t) = Ku s is the friction force without its mean, n(t) = n0 + kv v the normal force. A mean c
- * is admissible if |f + c| <= mu n at all phases: c lies in a disc for each. Slip is possible where the
- * discs of two phases t_1, t_2 lie apart,
+ * is admissible if |f + c| <= mu n at all phases: c lies in a disc for each. Slip is possible where
+ * the discs of two phases t_1, t_2 lie apart,
  *   h = max over t_1, t_2 of (|f_1 - f_2| - mu (n_1 + n_2))/2 > 0.
  * At h = 0 they touch and c is determined,
  *   c = -(f_1 + f_2)/2 + mu (n_1 - n_2) e/2,   e = (f_1 - f_2)/|f_1 - f_2|.

@@ -74,9 +74,9 @@ mhb_corner_state mhb_corner_evaluate(mhb_corner *corner, double omega, double va
 mhb_corner_state mhb_corner_linearise(mhb_corner *corner, double omega, double value);
 
 /* Whether stuck motions go on beyond a corner, into the slipping side. The law's mean friction is
- * the least admissible one. It moves the normal load otherwise than the touching one does, and may keep
- * the pair stuck a little longer. The response curve then turns back at the corner, and the highest
- * amplitude is where those motions end.
+ * the least admissible one. It moves the normal load otherwise than the touching one does, and
+ * may keep the pair stuck a little longer. The response curve then turns back at the corner, and
+ * the highest amplitude is where those motions end.
  *   sense  in   1: the slipping side is above omega
  *   x      out  [n] the last such motion, which was evaluated last
  *   end    out  rad/s, its frequency; to 1e-10

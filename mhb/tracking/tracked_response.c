@@ -457,8 +457,8 @@ static bool goes_on(const tracking_run *run, int b, int point, double value) {
   return false;
 }
 
-/* Follow the peak that a branch goes over into at an end. It is a corner where slip of a pair begins
- * or ends. Where a corner ends it is a smooth or stuck peak. */
+/* Follow the peak that a branch goes over into at an end. It is a corner where slip of a pair
+ * begins or ends. Where a corner ends it is a smooth or stuck peak. */
 static shb_status follow_from_end(tracking_run *run, int b, int point, double value) {
   mhb_response *store = mhb_response_like(run->response);
   int           index;
