@@ -227,6 +227,7 @@ static PetscErrorCode raise_load(newton *n, const fem_body *whole, newton_outcom
       continue;
     }
     step /= 2;
+    if (step < 1. / (1 << MAX_HALVINGS)) PetscCall(PetscFree(u_converged));
     PetscCheck(step >= 1. / (1 << MAX_HALVINGS), n->system->comm, PETSC_ERR_USER_INPUT,
                "rotor.%s: no static equilibrium at %.6g rad/s%s: Newton failed in load step %d, "
                "between %.6g and %.6g rad/s; give a lower %s, or check material.E, material.rho "
@@ -255,13 +256,14 @@ PetscErrorCode fem_equilibrium_solve(const fem_body *body, fem_system *system,
   n.u = out->displacement;
   PetscCall(PetscMalloc2(size, &n.step, size, &n.trial));
   PetscCall(MatCreateVecs(system->K, &n.d, &n.R));
-  PetscCall(create_solver(&n));
-  PetscCall(raise_load(&n, body, &result));
+  PetscErrorCode code = create_solver(&n);
+  if (!code) code = raise_load(&n, body, &result);
   PetscCall(KSPDestroy(&n.ksp));
   PetscCall(fem_factor_destroy(&n.factor));
   PetscCall(VecDestroy(&n.d));
   PetscCall(VecDestroy(&n.R));
   PetscCall(PetscFree2(n.step, n.trial));
+  PetscCall(code);
   if (result != CONVERGED) fem_equilibrium_free(out);
   PetscFunctionReturn(0);
 }

@@ -71,23 +71,24 @@ static struct {
   const char *path;
   const void *data;
   size_t      size;
-} text[MOST_FILES];
+} kept_text[MOST_FILES];
 
 const char *fuzz_text(const char *path, const void *data, size_t size) {
   int i = 0;
-  while (i < MOST_FILES && text[i].path && text[i].path != path) i++;
+  while (i < MOST_FILES && kept_text[i].path && kept_text[i].path != path) i++;
   fuzz_assert(i < MOST_FILES, "too many texts");
-  text[i].path = path;
-  text[i].data = data;
-  text[i].size = size;
+  kept_text[i].path = path;
+  kept_text[i].data = data;
+  kept_text[i].size = size;
   return path;
 }
 
 FILE *__real_fopen(const char *path, const char *mode);
 FILE *__wrap_fopen(const char *path, const char *mode);
 FILE *__wrap_fopen(const char *path, const char *mode) {
-  for (int i = 0; i < MOST_FILES && text[i].path; i++)
-    if (strcmp(path, text[i].path) == 0) return fmemopen((void *)text[i].data, text[i].size, mode);
+  for (int i = 0; i < MOST_FILES && kept_text[i].path; i++)
+    if (strcmp(path, kept_text[i].path) == 0)
+      return fmemopen((void *)kept_text[i].data, kept_text[i].size, mode);
   return __real_fopen(path, mode);
 }
 

@@ -18,7 +18,7 @@ ninja -C "$build" fuzzers >>"$build.log" 2>&1 || { tail -30 "$build.log"; exit 1
 # inputs are files: in memory where that is there
 [ -w /dev/shm ] && export TMPDIR=/dev/shm
 failed=0
-for target in units case override motion study inp stamp; do
+for target in units case override motion study inp stamp table; do
   mkdir -p "$build/corpus/$target" "$build/found/$target"
   seeds="$source/tests/fuzz/seeds/$target"
   [ -d "$source/tests/fuzz/regressions/$target" ] &&

@@ -1,7 +1,6 @@
 # Random inputs. Each target is replayed over its seeds and regressions in every build; the test
 # fuzz.libfuzzer builds the targets with clang and lets its fuzzer look for new inputs.
 set(FUZZ ${CMAKE_CURRENT_SOURCE_DIR}/fuzz)
-set(FUZZ_TARGETS units case override motion study inp stamp)
 add_custom_target(fuzzers)
 function(shb_fuzz noun)
   add_executable(fuzz_${noun} fuzz/fuzz_${noun}.c fuzz/fuzz_file.c)
@@ -29,6 +28,9 @@ shb_fuzz(motion shb_case m)
 shb_fuzz(study shb_cases_designs m)
 shb_fuzz(inp shb_mesh_io m)
 shb_fuzz(stamp shb_modal_hdf5 m)
+shb_fuzz(table shb_cases_designs shb_mhb_mistuning shb_postproc_draw m)
+# without the programs of its room
+target_sources(fuzz_table PRIVATE ${PROJECT_SOURCE_DIR}/cases/study/dakota_files.c)
 
 add_test(NAME fuzz.libfuzzer
   COMMAND sh ${FUZZ}/run.sh ${PROJECT_SOURCE_DIR} ${CMAKE_CURRENT_BINARY_DIR}/fuzz_clang 8)

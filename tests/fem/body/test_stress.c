@@ -153,8 +153,9 @@ static void check_change(const mesh_fe *mesh, const fem_material *material) {
         shifted[i] = u[i] + (s ? step : -step) * moves[3 * k * n + i];
       assert_int_equal(fem_nodal_stress(&body, shifted, stress[s]), 0);
     }
+    const double *before = (const double *)stress[0], *after = (const double *)stress[1];
     for (size_t i = 0; i < 6 * n; i++) {
-      double wanted = (stress[1][0][i] - stress[0][0][i]) / (2 * step);
+      double wanted = (after[i] - before[i]) / (2 * step);
       error         = fmax(error, fabs(change[6 * k * n + i] - wanted));
       most          = fmax(most, fabs(wanted));
     }

@@ -1,0 +1,71 @@
+/* Tables of numbers: designs of a study, deviations of the blades, parameters of Dakota. */
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "cases/designs/design_table.h"
+#include "cases/study/dakota_files.h"
+#include "mhb/mistuning/deviations.h"
+#include "tests/fuzz/fuzz_file.h"
+
+enum { WHY = 512, MOST_BLADES = 8 };
+
+static void check_designs(const char *path) {
+  design_table table;
+  char         why[WHY] = "";
+  if (!design_table_read(path, &table, why, sizeof why)) {
+    fuzz_assert(why[0], "a refusal without a word");
+    return;
+  }
+  size_t length = 0;
+  for (int i = 0; i < table.n_rows * table.n_columns; i++) length += strlen(table.cell[i]);
+  fuzz_assert(length <= FUZZ_MOST, "cells hold more than the file");
+  design_table_free(&table);
+}
+
+static void check_deviations(const char *path, int blades) {
+  int     columns;
+  double *value = NULL;
+  if (mhb_deviations_read(path, blades, 2, &columns, &value) == SHB_OK) {
+    fuzz_assert(columns == 1 || columns == 2, "another number of columns");
+    for (int i = 0; i < blades * columns; i++)
+      fuzz_assert(isfinite(value[i]) && value[i] > MHB_LEAST_DEVIATION,
+                  "a deviation that is accepted is not finite, or too low");
+  } else {
+    fuzz_assert(shb_message()[0], "a refusal without a word");
+  }
+  free(value);
+}
+
+static void check_parameters(const char *path) {
+  static dakota_parameters parameters;
+  char                     why[WHY] = "", key[2 * DAKOTA_TAG];
+  if (!dakota_read(path, &parameters, why, sizeof why)) {
+    fuzz_assert(why[0], "a refusal without a word");
+    return;
+  }
+  for (int i = 0; i < parameters.n_variables; i++) {
+    fuzz_assert(isfinite(parameters.value[i]), "a value that is accepted is not finite");
+    dakota_path(parameters.variable[i], key);
+  }
+  for (int i = 0; i < parameters.n_derivatives; i++)
+    fuzz_assert(parameters.derivative[i] >= 0 && parameters.derivative[i] < parameters.n_variables,
+                "a derivative by a variable that is not there");
+}
+
+/* The first byte chooses the reader, and the number of blades. */
+int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size) {
+  if (size < 2 || size > FUZZ_MOST) return 0;
+  const char *path = fuzz_text("table.csv", data + 1, size - 1);
+  switch (data[0] % 3) {
+    case 0:
+      check_designs(path);
+      break;
+    case 1:
+      check_deviations(path, 1 + data[0] / 3 % MOST_BLADES);
+      break;
+    default:
+      check_parameters(path);
+  }
+  return 0;
+}
