@@ -17,8 +17,8 @@ static bool begins_with(const char *text, const char *path) {
   return strncmp(text, path, n) == 0 && strchr("=:[.", text[n]) != NULL;
 }
 
-/* The varied key of which a message speaks; -1: none. The reader of a case names the --set that sets
- * it. Else the line begins with its path, or with that of the list of which it is an entry. */
+/* The varied key of which a message speaks; -1: none. The reader of a case names the --set that
+ * sets it. Else the line begins with its path, or with that of the list of which it is an entry. */
 static int key_at_fault(const study_keys *keys, const char *messages, const char *line,
                         const char *case_path) {
   static const char set[] = ": --set ";
