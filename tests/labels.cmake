@@ -30,7 +30,7 @@ set(INTEGRATION_TESTS cases.study.study cases.study.samples cases.study.eval
   mhb.branches.lasting_motion
   mhb.continuation.arclength mhb.continuation.linear_resonances
   mhb.branches.harmonic_selection mhb.branches.branch_stability mhb.branches.secondary_branches
-  mhb.branches.ring_search mhb.branches.unfinished_curve
+  mhb.branches.ring_search mhb.branches.unfinished_curve mhb.branches.sweep_memory
   mhb.branches.forced_response mhb.branches.run_up postproc.report.report cases.commands.integrate
   cases.scenes.z_notch cases.scenes.slip_onset cases.scenes.run_up cases.scenes.paper_fig7
   cases.scenes.paper_fig8 cases.scenes.paper_fig9 cases.scenes.paper_fig10

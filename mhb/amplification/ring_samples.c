@@ -2,6 +2,7 @@
 
 #include "mhb/branches/harmonic_selection.h"
 #include "mhb/branches/main_branch.h"
+#include "mhb/branches/sweep_memory.h"
 #include "mhb/mistuning/deviations.h"
 #include "mhb/mistuning/mistuned_ring.h"
 #include "mhb/response/publisher.h"
@@ -17,7 +18,8 @@ typedef struct {
   mhb_response        *response;
   mhb_publisher        publisher;
   shb_progress        *progress;
-  int                  handed; /* samples that the crew was given or does not need */
+  int                  handed;  /* samples that the crew was given or does not need */
+  int                  threads; /* that memory allows */
 } work;
 
 /* ---- the monitor of one curve ---- */
@@ -134,7 +136,7 @@ static bool is_wanted(const work *w, int at) {
 
 static void run_threads(work *w) {
   const mhb_samples *s = w->response->samples;
-#pragma omp parallel for schedule(dynamic, 1)
+#pragma omp parallel for schedule(dynamic, 1) num_threads(w->threads)
   for (int at = 0; at < s->n * s->preloads; at++) {
     mhb_ring_peak peak;
     mhb_publisher_lock(&w->publisher, true);
@@ -189,13 +191,16 @@ shb_status mhb_ring_samples(const modal_model *blade, const mhb_settings *settin
                             const mhb_sampling *sampling, const mhb_ring_peak *tuned,
                             const char *path, const shb_provenance *provenance,
                             shb_progress *progress, mhb_response *response) {
-  const int preloads = settings->parameter == MHB_IN_N0 ? 1 : settings->n_preloads;
-  work      w        = {.blade    = blade,
-                        .settings = settings,
-                        .sampling = sampling,
-                        .tuned    = tuned,
-                        .response = response,
-                        .progress = progress};
+  const int    preloads = settings->parameter == MHB_IN_N0 ? 1 : settings->n_preloads;
+  work         w        = {.blade    = blade,
+                           .settings = settings,
+                           .sampling = sampling,
+                           .tuned    = tuned,
+                           .response = response,
+                           .progress = progress};
+  mhb_settings one      = *settings;
+  one.stability         = MHB_STABILITY_NEVER; /* as in mhb_ring_sample */
+  SHB_TRY(mhb_sweep_threads(&settings->ring->whole, &one, &w.threads));
   if (!response->samples) SHB_TRY(make(settings, sampling, preloads, &response->samples));
   mhb_publisher_start(&w.publisher, path, provenance);
   run(&w);

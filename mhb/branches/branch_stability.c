@@ -76,6 +76,10 @@ shb_status mhb_branch_floquet_create(mhb_balance *b, mhb_floquet **floquet) {
                             count_states(b) > DEAR ? SUBSTEPS_DEAR : SUBSTEPS, MAX_STATES, floquet);
 }
 
+double mhb_branch_floquet_bytes(int blades, int pairs, int modes, bool mistuned) {
+  return mhb_floquet_bytes(blades, pairs, modes, mistuned, MAX_STATES);
+}
+
 shb_status mhb_branch_stability_create(mhb_balance *b, mhb_branch_stability **out) {
   mhb_branch_stability *w = calloc(1, sizeof *w);
   SHB_CHECK(w, SHB_ERR_IO, "out of memory");

@@ -30,6 +30,9 @@
  * SHB_ERR_IO: no memory. */
 shb_status mhb_branch_floquet_create(mhb_balance *balance, mhb_floquet **floquet);
 
+/* Bytes of that workspace (mhb_floquet_bytes). */
+double mhb_branch_floquet_bytes(int blades, int pairs, int modes, bool mistuned);
+
 typedef struct mhb_branch_stability mhb_branch_stability; /* workspace; one a thread */
 
 /* settings->stability must not be never. The balance must outlive the workspace. SHB_ERR_IO: no

@@ -6,7 +6,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "mesh/base/memory.h"
 #include "mhb/balance/truncation_error.h"
 #include "mhb/branches/branch_stability.h"
 #include "mhb/branches/harmonic_selection.h"
@@ -15,6 +14,7 @@
 #include "mhb/branches/main_branch.h"
 #include "mhb/branches/peak_search.h"
 #include "mhb/branches/secondary_branches.h"
+#include "mhb/branches/sweep_memory.h"
 #include "mhb/response/describe.h"
 #include "mhb/response/face_wear.h"
 #include "mhb/response/modal_motion.h"
@@ -401,43 +401,6 @@ static shb_status resume(sweep *s) {
   return status;
 }
 
-/* The most harmonics, up to m, that fit into a memory; 0: none. */
-static int harmonics_that_fit(const mhb_settings *settings, int n_pairs, int m, double left) {
-  while (m > 0 && mhb_harmonic_level_bytes(settings, n_pairs, m) > left) m--;
-  return m;
-}
-
-static int pairs_that_fit(const mhb_settings *settings, int n_pairs, int m, double left) {
-  while (n_pairs > 0 && mhb_harmonic_level_bytes(settings, n_pairs, m) > left) n_pairs--;
-  return n_pairs;
-}
-
-static shb_status refuse_size(const mhb_settings *settings, int n_pairs, double left) {
-  const int    m = settings->harmonics, fewer = harmonics_that_fit(settings, n_pairs, m, left);
-  const int    pairs  = pairs_that_fit(settings, n_pairs, m, left);
-  const double needed = mhb_harmonic_level_bytes(settings, n_pairs, m), giga = 1e9;
-  char         fit[2][64] = {"", ""};
-  if (fewer > 0) snprintf(fit[0], sizeof fit[0], "; mhb.harmonics: %d fits", fewer);
-  if (pairs > 0)
-    snprintf(fit[1], sizeof fit[1], "%s contact.points: %d fits", fewer > 0 ? ", or" : ";", pairs);
-  SHB_FAIL(SHB_ERR_INPUT,
-           "the balance with %d contact point%s and %d harmonics needs about %.3g GB more memory, "
-           "and %.3g GB are left%s%s",
-           n_pairs, n_pairs == 1 ? "" : "s", m, needed / giga, left / giga, fit[0], fit[1]);
-}
-
-/* Preloads that memory allows at a time. SHB_ERR_INPUT: not even one, with its first level of
- * harmonics. A ring of different blades is not judged: its matrix is factored by blocks. */
-static shb_status count_threads(const mhb_settings *settings, int n_pairs, int *threads) {
-  const double each = mhb_harmonic_level_bytes(settings, n_pairs, settings->harmonics);
-  const double left = shb_memory_available();
-  *threads          = omp_get_max_threads();
-  if (settings->ring) return SHB_OK;
-  if (each > left) return refuse_size(settings, n_pairs, left);
-  if (left < each * *threads) *threads = (int)(left / each);
-  return SHB_OK;
-}
-
 static shb_status all_preloads(sweep *s, const modal_model *model) {
   int n = s->settings->n_preloads;
   for (int i = 0; i < n; i++) {
@@ -556,7 +519,7 @@ shb_status mhb_forced_response(const modal_model *model, const mhb_settings *ask
   SHB_TRY(mhb_receptance_check(settings, mhb_truncation_highest(first.harmonics)));
   first.harmonics = m[0];
   int threads;
-  SHB_TRY(count_threads(settings, model->n_pairs, &threads));
+  SHB_TRY(mhb_sweep_threads(model, settings, &threads));
   if (first.parameter == MHB_IN_N0) first.n_preloads = 1;
   sweep s = {
       .base     = {.point = point, .searching = searching, .is_due = is_due, .publish = hand_over},

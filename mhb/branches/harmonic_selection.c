@@ -59,36 +59,6 @@ static void level_destroy(mhb_harmonic_level *level) {
   free(level);
 }
 
-static double square(double x) {
-  return x * x;
-}
-
-/* The condensed matrix of all moving pairs. many: GMRES solves where it would be larger. */
-static double dense_bytes(double unknowns, bool many) {
-  return sizeof(double) * square(many ? fmin(unknowns, MHB_MOST_DENSE) : unknowns);
-}
-
-/* Products of bases and derivatives of one contact by its motion, by far the largest arrays. */
-static double evaluator_bytes(int m) {
-  return 7 * sizeof(double) * square(mhb_real_size(m));
-}
-
-double mhb_harmonic_level_bytes(const mhb_settings *settings, int n_pairs, int m) {
-  enum { EVALUATIONS = 8, POINTS = 1000, NUMBERS = 6 }; /* a point: motion and force, three axes */
-  const int    top  = mhb_truncation_highest(m);
-  const bool   many = n_pairs >= MHB_MANY_PAIRS && !settings->run_up && !settings->disc_run_up;
-  const double axes = 3. * n_pairs, n = axes * mhb_real_size(m),
-               twice = axes * mhb_real_size(2 * m);
-  const double step =
-      3 * sizeof(double) * (EVALUATIONS * n * mhb_real_size(m) + twice * mhb_real_size(2 * m));
-  const double dense    = dense_bytes(n, many) + dense_bytes(fmin(twice, MHB_MOST_DOUBLED), many);
-  const double contacts = evaluator_bytes(m) + 2 * evaluator_bytes(2 * m);
-  const int    own      = settings->nodal_diameters ? MODAL_TERMS : 0; /* of each harmonic */
-  const double receptances = sizeof(double complex) * square(axes) * (1 + own) * (m + 1 + top + 1);
-  const double points      = sizeof(double complex) * NUMBERS * POINTS * n_pairs * (m + 1.);
-  return step + dense + contacts + receptances + points;
-}
-
 /* balance: NULL, or the one to use. */
 static shb_status level_create(const mhb_harmonic_levels *h, int m, mhb_balance *balance,
                                mhb_harmonic_level **out) {

@@ -51,10 +51,6 @@ typedef struct {
 int mhb_harmonic_levels_ladder(const modal_model *model, const mhb_settings *settings,
                                int m[MHB_MAX_LEVELS]);
 
-/* Bytes of a level of m harmonics with n_pairs contact points, all of which may move. These are its
- * large arrays, and a curve of a thousand points. Not of a ring of different blades. */
-double mhb_harmonic_level_bytes(const mhb_settings *settings, int n_pairs, int m);
-
 /* Starts at the given balance, which must outlive it, with its settings, operating point and
  * parameter. SHB_ERR_IO: no memory. */
 shb_status mhb_harmonic_levels_create(mhb_balance *balance, mhb_harmonic_levels **levels);

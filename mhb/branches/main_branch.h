@@ -3,7 +3,7 @@
 #define MHB_BRANCHES_MAIN_BRANCH_H
 
 #include "mhb/balance/balance.h"
-#include "mhb/branches/monitor.h"
+#include "mhb/response/monitor.h"
 
 /* Trace the branch of a balance at its preload, into branch 0 of a response.
  *

@@ -4,7 +4,7 @@
 #ifndef MHB_BRANCHES_SECONDARY_BRANCHES_H
 #define MHB_BRANCHES_SECONDARY_BRANCHES_H
 
-#include "mhb/branches/monitor.h"
+#include "mhb/response/monitor.h"
 #include "modal/model/model.h"
 
 /* Whether the settings ask for any. */

@@ -11,8 +11,8 @@
 
 #include "mhb/branches/chain.h"
 #include "mhb/branches/harmonic_selection.h"
-#include "mhb/branches/monitor.h"
 #include "mhb/continuation/segment.h"
+#include "mhb/response/monitor.h"
 
 typedef struct mhb_tracer mhb_tracer;
 

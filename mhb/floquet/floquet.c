@@ -39,10 +39,36 @@ struct mhb_floquet {
 };
 
 /* Number of modes a blade within max_states. */
-static int affordable(const mhb_floquet *s) {
-  int left = s->max_states - 2 * s->structure.contacts, a_mode = 2 * s->structure.blades;
-  int most = left > 0 ? left / a_mode : 0;
-  return most < s->structure.modes ? most : s->structure.modes;
+static int affordable(int blades, int contacts, int modes, int max_states) {
+  const int left = max_states - 2 * contacts, most = left > 0 ? left / (2 * blades) : 0;
+  return most < modes ? most : modes;
+}
+
+static int modes_of(const mhb_floquet *s) {
+  const mhb_modal_structure *all = &s->structure;
+  return affordable(all->blades, all->contacts, all->modes, s->max_states);
+}
+
+/* Solvers of the map: M, coarse, and those of the Bloch problems (bloch.c). */
+static double map_bytes(double states) {
+  enum { REAL_ONES = 3, COMPLEX_ONES = 2 };
+  return states * states * (REAL_ONES * sizeof(double) + COMPLEX_ONES * sizeof(double complex));
+}
+
+double mhb_floquet_bytes(int blades, int pairs, int modes, bool mistuned, int max_states) {
+  enum { FULL = 3, BANDS = 2, SAMPLES = 4 * 128 }; /* start, compliance, flexibility */
+  const double real = sizeof(double), contacts = (double)blades * pairs, n = 3 * contacts;
+  const int    kept   = affordable(blades, blades * pairs, modes, max_states);
+  const double states = kept > 0 ? 2. * kept * blades + 2 * contacts : 0;
+  const double rows = 2. * kept * blades + 8 * contacts, width = fmin(n, 9. * 3 * pairs);
+  const double linear = mistuned && kept > 0 ? (double)kept * blades : modes;
+  const double given = mistuned ? n : 3. * pairs, number = mistuned ? real : 2 * real;
+  const double constant_states = number * (4 * linear * linear + given * (2 * given + 2 * linear));
+  double       bytes           = constant_states + (mistuned ? real * n * n : 0);
+  if (kept > 0)
+    bytes += map_bytes(states) + real * (rows * states + FULL * n * n + BANDS * n * width) +
+             contacts * SAMPLES * sizeof(mhb_contact_sample);
+  return bytes;
 }
 
 static shb_status fill(mhb_floquet *s, const mhb_receptance *receptance,
@@ -55,8 +81,8 @@ static shb_status fill(mhb_floquet *s, const mhb_receptance *receptance,
   SHB_TRY(mhb_transition_schedule_create(all_modes->blades, all_modes->pairs, all_modes->wave,
                                          all_modes->mistuned, &s->schedule));
   SHB_TRY(mhb_contact_evaluator_create(m, m, settings->tolerance, &s->contact));
-  if (affordable(s) > 0) {
-    SHB_TRY(mhb_modal_structure_create(receptance, settings, affordable(s), true, &s->reduced));
+  if (modes_of(s) > 0) {
+    SHB_TRY(mhb_modal_structure_create(receptance, settings, modes_of(s), true, &s->reduced));
     SHB_TRY(mhb_monodromy_create(&s->reduced, &s->schedule, s->contact, m, (substeps + 1) / 2,
                                  FINEST, &s->monodromy));
     int cells  = mhb_floquet_cells(s),

@@ -54,6 +54,12 @@ shb_status mhb_floquet_create(const mhb_receptance *receptance, const mhb_settin
                               int substeps, int max_states, mhb_floquet **floquet);
 void       mhb_floquet_destroy(mhb_floquet *floquet);
 
+/* Bytes that multipliers take: the matrices of contacts and states, at most those of one cell. The
+ * samples of slip are those of four times the first sub-steps, 128 a period.
+ *   blades    in  1: on the ground
+ *   mistuned  in  a ring of different blades */
+double mhb_floquet_bytes(int blades, int pairs, int modes, bool mistuned, int max_states);
+
 /* Take the structure anew from a receptance whose speed has changed in a run-up. */
 void mhb_floquet_move(mhb_floquet *floquet, const mhb_receptance *receptance);
 

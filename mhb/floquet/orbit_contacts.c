@@ -28,7 +28,7 @@ shb_status mhb_orbit_contacts_create(const mhb_modal_structure     *s,
   shb_arena *arena    = &d->arena;
   d->own              = shb_arena_take(arena, 3 * orbits * (size_t)d->nb, sizeof(double));
   d->motion           = shb_arena_take(arena, 3 * orbits * (size_t)d->nb, sizeof(double));
-  d->sample           = shb_arena_take(arena, orbits * (size_t)d->capacity, sizeof *d->sample);
+  d->sample           = calloc(orbits * (size_t)d->capacity, sizeof *d->sample);
   d->n_taken          = shb_arena_take(arena, orbits, sizeof(int));
   d->point            = shb_arena_take(arena, contacts, sizeof *d->point);
   d->solution_columns = shb_arena_take(arena, 2 * n, sizeof(mhb_columns));
@@ -37,7 +37,8 @@ shb_status mhb_orbit_contacts_create(const mhb_modal_structure     *s,
   d->elastic_feedback = shb_arena_take(arena, n, sizeof(double));
   d->basis            = shb_arena_take(arena, 2 * (size_t)d->nb, sizeof(double));
   const int groups    = mhb_modal_structure_groups(s);
-  if (!mhb_ring_band_create(groups, 3 * s->contacts / groups, &d->band) || arena->failed) {
+  if (!mhb_ring_band_create(groups, 3 * s->contacts / groups, &d->band) || arena->failed ||
+      !d->sample) {
     mhb_orbit_contacts_destroy(d);
     SHB_FAIL(SHB_ERR_IO, "out of memory for the stability of %d contacts", s->contacts);
   }
@@ -49,6 +50,7 @@ void mhb_orbit_contacts_destroy(mhb_orbit_contacts *d) {
   if (!d) return;
   mhb_ring_band_destroy(&d->band);
   shb_arena_free(&d->arena);
+  free(d->sample);
   free(d);
 }
 

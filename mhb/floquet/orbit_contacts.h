@@ -30,10 +30,10 @@ typedef struct {
   mhb_contact_evaluator         *contact;
   int                            m, nb; /* harmonics; 2m+1 */
   const mhb_solution            *solution;
-  double                         omega;      /* rad/s, fundamental */
-  double                        *own;        /* [orbit][3][nb] x, in the time of its own blade */
-  double                        *motion;     /* [orbit][3][nb] w = u + R p, likewise */
-  mhb_contact_sample            *sample;     /* [orbit][capacity] */
+  double                         omega;  /* rad/s, fundamental */
+  double                        *own;    /* [orbit][3][nb] x, in the time of its own blade */
+  double                        *motion; /* [orbit][3][nb] w = u + R p, likewise */
+  mhb_contact_sample            *sample; /* [orbit][capacity]; pages are touched as they are used */
   int                            capacity;   /* samples an orbit */
   int                            first_pass; /* 1: phases are collected; 0: samples are used */
   int                           *n_taken;    /* [orbit] samples collected or used */

@@ -124,7 +124,8 @@ typedef struct {
   /* The curve in outline, with a fixed number of harmonics: peaks are not located, and the errors
    * of points are unknown (NAN). The linear limits have no points. */
   bool outline;
-  bool resume; /* take over the finished branches of an interrupted run of equal settings */
+  bool resume;  /* take over the finished branches of an interrupted run of equal settings */
+  int  sharing; /* processes that share the memory, each with such a balance; 0: one */
 } mhb_settings;
 
 /* Whether points get a verdict. On a disc disturbances of every nodal diameter are followed: the

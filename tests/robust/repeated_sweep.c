@@ -1,12 +1,12 @@
-/* The same sweep again and again in one process: as many live blocks of the heap after the last one
- * as after the third, and no more memory. What the end of a process hides is seen here.
+/* The same sweep again and again in one process. After the last one as many blocks of the heap are
+ * live as after the third, and memory has not grown. The end of a process would hide it.
  *
  * usage: repeated_sweep SWEEPS CASE [LOST]   in the folder of the case
  *
  * LOST: bytes that the program loses on purpose after each sweep.
  *
- * Every block is counted, those of the libraries too. mallinfo2 would not do: it takes the free
- * blocks that each thread keeps in its cache for live ones, and the caches fill over 100 sweeps. */
+ * Every block is counted, those of the libraries too. mallinfo2 would not do. It takes the free
+ * blocks that each thread keeps in its cache for live ones. The caches fill over 100 sweeps. */
 #include <errno.h>
 #include <malloc.h>
 #include <stdatomic.h>

@@ -25,7 +25,7 @@ if(SHROUDHB_PYTHON)
       APPEND PROPERTY COMPILE_OPTIONS -Dmain=${stage}_main -Wno-missing-prototypes)
   endforeach()
   add_test(NAME robust.damaged COMMAND ${SHROUDHB_PYTHON} -B ${ROBUST}/test_damaged.py
-    $<TARGET_FILE:stage_server> ${SCENE} 40)
+    $<TARGET_FILE:stage_server> ${SCENE} 12)
   add_test(NAME robust.damaged_many CONFIGURATIONS nightly COMMAND ${SHROUDHB_PYTHON} -B
     ${ROBUST}/test_damaged.py $<TARGET_FILE:stage_server> ${SCENE} 2000)
   if(NOT SHROUDHB_SANITIZE AND NOT SHROUDHB_FUZZ AND NOT SHROUDHB_TSAN) # their heap is another

@@ -2,8 +2,8 @@
 #ifndef TESTS_SUPPORT_MAIN_CURVE_H
 #define TESTS_SUPPORT_MAIN_CURVE_H
 
-#include "mhb/branches/monitor.h"
 #include "mhb/problem/settings.h"
+#include "mhb/response/monitor.h"
 #include "mhb/response/response.h"
 #include "modal/model/model.h"
 

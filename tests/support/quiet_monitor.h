@@ -2,7 +2,7 @@
 #ifndef TESTS_SUPPORT_QUIET_MONITOR_H
 #define TESTS_SUPPORT_QUIET_MONITOR_H
 
-#include "mhb/branches/monitor.h"
+#include "mhb/response/monitor.h"
 
 typedef struct {
   mhb_monitor base;              /* first: the functions get it back */

@@ -661,6 +661,11 @@ static void strange_files(void **state) {
   assert_int_equal(judge(large, 1u << 20, &said), SHB_ERR_INPUT);
   assert_non_null(strstr(said, "more than 4096 entries"));
   free(said);
+  size_t at = 0; /* unknown keys, each compared with all that are known */
+  for (int i = 0; i < 4000; i++) at += (size_t)sprintf(large + at, "harmonixs%d: 1\n", i);
+  assert_int_equal(judge(large, at, &said), SHB_ERR_INPUT);
+  assert_non_null(strstr(said, "harmonixs0"));
+  free(said);
   free(large);
 }
 

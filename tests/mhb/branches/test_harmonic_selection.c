@@ -245,30 +245,9 @@ static void ladders(void **state) {
   }
 }
 
-/* Memory of whole runs of one preload, measured; the program itself takes 30 MB. Fewer contacts
- * move than the estimate takes for moving. */
-static void memory_is_that_of_runs(void **state) {
-  (void)state;
-  static const struct {
-    int    pairs, harmonics;
-    double megabytes;
-  } run[]                     = {{1, 200, 301}, {4, 200, 1014}, {7, 120, 485}, {8, 120, 549},
-                                 {20, 31, 178}, {60, 7, 128},   {120, 7, 239}};
-  const mhb_settings settings = {0};
-  for (size_t i = 0; i < sizeof run / sizeof *run; i++) {
-    const double told  = 1e-6 * mhb_harmonic_level_bytes(&settings, run[i].pairs, run[i].harmonics);
-    const double ratio = told / (run[i].megabytes - 30);
-    printf("%3d contact points, %3d harmonics: %.0f MB, %.2f of the measured\n", run[i].pairs,
-           run[i].harmonics, told, ratio);
-    assert_true(ratio > 0.95 && ratio < 2.5);
-    assert_true(mhb_harmonic_level_bytes(&settings, run[i].pairs, run[i].harmonics - 1) <
-                1e6 * told);
-  }
-}
-
 int main(void) {
   const struct CMUnitTest tests[] = {
-      cmocka_unit_test(ladders),       cmocka_unit_test(memory_is_that_of_runs),
+      cmocka_unit_test(ladders),
       cmocka_unit_test(three_degrees), cmocka_unit_test(beam),
       cmocka_unit_test(jumps),         cmocka_unit_test(static_parts_do_not_count),
   };

@@ -1,6 +1,6 @@
 /* Reports on the work on a preload, and requests to stop it. */
-#ifndef MHB_BRANCHES_MONITOR_H
-#define MHB_BRANCHES_MONITOR_H
+#ifndef MHB_RESPONSE_MONITOR_H
+#define MHB_RESPONSE_MONITOR_H
 
 #include <stdbool.h>
 
