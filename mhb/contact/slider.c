@@ -246,8 +246,8 @@ static int run_lap(mhb_contact_evaluator *c, const double z0[2], double P[2]) {
   return run_from(c, 0, z0, P);
 }
 
-/* Phase at which the force of a slider that rests at z would be furthest beyond the friction limit,
- * in the second half of the period if it is half as far there. */
+/* Phase at which the force of a slider that rests at z is furthest beyond the friction limit. The
+ * second half of the period has precedence if the force is half as far beyond there. */
 MHB_HOT static double furthest_beyond(const mhb_signals *s, double mu, const double z[2]) {
   double most[2] = {-INFINITY, -INFINITY}, at[2] = {0, 0};
   for (int i = 0; i < s->n_grid; i += MHB_LANES) {

@@ -241,8 +241,8 @@ MHB_INLINE double panel_error(const mhb_slip *slip, const mhb_panel *p) {
   return p->h * slip->mu * (turned * carried + 1.7e-23 * power16(wave) * n);
 }
 
-/* F, F_theta, e after a step of theta, K = k I: there F_theta is the quarter turn of F. gamma and
- * the others are left to `complete`. */
+/* F, F_theta, e after a step of theta for K = k I. F_theta is then the quarter turn of F. The end
+ * of `collocate` sets gamma. */
 MHB_INLINE void turn(mhb_panel *p, mhb_lanes step, double size) {
   mhb_lanes c, s, F = p->F, e0 = p->e[0];
   if (size < .78) {
@@ -261,11 +261,11 @@ MHB_INLINE mhb_lanes in_modes(mhb_lanes even, mhb_lanes odd, mhb_lanes x) {
   return even * x + odd * __builtin_shuffle(x, (mhb_lanes_bits){1, 0, 3, 2, 5, 4, 7, 6});
 }
 
-/* The linearised panel, T' = F_theta T + r. With s = exp int (F_theta - m), m the mean of F_theta,
- * y = T/s obeys y' = m y + r/s, of constant coefficients: its collocation matrix is a function of
- * A. The rule integrates F_theta - m and r/s instead of F_theta T; that errs by about (z/4)^8/8!
- * e^z, z the largest exponent. Beyond `mildest` the collocation matrix itself is inverted. 0: it
- * has no inverse. */
+/* The linearised panel, T' = F_theta T + r. Let m be the mean of F_theta. Let
+ * s = exp int (F_theta - m). Then y = T/s obeys y' = m y + r/s, of constant coefficients. Its
+ * collocation matrix is a function of A. The rule integrates F_theta - m and r/s instead of
+ * F_theta T. That errs by about (z/4)^8/8! e^z, z the largest exponent. Beyond `mildest` the
+ * collocation matrix itself is inverted. 0: it has no inverse. */
 MHB_INLINE int linearise(const mhb_slip *slip, double mildest, mhb_panel *p) {
   const mhb_collocation *rule = slip->rule;
   p->mean                     = lanes_sum(rule->weight * p->F_theta);

@@ -31,10 +31,9 @@ typedef struct {
   mhb_lanes bernstein[MHB_NODES];     /* Bernstein coefficients of the interpolant, degree 7 */
   mhb_lanes end;                      /* weights of the interpolant's value at s = 1 */
   mhb_lanes legendre[MHB_NODES];      /* Legendre coefficients of the interpolant */
-  /* the eigenvectors V of A in real form, two lanes a conjugate pair: V, V^-1, V^-1 1, and of the
-   * eigenvalues real part, imaginary part with the signs of a turn, square of the modulus */
+  /* the eigenvectors V of A in real form, two lanes a conjugate pair: V, V^-1, V^-1 1 */
   mhb_lanes from_modes[MHB_NODES], to_modes[MHB_NODES], one_in_modes;
-  mhb_lanes real, imag, modulus2;
+  mhb_lanes real, imag, modulus2; /* of the eigenvalues; imag with both signs of a pair */
 } mhb_collocation;
 
 /* SHB_ERR_IO: no memory. */

@@ -125,8 +125,8 @@ MHB_INLINE void lanes_cos_sin(mhb_lanes x, mhb_lanes *cosine, mhb_lanes *sine) {
   *cosine = (mhb_lanes)((mhb_lanes_bits)lanes_where(swap, s, c) ^ cos_sign);
 }
 
-/* exp x for |x| < 700 to a few units of rounding: the argument is reduced by multiples of ln 2,
- * Taylor's series to degree 11 follows (its rest is 4e-15 of the value). */
+/* exp x for |x| < 700, to 7e-15 of the value. The argument is reduced by multiples of ln 2.
+ * Taylor's series to degree 11 follows; its rest is 6.3e-15. */
 MHB_INLINE mhb_lanes lanes_exp(mhb_lanes x) {
   const double   magic = 6755399441055744.0;
   mhb_lanes      turns = x * 1.44269504088896338700 + magic;

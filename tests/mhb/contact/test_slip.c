@@ -76,9 +76,8 @@ static void circular_motion(void **state) {
   mhb_signals_destroy(&f.signals);
 }
 
-/* The linearised panel of the same motion, of length h: by the inverted matrix if mild = 0, by
- * separation of the mean of F_theta if it is large. *miss: of the growth, against the closed
- * form. */
+/* The linearised panel of the same motion, of length h. mild = 0: by the inverted matrix; large: by
+ * separation of the mean of F_theta. *miss: of the growth, against the closed form. */
 static void linearised_panel(double mild, double h, mhb_lanes response[MHB_NODES], double *miss) {
   const double n[SIZE] = {2}, x1[SIZE] = {0, 3}, x2[SIZE] = {0, 0, -3}, mu = .4;
   const double r = 3 / (mu * 2), c = sqrt((r - 1) / (r + 1)), phi0 = .3;
