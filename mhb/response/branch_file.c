@@ -28,6 +28,8 @@ static const char *scale_of(char letter) {
       return "/multiplier";
     case 'l':
       return "/line";
+    case 'b':
+      return "/blade";
     case 'i':
       return "/interface_name";
     case '3':

@@ -134,7 +134,11 @@ static shb_status write_root(hid_t file, const mhb_response *response) {
   SHB_TRY(h5_write_attribute_int(file, "/", "blades", response->blades));
   SHB_TRY(h5_write_attribute_int(file, "/", "subharmonics", response->subharmonics));
   if (response->run_up) SHB_TRY(h5_write_attribute_int(file, "/", "run_up", 1));
-  if (response->ring) SHB_TRY(h5_write_attribute_int(file, "/", "ring", response->ring));
+  if (response->ring) {
+    SHB_TRY(h5_write_attribute_int(file, "/", "ring", response->ring));
+    SHB_TRY(h5_write_counter(file, "/blade", (hsize_t)response->ring,
+                             "blade of a ring, from 0; of ring/wave: nodal diameters j"));
+  }
   if (response->lacks_diameters)
     SHB_TRY(h5_write_attribute_int(file, "/", "lacks_nodal_diameters", 1));
   if (response->unfinished) SHB_TRY(h5_write_attribute_int(file, "/", "finished", 0));
