@@ -330,12 +330,12 @@ static void every_receptance_errs_by_the_first_term_left_out(void **state) {
  * is twice the order of the three terms. */
 static void residual_modes_double_the_order(void **state) {
   (void)state;
-  const int           cells[3]   = {2, 2, 4};
-  mesh_fe             mesh       = make_sector(size, inner, BLADES, cells);
-  modal_settings      settings   = default_settings(2);
-  modal_result        result     = solve(&mesh, &settings);
-  body                whole      = create_body(&mesh, &settings, &result);
-  const double        top        = SHB_TWO_PI * result.model.frequency[19];
+  const int           cells[3] = {2, 2, 4};
+  mesh_fe             mesh     = make_sector(size, inner, BLADES, cells);
+  modal_settings      settings = default_settings(2);
+  modal_result        result   = solve(&mesh, &settings);
+  body                whole    = create_body(&mesh, &settings, &result);
+  const double        top      = SHB_TWO_PI * result.model.frequency[19];
   static const double allowed = 1e-10, order_of = 12;
   static const double share[3] = {1. / 3, 0.4, 0.32};
   double complex     *exact[3];
