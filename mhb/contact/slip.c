@@ -262,11 +262,11 @@ MHB_INLINE mhb_lanes in_modes(mhb_lanes even, mhb_lanes odd, mhb_lanes x) {
 }
 
 /* The linearised panel, T' = F_theta T + r. Let m be the mean of F_theta. Let
- * s = exp int (F_theta - m). Then y = T/s obeys y' = m y + r/s, of constant coefficients. Its
- * collocation matrix is a function of A. The rule integrates F_theta - m and r/s instead of
- * F_theta T. At the nodes that errs like the eighth power of z = h max |F_theta - m|. The end and
- * the integrals err far less. Where z is above `mildest` the collocation matrix itself is inverted.
- * 0: it has no inverse. */
+ * s = exp int (F_theta - m). Then y = T/s obeys y' = m y + r/s, of constant coefficients.
+ * Its collocation matrix is a function of Gauss' matrix. The rule integrates r/s, not the
+ * product of T and F_theta. Values at the nodes err like the eighth power of z, the largest
+ * h |F_theta - m|. The end and the integrals err far less. Where z is above `mildest` the
+ * collocation matrix itself is inverted. Returns 0 if it has no inverse. */
 MHB_INLINE int linearise(const mhb_slip *slip, double mildest, mhb_panel *p) {
   const mhb_collocation *rule = slip->rule;
   p->mean                     = lanes_sum(rule->weight * p->F_theta);
