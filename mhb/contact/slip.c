@@ -258,7 +258,7 @@ MHB_INLINE void turn(mhb_panel *p, mhb_lanes step, double size) {
 
 /* f(A) x in the eigenvectors, f(lambda) = even + j odd */
 MHB_INLINE mhb_lanes in_modes(mhb_lanes even, mhb_lanes odd, mhb_lanes x) {
-  return even * x + odd * __builtin_shuffle(x, (mhb_lanes_bits){1, 0, 3, 2, 5, 4, 7, 6});
+  return even * x + odd * lanes_swap(x);
 }
 
 /* The linearised panel, T' = F_theta T + r. Let m be the mean of F_theta. Let

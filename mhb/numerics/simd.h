@@ -61,6 +61,15 @@ MHB_INLINE mhb_lanes lanes_pick(mhb_lanes x, int i) {
 #endif
 }
 
+/* Lanes 2i and 2i + 1 change places. */
+MHB_INLINE mhb_lanes lanes_swap(mhb_lanes x) {
+#ifdef __clang__
+  return __builtin_shufflevector(x, x, 1, 0, 3, 2, 5, 4, 7, 6);
+#else
+  return __builtin_shuffle(x, (mhb_lanes_bits){1, 0, 3, 2, 5, 4, 7, 6});
+#endif
+}
+
 MHB_INLINE double lanes_sum(mhb_lanes x) {
   return ((x[0] + x[4]) + (x[2] + x[6])) + ((x[1] + x[5]) + (x[3] + x[7]));
 }

@@ -9,7 +9,7 @@ enum { M = 3, SIZE = 2 * M + 1 };
 static void rule_is_exact_for_polynomials(void **state) {
   (void)state;
   mhb_collocation rule;
-  assert_ok(mhb_collocation_create(&rule));
+  assert_int_equal(mhb_collocation_create(&rule), SHB_OK);
   for (int k = 0; k < 2 * MHB_NODES; k++) {
     double sum = 0, end = 0;
     for (int i = 0; i < MHB_NODES; i++) sum += rule.weight[i] * pow(rule.node[i], k);
