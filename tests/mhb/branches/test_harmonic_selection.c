@@ -248,8 +248,10 @@ static void ladders(void **state) {
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(ladders),
-      cmocka_unit_test(three_degrees), cmocka_unit_test(beam),
-      cmocka_unit_test(jumps),         cmocka_unit_test(static_parts_do_not_count),
+      cmocka_unit_test(three_degrees),
+      cmocka_unit_test(beam),
+      cmocka_unit_test(jumps),
+      cmocka_unit_test(static_parts_do_not_count),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }
