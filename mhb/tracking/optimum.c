@@ -97,24 +97,29 @@ static int corner_of(const mhb_corner *corner, const mhb_branch *branch, int i, 
   return stuck ? -1 : -2;
 }
 
+/* A peak on a branch, between its points i and i + 1: guessed, then solved for. */
+typedef struct {
+  int    i;
+  double value, amplitude, frequency; /* frequency in Hz */
+} peak_place;
+
 /* The same of a corner or stuck peak, from the motion x[n]. *found false: it is neither.
  *   work  out  [n] */
-static shb_status corner_at(const search *s, mhb_balance *balance, const mhb_branch *branch, int i,
-                            double value, const double *x, double *work, double *amplitude,
-                            double *frequency, bool *found) {
+static shb_status corner_at(const search *s, mhb_balance *balance, const mhb_branch *branch,
+                            const double *x, double *work, peak_place *at, bool *found) {
   mhb_corner *corner;
-  double      omega = SHB_TWO_PI * *frequency;
+  double      omega = SHB_TWO_PI * at->frequency;
   SHB_TRY(mhb_corner_create(balance, s->tracking, &corner));
-  const int pair = corner_of(corner, branch, i, work);
+  const int pair = corner_of(corner, branch, at->i, work);
   *found         = false;
   if (pair >= -1) {
-    mhb_corner_take(corner, pair, value, x);
-    *found = mhb_corner_solve(corner, value, pair < 0 ? -1 : 0, &omega) &&
-             fabs(omega / (SHB_TWO_PI * *frequency) - 1) <= INTERPOLATED;
+    mhb_corner_take(corner, pair, at->value, x);
+    *found = mhb_corner_solve(corner, at->value, pair < 0 ? -1 : 0, &omega) &&
+             fabs(omega / (SHB_TWO_PI * at->frequency) - 1) <= INTERPOLATED;
   }
   if (*found) {
-    *amplitude = mhb_corner_evaluate(corner, omega, value).amplitude;
-    *frequency = omega / SHB_TWO_PI;
+    at->amplitude = mhb_corner_evaluate(corner, omega, at->value).amplitude;
+    at->frequency = omega / SHB_TWO_PI;
   }
   mhb_corner_destroy(corner);
   return SHB_OK;
@@ -124,28 +129,26 @@ static shb_status corner_at(const search *s, mhb_balance *balance, const mhb_bra
 static shb_status peak_at(const search *s, int b, double value, double *amplitude,
                           double *frequency) {
   const mhb_branch *branch   = &s->response->branch[b];
-  int               i        = segment_at(branch, value);
+  peak_place        at       = {segment_at(branch, value), value, NAN, 0};
   mhb_settings      settings = *s->settings;
   mhb_balance      *balance;
   mhb_peak_system  *system = NULL;
   mhb_curve_point   point  = {0};
-  *amplitude               = NAN;
   settings.harmonics       = branch->n_harmonics;
   SHB_TRY(mhb_balance_create(s->model, &settings, &balance));
   size_t     n      = (size_t)balance->n;
   double    *x      = calloc(2 * n, sizeof *x);
   shb_status status = x ? SHB_OK : shb_fail(SHB_ERR_IO, __FILE__, __LINE__, "out of memory");
   if (status == SHB_OK) {
-    double from = branch->value[i], to = branch->value[i + 1];
-    double part = to > from ? (value - from) / (to - from) : 0;
-    mhb_recorded_motion(branch, i, balance, x);
-    mhb_recorded_motion(branch, i + 1, balance, x + n);
+    const double *f = branch->frequency + at.i, from = branch->value[at.i];
+    const double  to = branch->value[at.i + 1], part = to > from ? (value - from) / (to - from) : 0;
+    mhb_recorded_motion(branch, at.i, balance, x);
+    mhb_recorded_motion(branch, at.i + 1, balance, x + n);
     for (size_t j = 0; j < n; j++) x[j] += part * (x[n + j] - x[j]);
-    *frequency = branch->frequency[i] + part * (branch->frequency[i + 1] - branch->frequency[i]);
+    at.frequency = f[0] + part * (f[1] - f[0]);
   }
   bool corner = false;
-  if (status == SHB_OK)
-    status = corner_at(s, balance, branch, i, value, x, x + n, amplitude, frequency, &corner);
+  if (status == SHB_OK) status = corner_at(s, balance, branch, x, x + n, &at, &corner);
   if (status == SHB_OK && !corner)
     status = mhb_peak_system_create(
         balance, s->tracking->kind, s->tracking->output, s->tracking->parameter,
@@ -154,16 +157,18 @@ static shb_status peak_at(const search *s, int b, double value, double *amplitud
     mhb_curve_system *base = mhb_peak_system_base(system);
     status                 = mhb_curve_point_create(base, &point);
     if (status == SHB_OK) {
-      mhb_peak_system_pack(base, x, SHB_TWO_PI * *frequency, point.x);
+      mhb_peak_system_pack(base, x, SHB_TWO_PI * at.frequency, point.x);
       point.value = value;
       if (base->solve_at_value(base, 1e-10, &point) == MHB_CONVERGED) {
-        *amplitude = mhb_peak_system_report(base, &point).amplitude;
-        *frequency = mhb_peak_system_omega(base, point.x) / SHB_TWO_PI;
+        at.amplitude = mhb_peak_system_report(base, &point).amplitude;
+        at.frequency = mhb_peak_system_omega(base, point.x) / SHB_TWO_PI;
       }
       mhb_curve_point_destroy(base, &point);
     }
     base->destroy(base);
   }
+  *amplitude = at.amplitude;
+  *frequency = at.frequency;
   free(x);
   mhb_balance_destroy(balance);
   return status;

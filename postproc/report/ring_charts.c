@@ -116,10 +116,11 @@ static void put_panel(const mhb_response *r, int branch, int point, int panel, p
   }
   if (!(most > 0)) return;
   snprintf(id, sizeof id, "blades%d", panel);
+  const int column = panel % ACROSS, row = panel / ACROSS;
   post_plot plot = {.out    = out,
                     .id     = id,
-                    .left   = 50 + panel % ACROSS * PANEL_WIDTH,
-                    .top    = 30 + panel / ACROSS * PANEL_HEIGHT,
+                    .left   = 50 + column * PANEL_WIDTH,
+                    .top    = 30 + row * PANEL_HEIGHT,
                     .width  = PANEL_WIDTH - 60,
                     .height = PANEL_HEIGHT - 75};
   plot.x         = (plot_axis){-0.5, r->ring - 0.5, false, 0, 1, "blade"};
@@ -156,8 +157,9 @@ void post_put_blades(const mhb_response *r, post_buffer *out) {
            "harmonic, relative to the blade that swings highest: main curves at their highest "
            "point, other curves where the fewest blades take part. Unstable motions have another "
            "colour.</p>\n<div class=\"card\"><figure><div class=\"chart\">\n");
-  plot_svg_open(out, "blades", 1100, 20 + (n + ACROSS - 1) / ACROSS * PANEL_HEIGHT,
-                "Amplitude of every blade", "A bar for each blade, a panel for each curve.");
+  const int rows = (n + ACROSS - 1) / ACROSS;
+  plot_svg_open(out, "blades", 1100, 20 + rows * PANEL_HEIGHT, "Amplitude of every blade",
+                "A bar for each blade, a panel for each curve.");
   for (int i = 0; i < n; i++) put_panel(r, branch[i], point[i], i, out);
   plot_svg_close(out);
   post_put(out, "</div></figure></div>\n</section>\n");
