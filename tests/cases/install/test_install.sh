@@ -63,8 +63,8 @@ depends=$(dpkg-deb -f "$package" Depends | tr ',' '\n' | sed 's/^ *//; s/ .*//; 
 for name in $depends; do
   dpkg-query -W "$name" >/dev/null 2>&1 || fail "$name is not installed, but the build needs it"
 done
-mkdir -p root admin/info admin/updates
+mkdir -p staged admin/info admin/updates
 touch admin/status admin/available
-dpkg --instdir="$work/root" --admindir="$work/admin" --log=/dev/null --force-not-root \
+dpkg --instdir="$work/staged" --admindir="$work/admin" --log=/dev/null --force-not-root \
   --force-depends --force-script-chrootless -i "$package" >dpkg.log 2>&1 || fail "$(cat dpkg.log)"
-check_tree "$work/root/usr"
+check_tree "$work/staged/usr"
