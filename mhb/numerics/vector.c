@@ -11,3 +11,9 @@ double mhb_norm(const double *x, int n) {
   for (int i = 0; i < n; i++) sum += (x[i] / top) * (x[i] / top);
   return top * sqrt(sum);
 }
+
+double mhb_dot(int n, const double *a, const double *b) {
+  double sum = 0;
+  for (int i = 0; i < n; i++) sum += a[i] * b[i];
+  return sum;
+}

@@ -7,6 +7,7 @@
 
 #include "mesh/base/root.h"
 #include "mhb/contact/slip_onset.h"
+#include "mhb/numerics/vector.h"
 
 /* Brackets of omega end at these lengths, relative. */
 static const double EXACT_OMEGA = 1e-14, EXACT_PEAK = 1e-11;
@@ -171,12 +172,6 @@ mhb_corner_state mhb_corner_evaluate(mhb_corner *c, double omega, double value) 
   return state;
 }
 
-static double dot(int n, const double *a, const double *b) {
-  double sum = 0;
-  for (int i = 0; i < n; i++) sum += a[i] * b[i];
-  return sum;
-}
-
 /* v[n] <- r~_x^-1 v */
 static void solve_linear(const mhb_corner *c, double *v) {
   const lapack_int n = c->balance->n;
@@ -225,16 +220,16 @@ static mhb_corner_state linearise(mhb_corner *c, double omega, double value) {
   const mhb_amplitude a   = output_at(c);
   const double        a_q = by_parameter(c, c->tracking->parameter, &a);
   state.amplitude         = a.amplitude;
-  state.by_omega          = a.by_omega + dot(n, c->by_x, c->by_omega);
-  state.by_value          = a_q + dot(n, c->by_x, c->by_value);
+  state.by_omega          = a.by_omega + mhb_dot(n, c->by_x, c->by_omega);
+  state.by_value          = a_q + mhb_dot(n, c->by_x, c->by_value);
   const int    nearest    = nearest_to_slip(c, c->touching, &state.onset);
   const size_t block = block_of(b), at    = (size_t)nearest * block;
   double unused[2][block], *const rows[2] = {unused[0], unused[1]};
   const mhb_slip_onset onset = onset_of(b, c->x, nearest);
   mhb_slip_onset_gradient(&b->law[nearest], b->m, c->x + at, &onset, c->onset_by_x, rows);
-  state.onset_by_omega = dot((int)block, c->onset_by_x, c->by_omega + at);
+  state.onset_by_omega = mhb_dot((int)block, c->onset_by_x, c->by_omega + at);
   state.onset_by_value = onset_by(c, c->tracking->parameter, nearest) +
-                         dot((int)block, c->onset_by_x, c->by_value + at);
+                         mhb_dot((int)block, c->onset_by_x, c->by_value + at);
   return state;
 }
 
@@ -263,8 +258,8 @@ double mhb_corner_derivative(mhb_corner *c, const mhb_corner_state *state, doubl
     a_q = by_parameter(c, parameter, &a);
     if (parameter != MHB_IN_SCALE) h_q = onset_by(c, parameter, nearest);
   }
-  a_q += dot(b->n, c->by_x, c->by_value);
-  h_q += dot((int)block, c->onset_by_x, c->by_value + at);
+  a_q += mhb_dot(b->n, c->by_x, c->by_value);
+  h_q += mhb_dot((int)block, c->onset_by_x, c->by_value + at);
   return c->stuck ? a_q : a_q - state->by_omega * h_q / state->onset_by_omega;
 }
 
@@ -329,7 +324,7 @@ static bool newton(mhb_corner *c, double value, int sense, double *omega) {
     double                 unused;
     const int              pair = nearest_to_slip(c, c->touching, &unused);
     if (!isfinite(s.onset_by_omega)) return false;
-    const double left  = s.onset - dot((int)block, c->onset_by_x, c->r + (size_t)pair * block);
+    const double left  = s.onset - mhb_dot((int)block, c->onset_by_x, c->r + (size_t)pair * block);
     const double step  = -left / s.onset_by_omega;
     double       moved = 0, size = mhb_norm(c->x, n);
     if (!isfinite(step) || fabs(step) > 2 * NEARBY * at) return false;

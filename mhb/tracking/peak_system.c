@@ -105,17 +105,11 @@ static double derivatives(mhb_peak_system *s, mhb_evaluation *evaluation, const 
   return 0;
 }
 
-static double dot(int n, const double *a, const double *b) {
-  double sum = 0;
-  for (int i = 0; i < n; i++) sum += a[i] * b[i];
-  return sum;
-}
-
 /* row[n + 1] <- A_z - l^T [r_x r_xi] */
 static void lagrangian_gradient(const mhb_peak_system *s, double *row) {
   for (int i = 0; i < s->n; i++)
-    row[i] = s->gradient[i] - dot(s->n, s->adjoint, s->jacobian + (size_t)i * (size_t)s->n);
-  row[s->n] = s->gradient[s->n] - dot(s->n, s->adjoint, s->by_xi);
+    row[i] = s->gradient[i] - mhb_dot(s->n, s->adjoint, s->jacobian + (size_t)i * (size_t)s->n);
+  row[s->n] = s->gradient[s->n] - mhb_dot(s->n, s->adjoint, s->by_xi);
 }
 
 /* Factor B = [r_x r_xi; border]. */
@@ -158,7 +152,7 @@ static double tangent_and_adjoint(mhb_peak_system *s) {
   for (int i = 0; i <= s->n; i++) s->tangent[i] /= length;
   memcpy(s->adjoint, s->gradient, sizeof(double) * ((size_t)s->n + 1));
   solve_bordered(s, 'T', s->adjoint);
-  return dot(s->n + 1, s->gradient, s->tangent);
+  return mhb_dot(s->n + 1, s->gradient, s->tangent);
 }
 
 /* The smallest share of the period in which a pair that is not linear slips or is open. */
@@ -195,7 +189,7 @@ static void multiplier_row(mhb_peak_system *s, mhb_curve_point *point) {
   bool found = mhb_multiplier_condition_linearise(s->condition, &base, &slope) == NULL;
   if (!found) slope = (mhb_multiplier_slope){.place.g = NAN};
   s->report.multiplier = slope.place;
-  double along         = slope.along / dot(s->n + 1, s->border, s->tangent);
+  double along         = slope.along / mhb_dot(s->n + 1, s->border, s->tangent);
   for (size_t j = 0; j < one; j++) s->moved[j] = weight * along * s->border[j];
   point->r[s->n]     = weight * slope.place.g;
   point->slope[s->n] = weight * slope.by_value;
@@ -208,7 +202,7 @@ static void peak_row(mhb_peak_system *s, mhb_curve_point *point, double by_q) {
   const double step = STEP * mhb_norm(point->x, s->n + 1);
   for (size_t i = 0; i < one; i++) s->moved[i] = point->x[i] + step * s->tangent[i];
   double by_q_moved = derivatives(s, s->displaced, s->moved, point->value, s->moved_r);
-  by_q_moved -= dot(s->n, s->adjoint, s->by_q);
+  by_q_moved -= mhb_dot(s->n, s->adjoint, s->by_q);
   lagrangian_gradient(s, s->moved);
   s->report.curvature = 0;
   for (size_t j = 0; j < one; j++) {
@@ -233,7 +227,7 @@ static void linearise(mhb_curve_system *system, mhb_curve_point *point) {
   if (s->condition) {
     if (!isnan(point->r[n])) multiplier_row(s, point);
   } else {
-    by_q -= dot(s->n, s->adjoint, s->by_q);
+    by_q -= mhb_dot(s->n, s->adjoint, s->by_q);
     s->report.by_value = by_q;
     peak_row(s, point, by_q);
   }
@@ -280,10 +274,10 @@ void mhb_peak_system_derivatives(mhb_curve_system *system, const mhb_curve_point
     mhb_balance_slope(b, point->x, mhb_peak_parameter(i), s->by_q);
     by[i] =
         mhb_amplitude_by_parameter(b, &s->amplitude, mhb_peak_parameter(i), b->eval->by_parameter) -
-        dot(s->n, s->adjoint, s->by_q);
+        mhb_dot(s->n, s->adjoint, s->by_q);
   }
   mhb_slope_by_damping(b, s->by_q);
-  by[MHB_PEAK_BY_DAMPING] = s->amplitude.by_damping - dot(s->n, s->adjoint, s->by_q);
+  by[MHB_PEAK_BY_DAMPING] = s->amplitude.by_damping - mhb_dot(s->n, s->adjoint, s->by_q);
 }
 
 const char *mhb_peak_system_choose(mhb_curve_system *system, const double *x, double omega,
