@@ -23,6 +23,7 @@ enum { MOST_SWEEPS = 100000 };
 typedef struct {
   int             m, pairs, n; /* n = 3 pairs */
   double         *B, *R;       /* [n][m], [n][n] */
+  double         *probe;       /* [3][n] residual response of the first probe, m/N */
   double complex *load;        /* [n] x of the first harmonic */
   double         *n0;          /* [pair] N */
 } boundary;
@@ -47,10 +48,11 @@ static boundary boundary_of(const modal_model *model) {
   boundary b = {.m = model->n_modes, .pairs = model->n_pairs, .n = 3 * model->n_pairs};
   size_t   m = (size_t)b.m, n = (size_t)b.n;
   double   T[b.pairs][3][3];
-  b.B    = calloc(n * m, sizeof *b.B);
-  b.R    = calloc(n * n, sizeof *b.R);
-  b.load = calloc(n, sizeof *b.load);
-  b.n0   = calloc((size_t)b.pairs, sizeof *b.n0);
+  b.B     = calloc(n * m, sizeof *b.B);
+  b.R     = calloc(n * n, sizeof *b.R);
+  b.probe = calloc(3 * n, sizeof *b.probe);
+  b.load  = calloc(n, sizeof *b.load);
+  b.n0    = calloc((size_t)b.pairs, sizeof *b.n0);
   for (int a = 0; a < b.pairs; a++) axes_of(model->normal + 3 * a, T[a]);
   for (int i = 0; i < b.n; i++)
     for (int c = 0; c < 3; c++) {
@@ -58,6 +60,8 @@ static boundary boundary_of(const modal_model *model) {
       const int    from = 3 * (i / 3) + c;
       for (int j = 0; j < b.m; j++) b.B[i * b.m + j] += turn * model->right[from * b.m + j];
       b.load[i] += turn * model->load_residual[n + (size_t)from];
+      for (int axis = 0; axis < 3; axis++)
+        b.probe[axis * b.n + i] += turn * model->probe_contact_residual[axis * b.n + from];
       for (int j = 0; j < b.n; j++)
         for (int d = 0; d < 3; d++)
           b.R[i * b.n + j] +=
@@ -69,6 +73,7 @@ static boundary boundary_of(const modal_model *model) {
 static void boundary_free(boundary *b) {
   free(b->B);
   free(b->R);
+  free(b->probe);
   free(b->load);
   free(b->n0);
 }
@@ -203,25 +208,12 @@ static void count_states(const contacts *c, double share, rigid_motion *out) {
   out->stuck = 1 - out->open - out->slip;
 }
 
-static double complex probe_of(const modal_model *model, int axis, const double *q,
-                               double complex e, const double *in_axes) {
-  const int n   = 3 * model->n_pairs;
-  double    sum = creal(model->probe_load_residual[3 * model->n_probes + axis] * e);
-  for (int i = 0; i < model->n_modes; i++) sum += model->probe[axis * model->n_modes + i] * q[i];
-  for (int j = 0; j < n; j++) sum -= model->probe_contact_residual[axis * n + j] * in_axes[j];
+static double probe_of(const modal_model *model, const boundary *b, int axis, const double *q,
+                       double complex e, const double *p) {
+  double sum = creal(model->probe_load_residual[3 * model->n_probes + axis] * e);
+  for (int i = 0; i < b->m; i++) sum += model->probe[axis * b->m + i] * q[i];
+  for (int j = 0; j < b->n; j++) sum -= b->probe[axis * b->n + j] * p[j];
   return sum;
-}
-
-/* Forces in the axes of the model. */
-static void turn_back(const modal_model *model, const double *p, double *in_axes) {
-  for (int a = 0; a < model->n_pairs; a++) {
-    double axes[3][3];
-    axes_of(model->normal + 3 * a, axes);
-    for (int c = 0; c < 3; c++) {
-      in_axes[3 * a + c] = 0;
-      for (int d = 0; d < 3; d++) in_axes[3 * a + c] += axes[d][c] * p[3 * a + d];
-    }
-  }
 }
 
 void rigid_contact_march(const modal_model *model, const rigid_contact *contact,
@@ -229,7 +221,7 @@ void rigid_contact_march(const modal_model *model, const rigid_contact *contact,
   boundary       b = boundary_of(model);
   const int      m = b.m, n = b.n;
   const double   h = SHB_TWO_PI / contact->omega / contact->steps;
-  double         q[m], before[m], first[m], in_axes[n], u[n], p[n], slider[2 * b.pairs];
+  double         q[m], before[m], first[m], u[n], p[n], slider[2 * b.pairs];
   double complex held[m], forces[n];
   contacts       c = {&b, contact->mu, p, slider, u, 0};
   for (int a = 0; a < b.pairs; a++) b.n0[a] = contact->pressure * model->area[a];
@@ -252,9 +244,8 @@ void rigid_contact_march(const modal_model *model, const rigid_contact *contact,
         for (int j = 0; j < m; j++) u[i] += b.B[i * m + j] * q[j];
       }
       solve_contacts(&c);
-      turn_back(model, p, in_axes);
       for (int d = 0; d < 3; d++)
-        out->probe[d] += 2. / contact->steps * conj(e) * probe_of(model, d, q, e, in_axes);
+        out->probe[d] += 2. / contact->steps * conj(e) * probe_of(model, &b, d, q, e, p);
       count_states(&c, 1. / contact->steps / b.pairs, out);
       for (int j = 0; j < m; j++) {
         double w = SHB_TWO_PI * model->frequency[j], damping = model->damping_ratio[j] * w * h;
