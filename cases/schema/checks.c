@@ -104,6 +104,14 @@ static void check_tolerance(case_reader *r) {
                       "law is contact.accuracy");
 }
 
+/* Folds and points of multipliers are those of all outputs. */
+static void check_output_quantity(case_reader *r) {
+  static const char path[] = "mhb.output_quantity";
+  if (!case_reader_given(r, path) || !case_reader_good(r, path)) return;
+  if (r->file->mhb.track != MHB_TRACK_PEAKS)
+    case_reader_issue(r, path, "only says something with mhb.track: peak");
+}
+
 /* The motion must have the harmonic whose peaks are followed. */
 static void check_output_harmonic(case_reader *r) {
   static const char   path[] = "mhb.output_harmonic";
@@ -112,6 +120,12 @@ static void check_output_harmonic(case_reader *r) {
   if (!case_reader_given(r, path) || !case_reader_good(r, path)) return;
   if (mhb->track != MHB_TRACK_PEAKS) {
     case_reader_issue(r, path, "only says something with mhb.track: peak");
+    return;
+  }
+  if (mhb->output_quantity == MHB_OUTPUT_PEAK_TO_PEAK) {
+    case_reader_issue(r, path,
+                      "only says something with mhb.output_quantity: harmonic; the peak to peak is "
+                      "of all harmonics");
     return;
   }
   if (!case_reader_good(r, "mhb.harmonics") || mhb->harmonics == 0 || mhb->output_harmonic <= most)
@@ -382,6 +396,7 @@ bool case_check_values(case_reader *r, int stages) {
   check_coriolis(r, stages);
   check_band(r);
   if (stages & CASE_MHB) check_followed(r);
+  if (stages & CASE_MHB) check_output_quantity(r);
   if (stages & CASE_MHB) check_output_harmonic(r);
   if (stages & CASE_MHB) check_run_up(r);
   if (stages & CASE_MHB) check_mistuning(r, stages);

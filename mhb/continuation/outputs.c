@@ -1,7 +1,9 @@
 #include "mhb/continuation/outputs.h"
 
 #include <math.h>
+#include <string.h>
 
+#include "mhb/numerics/extent.h"
 #include "mhb/structure/ring_receptance.h"
 
 /* Relative slope below which an output counts as flat. */
@@ -66,6 +68,41 @@ void mhb_probe_change(mhb_balance *b, const mhb_curve_point *point, int k, doubl
                               b->parameter == MHB_IN_SCALE ? dvalue : 0, dq);
 }
 
+/* d D^2/ds of the peak to peak of harmonics a[n][m + 1] that change by da. */
+static double extent_slope(int n, int m, const double complex *a, const double complex *da) {
+  const mhb_extent extent = mhb_extent_of(n, m, a);
+  double           sum    = 0;
+  double complex   w[3];
+  for (int k = 1; k <= m; k++) {
+    mhb_extent_weight(&extent, n, k, w);
+    for (int i = 0; i < n; i++) sum += creal(w[i] * da[i * (m + 1) + k]);
+  }
+  return unless_flat(2 * extent.length * sum, extent.length * extent.length);
+}
+
+/* The same of output o, which is a probe, or v, u, w of a pair. */
+static double peak_to_peak_slope(mhb_balance *b, const mhb_curve_point *point, int o) {
+  const int      probes = b->receptance->model->n_probes, m = b->m, K = m + 1;
+  double complex a[3 * K], da[3 * K], q[3 * probes + 1], dq[3 * probes + 1];
+  memset(a, 0, sizeof a);
+  memset(da, 0, sizeof da);
+  for (int k = 1; k <= m; k++) {
+    if (o >= probes) {
+      const size_t  at = (size_t)(o - probes) * (size_t)b->nb + (size_t)(2 * k - 1);
+      const double *x = point->x + at, *dx = point->tangent + at;
+      a[k]  = CMPLX(x[0], x[1]);
+      da[k] = CMPLX(dx[0], dx[1]);
+      continue;
+    }
+    mhb_probe_change(b, point, k, q, dq);
+    for (int axis = 0; axis < 3; axis++) {
+      a[axis * K + k]  = q[3 * o + axis];
+      da[axis * K + k] = dq[3 * o + axis];
+    }
+  }
+  return extent_slope(o < probes ? 3 : 1, m, a, da);
+}
+
 /* Motion z[3] at a place of a blade, and its change dz along the tangent. Without probes: of the
  * first pair. */
 static void ring_motion(const mhb_balance *b, const mhb_curve_point *point, int k, int blade,
@@ -109,6 +146,8 @@ double mhb_output_slope(mhb_balance *b, const mhb_curve_point *point, int o) {
   const mhb_receptance *r      = b->receptance;
   int                   probes = r->model->n_probes, k = mhb_output_harmonic(b);
   if (r->ring) return ring_slope(b, point, k, o);
+  if (b->settings->output_quantity == MHB_OUTPUT_PEAK_TO_PEAK)
+    return peak_to_peak_slope(b, point, o);
   if (o >= probes) {
     size_t        at = (size_t)(o - probes) * (size_t)b->nb + (size_t)(2 * k - 1);
     const double *a = point->x + at, *da = point->tangent + at;

@@ -18,6 +18,10 @@ const char *mhb_track_word(mhb_track track) {
   return word[track];
 }
 
+const char *mhb_output_quantity_word(mhb_output_quantity quantity) {
+  return quantity == MHB_OUTPUT_PEAK_TO_PEAK ? "peak_to_peak" : "harmonic";
+}
+
 bool mhb_track_by_multiplier(const char *word) {
   return word && (strcmp(word, mhb_track_word(MHB_TRACK_FLIPS)) == 0 ||
                   strcmp(word, mhb_track_word(MHB_TRACK_NEIMARK_SACKERS)) == 0);

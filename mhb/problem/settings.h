@@ -13,6 +13,9 @@ typedef enum { MHB_STABILITY_AUTO, MHB_STABILITY_ALWAYS, MHB_STABILITY_NEVER } m
 /* Motion that takes over where the wave is unstable: at few points; at all of them; never. */
 typedef enum { MHB_LASTING_AUTO, MHB_LASTING_ALWAYS, MHB_LASTING_NEVER } mhb_lasting_when;
 
+/* Size of an output whose peaks are located: of one harmonic, or its peak to peak. */
+typedef enum { MHB_OUTPUT_HARMONIC, MHB_OUTPUT_PEAK_TO_PEAK } mhb_output_quantity;
+
 /* Special points that are followed along a parameter. */
 typedef enum {
   MHB_TRACK_NOTHING,
@@ -106,6 +109,7 @@ typedef struct {
   mhb_save_settings   save;      /* points of which modal amplitudes are kept */
   mhb_track           track;     /* followed along the parameter over range, within frequency */
   char                output[MHB_NAME]; /* whose peak: a probe or "contact"; "": the first probe */
+  mhb_output_quantity output_quantity;
   int output_harmonic; /* of the excitation: of outputs whose peaks are located; 0, 1: the first */
   const struct mhb_speed_table
       *run_up; /* NULL: one speed. Else the modal model follows the frequency. */
@@ -156,6 +160,9 @@ typedef struct {
 
 /* As the case and the response file have it. */
 const char *mhb_track_word(mhb_track track);
+
+/* "harmonic" or "peak_to_peak", as in mhb.output_quantity. */
+const char *mhb_output_quantity_word(mhb_output_quantity quantity);
 
 /* Whether such points are those of a multiplier on the unit circle; NULL: no. */
 bool mhb_track_by_multiplier(const char *word);

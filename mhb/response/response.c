@@ -5,6 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "mhb/numerics/extent.h"
 #include "mhb/response/face_wear.h"
 #include "mhb/response/response_fields.h"
 
@@ -33,6 +34,7 @@ mhb_response *mhb_response_like(const mhb_response *response) {
   like->n_multipliers     = response->n_multipliers;
   like->ring              = response->ring;
   like->output_harmonic   = response->output_harmonic;
+  like->peak_to_peak      = response->peak_to_peak;
   like->n_interfaces      = response->n_interfaces;
   like->tracks_multiplier = response->tracks_multiplier;
   return like;
@@ -96,6 +98,7 @@ double mhb_response_amplitude(const mhb_response *r, const mhb_branch *b, int po
   const double complex *x   = (probe ? b->probe : b->motion) + row * 3 * K;
   const size_t          driven = (size_t)mhb_response_harmonic(r, b);
   double                square = 0;
+  if (r->peak_to_peak) return mhb_extent_of(3, b->n_harmonics, x).length;
   for (size_t axis = 0; axis < 3; axis++) square += pow(cabs(x[axis * K + driven]), 2);
   return sqrt(square);
 }

@@ -73,6 +73,9 @@ static shb_status write_tracking(hid_t file, const mhb_response *response) {
   SHB_TRY(h5_write_attribute_text(file, "/", "output", response->output));
   if (response->output_harmonic > 1)
     SHB_TRY(h5_write_attribute_int(file, "/", "output_harmonic", response->output_harmonic));
+  if (response->peak_to_peak)
+    SHB_TRY(h5_write_attribute_text(file, "/", "output_quantity",
+                                    mhb_output_quantity_word(MHB_OUTPUT_PEAK_TO_PEAK)));
   if (o->kind == MHB_OPTIMUM_NONE) return SHB_OK;
   const h5_shape one  = {.rank = 0};
   const char    *unit = mhb_parameter_unit(response->parameter);
@@ -91,11 +94,15 @@ static shb_status write_tracking(hid_t file, const mhb_response *response) {
 /* Files without mhb.track have none of it. */
 static shb_status read_tracking(hid_t file, const char *path, mhb_response *response) {
   mhb_optimum *o    = &response->optimum;
-  char        *kind = NULL;
+  char        *kind = NULL, *quantity = NULL;
   SHB_TRY(h5_read_attribute_text(file, "/", "track", &response->track));
   response->tracks_multiplier = mhb_track_by_multiplier(response->track);
   SHB_TRY(h5_read_attribute_text(file, "/", "output", &response->output));
   SHB_TRY(h5_read_attribute_int(file, "/", "output_harmonic", 1, &response->output_harmonic));
+  SHB_TRY(h5_read_attribute_text(file, "/", "output_quantity", &quantity));
+  response->peak_to_peak =
+      quantity && strcmp(quantity, mhb_output_quantity_word(MHB_OUTPUT_PEAK_TO_PEAK)) == 0;
+  free(quantity);
   if (!response->track || !h5_exists(file, "/optimum")) return SHB_OK;
   SHB_TRY(h5_read_attribute_text(file, "/optimum", "kind", &kind));
   int at = 0;

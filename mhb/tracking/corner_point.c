@@ -436,7 +436,7 @@ shb_status mhb_corner_create(mhb_balance *balance, const mhb_tracking *tracking,
     *vectors[i] = shb_arena_take(&c->arena, n, sizeof(double));
   c->jacobian       = shb_arena_take(&c->arena, n * n, sizeof(double));
   c->pivot          = shb_arena_take(&c->arena, n, sizeof *c->pivot);
-  c->weight         = shb_arena_take(&c->arena, 3 * pairs, sizeof *c->weight);
+  c->weight         = shb_arena_take(&c->arena, mhb_amplitude_weights(balance), sizeof *c->weight);
   c->touching       = shb_arena_take(&c->arena, pairs, sizeof *c->touching);
   c->closed         = shb_arena_take(&c->arena, pairs, sizeof *c->closed);
   shb_status status = c->arena.failed ? shb_fail(SHB_ERR_IO, __FILE__, __LINE__, "out of memory")

@@ -33,7 +33,7 @@ typedef struct {
   double             *r, *kept;            /* [n] */
   double             *by_omega, *by_value; /* [n] r~_omega, r~_q; then x_omega, x_q */
   double             *by_x, *onset_by_x;   /* [n] A_x, h_x */
-  double complex     *weight;              /* [3 pairs] */
+  double complex     *weight;              /* [m + 1][3 pairs] */
   int                *pivot;               /* [n] */
   shb_arena           arena;
 } mhb_corner;

@@ -155,7 +155,8 @@ static shb_status peak_at(const search *s, int b, double value, double *amplitud
         s->tracking->frequency[1] - s->tracking->frequency[0], mhb_norm(x, (int)n), &system);
   if (status == SHB_OK && !corner) {
     mhb_curve_system *base = mhb_peak_system_base(system);
-    status                 = mhb_curve_point_create(base, &point);
+    mhb_peak_system_measure(base, s->tracking->size);
+    status = mhb_curve_point_create(base, &point);
     if (status == SHB_OK) {
       mhb_peak_system_pack(base, x, SHB_TWO_PI * at.frequency, point.x);
       point.value = value;

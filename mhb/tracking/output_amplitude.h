@@ -3,16 +3,17 @@
  *   A = (sum over the three components of |a_k|^2)^(1/2)
  *
  * a_k is the harmonic of the output (mhb_output_harmonic), of a probe or of the relative motion of
- * a contact pair. A probe answers the load and the contact forces p(x), so its gradient by x passes
- * through dp/dx. */
+ * a contact pair. Or A is the peak to peak of all harmonics (mhb/numerics/extent.h). A probe
+ * answers the load and the contact forces p(x). Its gradient by x passes through dp/dx. */
 #ifndef MHB_TRACKING_OUTPUT_AMPLITUDE_H
 #define MHB_TRACKING_OUTPUT_AMPLITUDE_H
 
 #include "mhb/balance/balance.h"
 
 /* The size of the ellipse a: by the formula above, or its longest half axis,
- * A^2 = (sum |a_i|^2 + |sum a_i^2|)/2. They are equal where all components move in phase. */
-typedef enum { MHB_SIZE_ROOT_SUM, MHB_SIZE_HALF_AXIS } mhb_size;
+ * A^2 = (sum |a_i|^2 + |sum a_i^2|)/2. They are equal where all components move in phase. Or the
+ * peak to peak of the whole motion. */
+typedef enum { MHB_SIZE_ROOT_SUM, MHB_SIZE_HALF_AXIS, MHB_SIZE_PEAK_TO_PEAK } mhb_size;
 
 /* Gradient of the amplitude at fixed operating point (by x) and at fixed x (by omega). */
 typedef struct {
@@ -21,7 +22,8 @@ typedef struct {
   double          by_omega;   /* m s/rad */
   double          by_scale;   /* m */
   double          by_damping; /* m, by a common relative change of all damping ratios */
-  double complex *weight; /* [3 pairs] of the contact force: dA = Re sum weight dp_k at fixed x */
+  double complex *weight;     /* [m + 1][3 pairs] of the contact force: dA = Re sum weight_k dp_k at
+                           * fixed x */
   mhb_size        size;
 } mhb_amplitude;
 
@@ -29,6 +31,9 @@ typedef struct {
  *   output  in   a probe, or the number of probes plus a pair
  *   out     inout  by_x and weight are the caller's arrays; size says which amplitude */
 void mhb_output_amplitude(mhb_balance *balance, const double *x, int output, mhb_amplitude *out);
+
+/* Length of weight. */
+size_t mhb_amplitude_weights(const mhb_balance *balance);
 
 /* dA/dparameter at fixed x and omega; by_parameter[n] is the change of the contact force. */
 double mhb_amplitude_by_parameter(const mhb_balance *balance, const mhb_amplitude *amplitude,

@@ -423,7 +423,7 @@ static shb_status fill(mhb_peak_system *s) {
   s->pivot       = shb_arena_take(arena, one, sizeof *s->pivot);
   s->step_pivot  = shb_arena_take(arena, two, sizeof *s->step_pivot);
   s->amplitude.weight =
-      shb_arena_take(arena, 3 * (size_t)s->balance->n_pairs, sizeof *s->amplitude.weight);
+      shb_arena_take(arena, mhb_amplitude_weights(s->balance), sizeof *s->amplitude.weight);
   SHB_CHECK(!arena->failed, SHB_ERR_IO, "out of memory to follow peaks of %d unknowns", s->n);
   s->value     = NAN;
   s->border[n] = 1;

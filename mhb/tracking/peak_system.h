@@ -93,7 +93,7 @@ enum {
 /* The operating point's parameter of a derivative; not of the damping. */
 mhb_parameter mhb_peak_parameter(int derivative);
 
-/* Which amplitude has the peak; the root of the sum after creation. */
+/* Which amplitude has the peak. The root of the sum after creation. */
 void mhb_peak_system_measure(mhb_curve_system *system, mhb_size size);
 
 /* dA/dq of a peak by all parameters, from the adjoint of the point. */

@@ -433,6 +433,7 @@ static shb_status make_curve(tracer *t, double length) {
   SHB_TRY(mhb_truncation_create(t->balance, &t->truncation));
   SHB_TRY(mhb_peak_system_create(t->balance, tracking->kind, tracking->output, tracking->parameter,
                                  tracking->frequency[1] - tracking->frequency[0], length, &system));
+  mhb_peak_system_measure(mhb_peak_system_base(system), tracking->size);
   if (tracking->low <= 0)
     mhb_peak_system_passes_zero(mhb_peak_system_base(system),
                                 NEAR_ZERO * (tracking->high - tracking->low));

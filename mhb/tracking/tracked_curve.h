@@ -15,7 +15,7 @@ typedef struct {
   double            frequency[2]; /* rad/s, the range of the peaks */
   int               max_points;
   double            tolerance; /* > 0: stop where the truncation error exceeds it */
-  mhb_size          size;      /* which amplitude; of corners only */
+  mhb_size          size;      /* which amplitude */
 } mhb_tracking;
 
 /* A point to start from: an approximate peak or fold. */

@@ -108,7 +108,9 @@ static mhb_tracking tracking_of(const mhb_settings *settings, int output) {
       .low        = settings->range[0],
       .high       = settings->range[1],
       .frequency  = {SHB_TWO_PI * settings->frequency[0], SHB_TWO_PI * settings->frequency[1]},
-      .max_points = settings->max_points};
+      .max_points = settings->max_points,
+      .size       = settings->output_quantity == MHB_OUTPUT_PEAK_TO_PEAK ? MHB_SIZE_PEAK_TO_PEAK
+                                                                         : MHB_SIZE_ROOT_SUM};
 }
 
 /* Values of the parameter at which sweeps give seeds: geometric where the range allows it. */

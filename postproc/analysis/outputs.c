@@ -5,12 +5,9 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "mesh/base/constants.h"
+#include "mhb/numerics/extent.h"
 
-enum { AXES = 3, NEWTON_STEPS = 20 };
-
-/* Harmonics below this fraction of the largest do not change any printed figure. */
-static const double ROUNDING = 1e-13;
+enum { AXES = 3 };
 
 double post_semi_major_axis(int n, const double complex *a, int stride) {
   double         sum    = 0;
@@ -23,100 +20,8 @@ double post_semi_major_axis(int n, const double complex *a, int stride) {
   return sqrt((sum + cabs(square)) / 2);
 }
 
-/* Position, velocity and acceleration at phase t; harmonic k has the period 2 pi/k. */
-static void orbit_at(int n, int m, const double complex *a, double t, double x[][AXES]) {
-  double complex turn = cexp(I * t);
-  for (int i = 0; i < n; i++) {
-    double complex power = 1, sum[3] = {0};
-    for (int k = 0; k <= m; k++, power *= turn) {
-      double complex term = a[i * (m + 1) + k] * power;
-      sum[0] += term;
-      sum[1] += I * k * term;
-      sum[2] -= (double)k * k * term;
-    }
-    for (int d = 0; d < 3; d++) x[d][i] = creal(sum[d]);
-  }
-}
-
-static double dot(int n, const double *x, const double *y) {
-  double sum = 0;
-  for (int i = 0; i < n; i++) sum += x[i] * y[i];
-  return sum;
-}
-
-/* Newton's method on g(t, s) = |x(t) - x(s)|^2 from a sampled maximum; it ends when g decreases. */
-static double refine_distance(int n, int m, const double complex *a, double t, double s) {
-  double best = 0;
-  for (int step = 0; step < NEWTON_STEPS; step++) {
-    double x[3][AXES], y[3][AXES], d[AXES];
-    orbit_at(n, m, a, t, x);
-    orbit_at(n, m, a, s, y);
-    for (int i = 0; i < n; i++) d[i] = x[0][i] - y[0][i];
-    double g = dot(n, d, d);
-    if (step > 0 && g <= best) break;
-    best      = g;
-    double gt = dot(n, d, x[1]), gs = -dot(n, d, y[1]);
-    double tt = dot(n, x[1], x[1]) + dot(n, d, x[2]), ss = dot(n, y[1], y[1]) - dot(n, d, y[2]);
-    double ts = -dot(n, x[1], y[1]), det = tt * ss - ts * ts;
-    if (tt >= 0 || det <= 0) break; /* no strict maximum of the quadratic model */
-    t -= (ss * gt - ts * gs) / det;
-    s -= (tt * gs - ts * gt) / det;
-  }
-  return sqrt(best);
-}
-
-/* Pair of samples [samples][n] of largest distance. */
-static void farthest(int n, int samples, const double *x, int pair[2]) {
-  double best = -1;
-  for (int i = 0; i < samples; i++)
-    for (int j = 0; j <= i; j++) {
-      double g = 0;
-      for (int k = 0; k < n; k++)
-        g += (x[i * n + k] - x[j * n + k]) * (x[i * n + k] - x[j * n + k]);
-      if (g > best) {
-        best    = g;
-        pair[0] = i;
-        pair[1] = j;
-      }
-    }
-}
-
-static double extent(int n, int m, const double complex *a) {
-  int    samples = 8 * (m + 1);
-  double x[samples * n]; /* 200 harmonics on three axes: 39 kB */
-  for (int i = 0; i < samples; i++) {
-    double complex turn = cexp(I * (SHB_TWO_PI * i / samples));
-    for (int axis = 0; axis < n; axis++) {
-      double complex sum = 0;
-      for (int k = m; k >= 1; k--) sum = (sum + a[axis * (m + 1) + k]) * turn;
-      x[i * n + axis] = creal(sum); /* the mean cancels in a difference */
-    }
-  }
-  int pair[2] = {0, 0};
-  farthest(n, samples, x, pair);
-  double step = SHB_TWO_PI / samples;
-  return refine_distance(n, m, a, pair[0] * step, pair[1] * step);
-}
-
-/* Highest harmonic of a [n][m + 1] above rounding. */
-static int highest(int n, int m, const double complex *a) {
-  double most = 0;
-  for (int i = 0; i < n * (m + 1); i++)
-    if (i % (m + 1)) most = fmax(most, cabs(a[i]));
-  for (int k = m; k > 1; k--)
-    for (int axis = 0; axis < n; axis++)
-      if (cabs(a[axis * (m + 1) + k]) > ROUNDING * most) return k;
-  return m < 1 ? m : 1;
-}
-
-/* The search for the largest distance takes a time of the square of the harmonics: omit vanishing
- * ones. */
 double post_peak_to_peak(int n, int m, const double complex *a) {
-  int            top = highest(n, m, a);
-  double complex held[n * (top + 1)];
-  for (int axis = 0; axis < n; axis++)
-    memcpy(held + axis * (top + 1), a + axis * (m + 1), sizeof *held * (size_t)(top + 1));
-  return extent(n, top, held);
+  return mhb_extent_of(n, m, a).length;
 }
 
 post_output post_output_primary(const mhb_response *response) {
@@ -135,8 +40,16 @@ int post_first_harmonic(const mhb_branch *branch) {
   return first <= branch->n_harmonics ? first : branch->n_harmonics;
 }
 
-void post_harmonic_name(const mhb_response *response, char out[32]) {
+post_quantity post_quantity_primary(const mhb_response *response) {
+  return response->peak_to_peak ? POST_QUANTITY_PEAK_TO_PEAK : POST_QUANTITY_FIRST_HARMONIC;
+}
+
+void post_quantity_name(const mhb_response *response, post_quantity quantity, char out[32]) {
   snprintf(out, 32, "first harmonic");
+  if (quantity == POST_QUANTITY_PEAK_TO_PEAK) {
+    snprintf(out, 32, "peak to peak");
+    return;
+  }
   if (response->output_harmonic > 1) snprintf(out, 32, "harmonic %d", response->output_harmonic);
 }
 

@@ -28,10 +28,7 @@ double post_semi_major_axis(int n, const double complex *a, int stride);
 
 /* Largest distance between two instants of x(t) = Re sum_{k=0..m} a_k e^{jkt}; for n = 1 max - min.
  *
- *   a  in  [n][m + 1]; n <= 3
- *
- * Sampled at 8 instants per period of the highest harmonic, then refined by Newton's method on both
- * instants to rounding. NAN if out of memory. */
+ *   a  in  [n][m + 1]; n <= 3 */
 double post_peak_to_peak(int n, int m, const double complex *a);
 
 /* Default output of a response: that of mhb.track, else the first probe, else the first contact. Of
@@ -39,8 +36,11 @@ double post_peak_to_peak(int n, int m, const double complex *a);
 post_output post_output_primary(const mhb_response *response);
 /* Harmonic index of the excitation's first harmonic: the order of the branch. */
 int post_first_harmonic(const mhb_branch *branch);
-/* Name of mhb_response_harmonic, counted in the excitation: "first harmonic", "harmonic 3". */
-void post_harmonic_name(const mhb_response *response, char out[32]);
+/* The quantity that a report begins with: what mhb.track maximises, else the first harmonic. */
+post_quantity post_quantity_primary(const mhb_response *response);
+/* Name of a quantity, the harmonic counted in the excitation: "first harmonic", "harmonic 3", "peak
+ * to peak". */
+void post_quantity_name(const mhb_response *response, post_quantity quantity, char out[32]);
 
 /* Amplitude of harmonic k of an output at a point of a branch, m; 0 above its harmonics. */
 double post_amplitude(const mhb_response *response, const mhb_branch *branch, int point,

@@ -274,8 +274,8 @@ static shb_status fill_analysis(post_analysis *analysis) {
   SHB_CHECK(analysis->response->n_probes + analysis->response->n_pairs > 0, SHB_ERR_INPUT,
             "the response holds neither a probe nor a contact: nothing to show");
   make_groups(analysis);
-  SHB_TRY(post_values(analysis->response, analysis->primary, POST_QUANTITY_FIRST_HARMONIC,
-                      &analysis->values));
+  SHB_TRY(post_values(analysis->response, analysis->primary,
+                      post_quantity_primary(analysis->response), &analysis->values));
   for (int b = 0; b < analysis->response->n_branches; b++) SHB_TRY(analyse_branch(analysis, b));
   SHB_CHECK(
       analysis->n_points > 0, SHB_ERR_INPUT,

@@ -19,18 +19,23 @@ static void put_value(const post_analysis *analysis, const char *name, post_buff
            unit);
 }
 
-static char *amplitude(const mhb_optimum *o, char out[POST_NUMBER]) {
-  return post_measure(out, o->amplitude, post_unit_length(o->amplitude), 4);
+/* "0.59 mm", "1.12 mm peak to peak" */
+static void put_amplitude(const mhb_response *r, post_buffer *out) {
+  const double amplitude = r->optimum.amplitude;
+  char         number[POST_NUMBER];
+  post_put(out, "%s%s", post_measure(number, amplitude, post_unit_length(amplitude), 4),
+           r->peak_to_peak ? " peak to peak" : "");
 }
 
 void post_tracked_figure(const post_analysis *analysis, post_buffer *out) {
   const mhb_optimum *o = &analysis->response->optimum;
-  char               a[POST_NUMBER], f[POST_NUMBER];
+  char               f[POST_NUMBER];
   if (o->kind == MHB_OPTIMUM_NONE) return;
   post_put(out, "<div class=\"figure\"><dt>Least highest peak, ");
   put_value(analysis, analysis->abscissa.name, out);
-  post_put(out, "</dt><dd><b>%s</b><span>at %s\u00a0Hz</span></dd></div>\n", amplitude(o, a),
-           post_plain(f, o->frequency[0], 6));
+  post_put(out, "</dt><dd><b>");
+  put_amplitude(analysis->response, out);
+  post_put(out, "</b><span>at %s\u00a0Hz</span></dd></div>\n", post_plain(f, o->frequency[0], 6));
 }
 
 static void put_kind(const post_analysis *analysis, post_buffer *out) {
@@ -113,7 +118,7 @@ static void put_ends(const mhb_response *r, post_buffer *out) {
 void post_tracked_findings(const post_analysis *analysis, post_buffer *out) {
   const mhb_response *r = analysis->response;
   const mhb_optimum  *o = &r->optimum;
-  char                a[POST_NUMBER], error[POST_NUMBER];
+  char                error[POST_NUMBER];
   if (!r->track) return;
   if (r->tracks_multiplier) {
     put_crossings(analysis, out);
@@ -123,7 +128,8 @@ void post_tracked_findings(const post_analysis *analysis, post_buffer *out) {
   if (o->kind != MHB_OPTIMUM_NONE) {
     post_put(out, "<li>The highest peak is least at ");
     put_value(analysis, analysis->abscissa.name, out);
-    post_put(out, ": %s", amplitude(o, a));
+    post_put(out, ": ");
+    put_amplitude(r, out);
     if (o->error > 0)
       post_put(out, ". It lies in a bracket of %s%s%s", post_number(error, o->error, 1),
                mhb_parameter_unit(r->parameter)[0] ? "\u00a0" : "",
@@ -143,10 +149,12 @@ void post_tracked_findings(const post_analysis *analysis, post_buffer *out) {
 void post_tracked_summary(const post_analysis *analysis, post_buffer *out) {
   const mhb_response *r = analysis->response;
   const mhb_optimum  *o = &r->optimum;
-  char                a[POST_NUMBER], f[POST_NUMBER];
+  char                f[POST_NUMBER];
   if (o->kind == MHB_OPTIMUM_NONE) return;
   post_put(out, "%soptimum ", out->length ? "; " : "");
   put_value(analysis, mhb_parameter_name(r->parameter), out);
-  post_put(out, ": %s at %s Hz%s", amplitude(o, a), post_plain(f, o->frequency[0], 6),
+  post_put(out, ": ");
+  put_amplitude(r, out);
+  post_put(out, " at %s Hz%s", post_plain(f, o->frequency[0], 6),
            o->verified ? "" : ", not verified");
 }

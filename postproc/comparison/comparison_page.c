@@ -126,7 +126,7 @@ static void put_curves(const post_comparison *c, post_buffer *out) {
   double               y[2], x[2];
   find_ranges(c, y, x);
   post_place_name(a->response, a->primary, place);
-  post_harmonic_name(a->response, harmonic);
+  post_quantity_name(a->response, post_quantity_primary(a->response), harmonic);
   snprintf(label, sizeof label, "%s %s, %s, %s", place, post_axis_name(a->primary), harmonic,
            unit.name);
   post_abscissa_label(&a->abscissa, "", below);

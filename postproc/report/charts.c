@@ -15,7 +15,7 @@ enum { SHOWN_HARMONICS = 8 };
 static void amplitude_label(const post_analysis *analysis, const char *unit, char out[256]) {
   char place[128], harmonic[32];
   post_place_name(analysis->response, analysis->primary, place);
-  post_harmonic_name(analysis->response, harmonic);
+  post_quantity_name(analysis->response, post_quantity_primary(analysis->response), harmonic);
   snprintf(out, 256, "%s %s, %s, %s", place, post_axis_name(analysis->primary), harmonic, unit);
 }
 

@@ -26,8 +26,9 @@ typedef struct {
 } column;
 
 typedef struct {
-  int    n, rows, left_out;
-  column column[MAX_COLUMNS];
+  int           n, rows, left_out;
+  post_quantity first; /* that the page begins with */
+  column        column[MAX_COLUMNS];
 } plan;
 
 /* Numbers of one branch: the points written and their rows. */
@@ -50,11 +51,16 @@ static void propose(plan *p, int rows, column wanted) {
   p->rows += needed;
 }
 
+static post_quantity other_than(post_quantity quantity) {
+  return quantity == POST_QUANTITY_PEAK_TO_PEAK ? POST_QUANTITY_FIRST_HARMONIC
+                                                : POST_QUANTITY_PEAK_TO_PEAK;
+}
+
 static void propose_place(plan *p, int rows, post_place place, int index, int pass, int harmonics) {
   post_output whole = {place, index, POST_WHOLE};
   if (pass == 0) {
-    propose(p, rows, (column){whole, POST_QUANTITY_FIRST_HARMONIC, 0, 0});
-    propose(p, rows, (column){whole, POST_QUANTITY_PEAK_TO_PEAK, 0, 0});
+    propose(p, rows, (column){whole, p->first, 0, 0});
+    propose(p, rows, (column){whole, other_than(p->first), 0, 0});
   } else if (pass == 1) {
     propose(p, rows, (column){whole, POST_QUANTITY_FIRST_HARMONIC, harmonics, 0});
   } else {
@@ -71,7 +77,7 @@ static plan make_plan(const mhb_response *response, int n_points) {
     if (response->branch[b].n_harmonics >= harmonics)
       harmonics = response->branch[b].n_harmonics + 1;
   if (harmonics > MAX_HARMONICS) harmonics = MAX_HARMONICS;
-  plan p = {.rows = FIXED_ROWS};
+  plan p = {.rows = FIXED_ROWS, .first = post_quantity_primary(response)};
   for (int pass = 0; pass < 3; pass++) {
     if (response->ring) {
       propose_place(&p, rows, POST_PLACE_WORST, 0, pass, harmonics);
@@ -223,11 +229,10 @@ static shb_status put_folds(const post_analysis *analysis, double *const *values
 static shb_status put_output(const post_analysis *analysis, const column *c, sheet *sheets,
                              post_buffer *out) {
   double **values;
-  char     harmonic[32];
-  post_harmonic_name(analysis->response, harmonic);
+  char     quantity[32];
+  post_quantity_name(analysis->response, c->quantity, quantity);
   SHB_TRY(post_values(analysis->response, c->output, c->quantity, &values));
-  post_put(out, ",\"axis\":\"%s\",\"quantity\":\"%s\"", post_axis_name(c->output),
-           c->quantity == POST_QUANTITY_FIRST_HARMONIC ? harmonic : "peak to peak");
+  post_put(out, ",\"axis\":\"%s\",\"quantity\":\"%s\"", post_axis_name(c->output), quantity);
   shb_status status = put_track(analysis, values, out);
   if (status == SHB_OK) status = put_resonances(analysis, values, out);
   if (status == SHB_OK) status = put_peaks(analysis, values, out);

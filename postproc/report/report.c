@@ -88,7 +88,7 @@ static void put_header(const post_analysis *analysis, const post_origin *source,
 
 static void put_tools(const mhb_response *response, post_buffer *out) {
   char harmonic[32];
-  post_harmonic_name(response, harmonic);
+  post_quantity_name(response, POST_QUANTITY_FIRST_HARMONIC, harmonic);
   post_put(out,
            "<div class=\"tools\">\n<label>Where<select id=\"place\"></select></label>\n"
            "<label>Motion<select id=\"axis\"></select></label>\n"
@@ -136,7 +136,7 @@ static const char *tracked_title(const mhb_response *r) {
 
 static void put_main(const post_analysis *analysis, const char *case_name, post_buffer *out) {
   char frequency[POST_PLACE], harmonic[32];
-  post_harmonic_name(analysis->response, harmonic);
+  post_quantity_name(analysis->response, post_quantity_primary(analysis->response), harmonic);
   post_put(out, "<section id=\"chart\">\n<h2>%s%s</h2>\n<div class=\"card\"><figure>\n",
            tracked_title(analysis->response), post_frequency_text(analysis, frequency));
   put_tools(analysis->response, out);

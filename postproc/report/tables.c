@@ -75,7 +75,7 @@ void post_table_peaks(const post_analysis *analysis, post_buffer *out) {
   post_place_name(analysis->response, analysis->primary, place);
   post_abscissa_label(&analysis->abscissa, "", label);
   label[0] = (char)toupper(label[0]);
-  post_harmonic_name(analysis->response, harmonic);
+  post_quantity_name(analysis->response, post_quantity_primary(analysis->response), harmonic);
   post_put(out, "<div class=\"scroll\"><table><caption>Peaks%s and folds of ",
            widths ? "" : ", valleys");
   post_put_escaped(out, place);

@@ -82,17 +82,31 @@ static void keys_and_kinds(void **state) {
        "c.yaml:36:14: error: mhb.stability: is never, but mhb.track: flip needs the multipliers of "
        "sweeps; leave it out, or give always",
        1},
+      {"  scale: 1.3", "  output_quantity: peak_to_peak",
+       "c.yaml:34:20: error: mhb.output_quantity: only says something with mhb.track: peak", 1},
+      {"  scale: 1.3", "  track: peak\n  vary: {kv: [1 MN/m, 2 MN/m]}\n  output_quantity: swing",
+       "c.yaml:36:20: error: mhb.output_quantity: 'swing' is not known; expected one of harmonic, "
+       "peak_to_peak",
+       1},
+      {"  scale: 1.3",
+       "  track: peak\n  vary: {kv: [1 MN/m, 2 MN/m]}\n  output_quantity: peak_to_peak\n"
+       "  output_harmonic: 1",
+       "c.yaml:37:20: error: mhb.output_harmonic: only says something with mhb.output_quantity: "
+       "harmonic; the peak to peak is of all harmonics",
+       1},
       {"  scale: 1.3", "  output_harmonic: 2",
        "c.yaml:34:20: error: mhb.output_harmonic: only says something with mhb.track: peak", 1},
       {"  scale: 1.3", "  zzzzzz: 1.3",
        "c.yaml:34:3: error: mhb.zzzzzz: unknown key; known here: frequency, "
-       "run_up, vary, track, output, output_harmonic, harmonics, tolerance, subharmonics, scale, "
+       "run_up, vary, track, output, output_quantity, output_harmonic, harmonics, tolerance, "
+       "subharmonics, scale, "
        "max_points, stability, "
        "lasting, save, flips, search",
        1},
       {"  scale: 1.3", "  mhb.scale: 1.3",
        "c.yaml:34:3: error: mhb.mhb.scale: unknown key; known here: "
-       "frequency, run_up, vary, track, output, output_harmonic, harmonics, tolerance, "
+       "frequency, run_up, vary, track, output, output_quantity, output_harmonic, harmonics, "
+       "tolerance, "
        "subharmonics, scale, max_points, stability, "
        "lasting, save, flips, search",
        1},

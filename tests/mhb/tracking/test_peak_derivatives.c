@@ -68,7 +68,7 @@ static double worst_of(double n0, double tolerance, double step, const double *f
   set_up(&centre, n0, tolerance, -1, 1);
   /* the amplitude from the first call with a wide guess: the peak's own */
   double         r[N], by_x[N];
-  double complex weight[3];
+  double complex weight[3 * (H + 1)];
   mhb_amplitude  a = {.by_x = by_x, .weight = weight, .size = MHB_SIZE_HALF_AXIS};
   mhb_balance_linearise(centre.balance, from, omega, r, NULL);
   mhb_output_amplitude(centre.balance, from, 0, &a);
@@ -97,7 +97,7 @@ static double worst_of(double n0, double tolerance, double step, const double *f
 /* best <- the solution at a frequency if its amplitude is above most. */
 static void take_higher(fixture *f, double at, double *most, double *omega, double best[N]) {
   double         x[N], by_x[N], r[N];
-  double complex weight[3];
+  double complex weight[3 * (H + 1)];
   mhb_amplitude  a = {.by_x = by_x, .weight = weight, .size = MHB_SIZE_HALF_AXIS};
   cold_solution(&f->model, &f->settings, at, 1e-11, x);
   mhb_balance_linearise(f->balance, x, at, r, NULL);
