@@ -22,7 +22,8 @@ set(INTEGRATION_TESTS cases.study.study cases.study.samples cases.study.eval
   mhb.problem.interfaces mhb.problem.parameter
   mhb.response.modal_motion
   mhb.response.direct_stress mhb.response.response mhb.balance.condensation
-  mhb.balance.truncation_error mhb.floquet.floquet mhb.floquet.mistuned_stability
+  mhb.balance.truncation_error mhb.floquet.condensed mhb.floquet.floquet
+  mhb.floquet.mistuned_stability
   cases.study.ring_samples
   mhb.integration.integrator
   mhb.integration.integration_sweep mhb.integration.mistuned_ring

@@ -22,6 +22,10 @@ static const double DISTANCE = 0.5, ROUGH = 2e-2, FINE = 1e-3;
 static const double SHIFTED = 0.1, CYCLE = 3;
 enum { MAX_STATES = 600, FINEST = 32 };
 
+/* Contacts from which on stuck ones are springs of the structure. Measured, see
+ * docs/theory/stability.md. */
+enum { CONDENSED = 8 };
+
 struct mhb_floquet {
   mhb_modal_structure     structure; /* all modes */
   mhb_modal_structure     reduced;   /* those that are integrated */
@@ -71,6 +75,10 @@ double mhb_floquet_bytes(int blades, int pairs, int modes, bool mistuned, int ma
   return bytes;
 }
 
+static bool is_condensed(const mhb_modal_structure *s) {
+  return s->sides == 1 && s->blades == 1 && !s->disc && s->pairs >= CONDENSED;
+}
+
 static shb_status fill(mhb_floquet *s, const mhb_receptance *receptance,
                        const mhb_settings *settings, int substeps) {
   SHB_TRY(mhb_modal_structure_create(receptance, settings, receptance->n_modes,
@@ -84,7 +92,7 @@ static shb_status fill(mhb_floquet *s, const mhb_receptance *receptance,
   if (modes_of(s) > 0) {
     SHB_TRY(mhb_modal_structure_create(receptance, settings, modes_of(s), true, &s->reduced));
     SHB_TRY(mhb_monodromy_create(&s->reduced, &s->schedule, s->contact, m, (substeps + 1) / 2,
-                                 FINEST, &s->monodromy));
+                                 FINEST, is_condensed(&s->reduced), &s->monodromy));
     int cells  = mhb_floquet_cells(s),
         states = 2 * s->schedule.cell * (s->reduced.modes + all_modes->pairs);
     SHB_TRY(mhb_bloch_create(cells, states, &s->bloch));
@@ -134,7 +142,7 @@ void mhb_floquet_move(mhb_floquet *s, const mhb_receptance *receptance) {
   s->exponents.known = 0;
   if (!s->monodromy) return;
   mhb_modal_structure_set(receptance, &s->reduced);
-  s->monodromy->variational->h = -1; /* propagators of no step length */
+  mhb_monodromy_forget(s->monodromy);
 }
 
 int mhb_floquet_cells(const mhb_floquet *s) {

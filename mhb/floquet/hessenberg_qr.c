@@ -5,7 +5,7 @@
 #include <math.h>
 #include <string.h>
 
-#include "mhb/floquet/ring_band.h"
+#include "mhb/variation/ring_band.h"
 
 /* QR steps an eigenvalue at most, and how often one takes an exceptional shift. */
 enum { MOST_STEPS = 40, EXCEPTIONAL = 10 };

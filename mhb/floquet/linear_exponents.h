@@ -16,7 +16,7 @@
 
 #include "mesh/base/arena.h"
 #include "mhb/contact/contact.h"
-#include "mhb/floquet/variational.h"
+#include "mhb/variation/variational.h"
 
 typedef struct {
   const mhb_modal_structure *structure;

@@ -12,7 +12,7 @@ static const double SHORT = 1e-13;
 shb_status mhb_monodromy_create(const mhb_modal_structure     *s,
                                 const mhb_transition_schedule *schedule,
                                 mhb_contact_evaluator *contact, int m, int substeps, int finest,
-                                mhb_monodromy **out) {
+                                bool condensed, mhb_monodromy **out) {
   mhb_monodromy *d = calloc(1, sizeof *d);
   SHB_CHECK(d, SHB_ERR_IO, "out of memory");
   int    blades = schedule->cell, capacity = 2 * blades * (s->modes + s->pairs);
@@ -27,15 +27,19 @@ shb_status mhb_monodromy_create(const mhb_modal_structure     *s,
   d->u          = shb_arena_take(&d->arena, 3 * (size_t)s->contacts, sizeof *d->u);
   d->matrix =
       shb_arena_take(&d->arena, 9 * (size_t)s->contacts * (size_t)s->contacts, sizeof *d->matrix);
-  d->pivot    = shb_arena_take(&d->arena, 3 * (size_t)s->contacts, sizeof *d->pivot);
-  d->steps    = shb_arena_take(&d->arena, (size_t)pieces, sizeof *d->steps);
-  d->n_events = -1;
+  d->is_spring = shb_arena_take(&d->arena, (size_t)s->contacts, sizeof *d->is_spring);
+  d->of_u      = shb_arena_take(&d->arena, (size_t)s->contacts, sizeof *d->of_u);
+  d->of_sigma  = shb_arena_take(&d->arena, (size_t)s->contacts, sizeof *d->of_sigma);
+  d->pivot     = shb_arena_take(&d->arena, 3 * (size_t)s->contacts, sizeof *d->pivot);
+  d->steps     = shb_arena_take(&d->arena, (size_t)pieces, sizeof *d->steps);
+  d->n_events  = -1;
   d->M = shb_arena_take(&d->arena, cells * (size_t)capacity * (size_t)capacity, sizeof *d->M);
   shb_status status = SHB_OK;
   if (d->arena.failed)
     status = shb_fail(SHB_ERR_IO, __FILE__, __LINE__,
                       "out of memory for the stability of %d states", capacity);
-  if (status == SHB_OK) status = mhb_variational_create(s, capacity, &d->variational);
+  if (status == SHB_OK && condensed) status = mhb_stuck_springs_create(s, &d->springs);
+  if (status == SHB_OK) status = mhb_variational_create(s, d->springs, capacity, &d->variational);
   if (status == SHB_OK)
     status = mhb_orbit_contacts_create(s, schedule, contact, m, steps + pieces + 1, &d->orbit);
   if (status != SHB_OK) {
@@ -49,9 +53,15 @@ shb_status mhb_monodromy_create(const mhb_modal_structure     *s,
 void mhb_monodromy_destroy(mhb_monodromy *d) {
   if (!d) return;
   mhb_variational_destroy(d->variational);
+  mhb_stuck_springs_destroy(d->springs);
   mhb_orbit_contacts_destroy(d->orbit);
   shb_arena_free(&d->arena);
   free(d);
+}
+
+void mhb_monodromy_forget(mhb_monodromy *d) {
+  mhb_variational_forget(d->variational);
+  if (d->springs) mhb_stuck_springs_forget(d->springs);
 }
 
 /* Rows q and v of all blades. */
@@ -152,6 +162,15 @@ static void start_mode(mhb_monodromy *d, int blade, int i) {
   put_motion(d, state, d->u);
 }
 
+/* The slider forces of the columns. */
+static void start_sliders(mhb_monodromy *d) {
+  for (int j = 0; j < d->structure->contacts; j++) {
+    d->is_spring[j] = mhb_orbit_contacts_is_spring(d->orbit, j);
+    start_force(&d->orbit->point[j], d->schedule->constant_state[j], d->of_u[j], d->of_sigma[j]);
+  }
+  mhb_slider_propagation_begin(d->variational->sliders, d->is_spring, d->of_u, d->of_sigma);
+}
+
 /* Columns: q of the cell's blades, v, frictions. */
 static int start_columns(mhb_monodromy *d) {
   const mhb_modal_structure *s = d->structure;
@@ -171,6 +190,7 @@ static int start_columns(mhb_monodromy *d) {
       *mhb_variational_at(d->variational, first + 2 * j + i, d->column[j] + i) = 1;
     }
   mhb_variational_begin(d->variational);
+  if (d->springs) start_sliders(d);
   return 1;
 }
 
@@ -210,7 +230,7 @@ static int integrate_interval(mhb_monodromy *d, int piece, double from, double t
   int    first_pass = d->orbit->first_pass, slip = mhb_orbit_contacts_any_slips(d->orbit);
   int    steps = refinement * d->steps[piece];
   double h     = length / steps;
-  if (!first_pass) mhb_variational_set_step(d->variational, h * period);
+  if (!first_pass && !mhb_variational_set_step(d->variational, h * period)) return 0;
   for (int i = 0; i < steps; i++) {
     if (slip || i == 0) {
       if (!mhb_orbit_contacts_linearise(d->orbit, from + (i + 0.5) * h, h * period, i == 0,
@@ -255,6 +275,8 @@ static void set_steps(mhb_monodromy *d) {
 const char *mhb_monodromy_set(mhb_monodromy *d, const mhb_solution *solution, double omega,
                               int refinement, bool keep) {
   if (!keep || d->n_events != d->schedule->n_events) set_steps(d);
+  if (d->springs && !mhb_stuck_springs_set(d->springs, solution->law))
+    return "the equations of the contacts are singular";
   mhb_orbit_contacts_set_solution(d->orbit, solution, omega);
   run_pass(d, 1, refinement);
   if (!mhb_orbit_contacts_evaluate_samples(d->orbit)) return "the contact law lost its way";

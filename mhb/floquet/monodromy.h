@@ -17,12 +17,15 @@
 typedef struct {
   const mhb_modal_structure     *structure;
   const mhb_transition_schedule *schedule;
+  mhb_stuck_springs             *springs; /* NULL: contacts are not condensed */
   mhb_variational               *variational;
   mhb_orbit_contacts            *orbit;
   int                            substeps; /* a period of the fundamental */
   int                           *column;   /* [contact] its first friction state */
-  double   *u, *matrix;                    /* [3 contacts]; its square, I + R dp/du at the start */
-  int      *pivot;                         /* [3 contacts] */
+  double *u, *matrix;                      /* [3 contacts]; its square, I + R dp/du at the start */
+  int    *pivot;                           /* [3 contacts] */
+  bool   *is_spring;                       /* [contact] at the start */
+  double (*of_u)[3][3], (*of_sigma)[3][2]; /* [contact] forces at the start */
   int       blades, n;                     /* of a cell; its states */
   double   *M;                             /* [cell][n][n] column-major */
   int      *steps;    /* [capacity of events + 1] sub-steps of each interval, of refinement 1 */
@@ -30,13 +33,17 @@ typedef struct {
   shb_arena arena;
 } mhb_monodromy;
 
-/* finest: the greatest refinement. SHB_ERR_IO: no memory. Structure, schedule and contact must
- * outlive it. */
+/* finest: the greatest refinement. condensed: stuck contacts are springs of the structure, which is
+ * cheaper with many contacts; of a blade on the ground without Coriolis terms only. SHB_ERR_IO: no
+ * memory. Structure, schedule and contact must outlive it. */
 shb_status mhb_monodromy_create(const mhb_modal_structure     *structure,
                                 const mhb_transition_schedule *schedule,
                                 mhb_contact_evaluator *contact, int m, int substeps, int finest,
-                                mhb_monodromy **monodromy);
+                                bool condensed, mhb_monodromy **monodromy);
 void       mhb_monodromy_destroy(mhb_monodromy *monodromy);
+
+/* The structure has changed. */
+void mhb_monodromy_forget(mhb_monodromy *monodromy);
 
 /* Set M for a solution and the schedule set from it. Each interval between events has refinement
  * times as many sub-steps; omega: of the fundamental, rad/s.

@@ -137,6 +137,14 @@ static int is_slipping(const mhb_contact_state *point) {
   return point->state == MHB_SLIDE && point->law->mu > 0;
 }
 
+static bool is_spring(const mhb_law *law, mhb_state state) {
+  return state == MHB_STICK || (state == MHB_SLIDE && !(law->mu > 0));
+}
+
+bool mhb_orbit_contacts_is_spring(const mhb_orbit_contacts *d, int contact) {
+  return is_spring(d->point[contact].law, d->point[contact].state);
+}
+
 /* ---- rates with residual flexibility: p' = (I + G R)^-1 G w', u' = w' - R p' ---- */
 
 /* Rows of contact j of I + G R, and of G w'. R couples the contacts of neighbouring groups. */
@@ -273,6 +281,7 @@ static void closing_direction(mhb_orbit_contacts *d, int contact, double at) {
 static void set_coupled_jump(mhb_orbit_contacts *d, int contact, const double *jump,
                              mhb_variational *v) {
   elastic_feedback(d->structure, jump, v->du);
+  memcpy(v->dp, jump, sizeof *v->dp * (size_t)(3 * d->structure->contacts));
   for (int j = 0; j < d->structure->contacts; j++) {
     const mhb_contact_state *point = &d->point[j];
     const double            *f     = jump + 3 * j + 1;
@@ -342,7 +351,7 @@ int mhb_orbit_contacts_event(mhb_orbit_contacts *d, const mhb_event *event, mhb_
   mhb_state          from = point->state, to = (mhb_state)event->state;
   int                friction = point->law->mu > 0, ok = 1;
   int                changes_slip = friction && from != MHB_SEPARATE && to != MHB_SEPARATE;
-  mhb_saltation      jump         = {.contact = event->contact};
+  mhb_saltation      jump         = {.contact = event->contact, .stuck = is_spring(point->law, to)};
   sample_slipping(d, event, changes_slip);
   if (!d->first_pass) {
     if (friction && from == MHB_SEPARATE && to == MHB_SLIDE)

@@ -10,9 +10,9 @@
 #include "mesh/base/arena.h"
 #include "mhb/contact/contact.h"
 #include "mhb/contact/time_history.h"
-#include "mhb/floquet/linearised_law.h"
 #include "mhb/floquet/transition_schedule.h"
-#include "mhb/floquet/variational.h"
+#include "mhb/variation/linearised_law.h"
+#include "mhb/variation/variational.h"
 
 /* A solution of the harmonic balance with the results of the contact law. Of a mistuned ring the
  * pairs are all contacts; info is in the time of each contact's own blade, x and p are not. */
@@ -64,6 +64,9 @@ void mhb_orbit_contacts_begin(mhb_orbit_contacts *orbit, int first_pass);
 
 /* Evaluate the samples collected by the first pass. Returns 0 if the contact law failed. */
 int mhb_orbit_contacts_evaluate_samples(mhb_orbit_contacts *orbit);
+
+/* Whether a contact is a spring now: it sticks, or is closed without friction. */
+bool mhb_orbit_contacts_is_spring(const mhb_orbit_contacts *orbit, int contact);
 
 /* Whether any contact slips now. */
 int mhb_orbit_contacts_any_slips(const mhb_orbit_contacts *orbit);

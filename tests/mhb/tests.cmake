@@ -48,7 +48,7 @@ shb_counts_allocations(test_mhb_balance_condensation)
 foreach(noun multistart ring_symmetry ring_motion)
   shb_test(mhb/search ${noun} tests_models)
 endforeach()
-foreach(noun multipliers floquet disc_stability mistuned_stability friction_limit hill
+foreach(noun multipliers floquet condensed disc_stability mistuned_stability friction_limit hill
         linearised_law ring_band bloch hessenberg_qr curve_verdicts)
   shb_test(mhb/floquet ${noun} tests_models)
 endforeach()

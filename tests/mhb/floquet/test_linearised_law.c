@@ -1,6 +1,6 @@
 /* The linearised contact law: jumps at transitions against their equations, and the invariants of
  * slip. */
-#include "mhb/floquet/linearised_law.h"
+#include "mhb/variation/linearised_law.h"
 #include "tests/support/check.h"
 
 static const mhb_law LAW = {.mu = 0.37, .kv = 2.1, .ku = {1.6, 0.3, 1.2}, .n0 = 0.8};

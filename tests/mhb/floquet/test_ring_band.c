@@ -7,8 +7,8 @@
 
 #include <cmocka.h>
 
-#include "mhb/floquet/variational.h"
 #include "mhb/numerics/lu.h"
+#include "mhb/variation/variational.h"
 
 static double noise(unsigned *seed) {
   *seed = *seed * 1664525u + 1013904223u;

@@ -17,11 +17,11 @@
  * motion without R p and G the tangent stiffnesses. A jump is the difference of p' before and after
  * times the shift of the event. Derivation: docs/theory/stability.md. Source: Chen, Yang, Menq
  * 1999, eqs. 4-15, linearised. */
-#ifndef MHB_FLOQUET_LINEARISED_LAW_H
-#define MHB_FLOQUET_LINEARISED_LAW_H
+#ifndef MHB_VARIATION_LINEARISED_LAW_H
+#define MHB_VARIATION_LINEARISED_LAW_H
 
 #include "mhb/contact/contact.h"
-#include "mhb/floquet/variational.h"
+#include "mhb/variation/variational.h"
 
 /* One contact at one time of the periodic motion. */
 typedef struct {

@@ -1,6 +1,6 @@
 /* A damped oscillator over a sub-step under a constant force, exactly. */
-#ifndef MHB_FLOQUET_PROPAGATOR_H
-#define MHB_FLOQUET_PROPAGATOR_H
+#ifndef MHB_VARIATION_PROPAGATOR_H
+#define MHB_VARIATION_PROPAGATOR_H
 
 #include <math.h>
 

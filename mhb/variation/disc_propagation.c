@@ -1,10 +1,10 @@
-#include "mhb/floquet/disc_propagation.h"
+#include "mhb/variation/disc_propagation.h"
 
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
-#include "mhb/floquet/propagator.h"
+#include "mhb/variation/propagator.h"
 
 shb_status mhb_disc_propagation_create(const mhb_disc_modes *modes, mhb_disc_propagation **out) {
   mhb_disc_propagation *d = calloc(1, sizeof *d);

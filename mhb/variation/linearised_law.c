@@ -1,4 +1,4 @@
-#include "mhb/floquet/linearised_law.h"
+#include "mhb/variation/linearised_law.h"
 
 #include <math.h>
 #include <string.h>

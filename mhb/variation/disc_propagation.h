@@ -7,12 +7,12 @@
  * With Coriolis terms the rows hold the amplitudes of the coupled modes, the first half in q and
  * the second in v. Of real shapes q holds the real part and v the imaginary part. It costs 2 N^2 n
  * + 8 N n modes products a column, N sectors with n = 3 pairs. */
-#ifndef MHB_FLOQUET_DISC_PROPAGATION_H
-#define MHB_FLOQUET_DISC_PROPAGATION_H
+#ifndef MHB_VARIATION_DISC_PROPAGATION_H
+#define MHB_VARIATION_DISC_PROPAGATION_H
 
 #include "mesh/base/arena.h"
-#include "mhb/floquet/ring_band.h"
 #include "mhb/structure/disc_modes.h"
+#include "mhb/variation/ring_band.h"
 
 typedef struct {
   const mhb_disc_modes *modes;

@@ -1,4 +1,4 @@
-#include "mhb/floquet/ring_band.h"
+#include "mhb/variation/ring_band.h"
 
 #include <math.h>
 #include <stdlib.h>

@@ -8,8 +8,8 @@
  * LAPACK's dgbtrf and dgbtrs solve column by column. With them all multipliers of a curve took more
  * CPU time. A blade on the ground took 1.6 times as long with 1 contact point, 1.8 times with 4. A
  * ring of 40 blades took 1.2 times as long (on a busy machine). */
-#ifndef MHB_FLOQUET_RING_BAND_H
-#define MHB_FLOQUET_RING_BAND_H
+#ifndef MHB_VARIATION_RING_BAND_H
+#define MHB_VARIATION_RING_BAND_H
 
 #include "mesh/base/arena.h"
 #include "mhb/numerics/simd.h"

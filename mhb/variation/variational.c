@@ -1,9 +1,9 @@
-#include "mhb/floquet/variational.h"
+#include "mhb/variation/variational.h"
 
 #include <stdlib.h>
 #include <string.h>
 
-#include "mhb/floquet/propagator.h"
+#include "mhb/variation/propagator.h"
 
 static int unknowns(const mhb_modal_structure *s) {
   return 3 * s->contacts;
@@ -24,35 +24,50 @@ static int modal_rows(const mhb_modal_structure *s) {
   return s->blades * s->modes;
 }
 
-shb_status mhb_variational_create(const mhb_modal_structure *s, int capacity,
-                                  mhb_variational **out) {
-  mhb_variational *v = calloc(1, sizeof *v);
-  SHB_CHECK(v, SHB_ERR_IO, "out of memory");
-  size_t n = (size_t)unknowns(s), contacts = (size_t)s->contacts;
-  int    groups = mhb_modal_structure_groups(s);
-  size_t blocks = ((size_t)capacity + MHB_COLUMNS - 1) / MHB_COLUMNS;
-  v->structure  = s;
-  v->capacity   = capacity;
-  v->rows       = 2 * modal_rows(s) + 5 * s->contacts;
-  v->h          = -1;
-  v->Y          = shb_arena_take(&v->arena, blocks * (size_t)v->rows, sizeof(mhb_columns));
-  v->P          = shb_arena_take(&v->arena, blocks * n, sizeof(mhb_columns));
-  v->work       = shb_arena_take(&v->arena, 3 * n, sizeof(mhb_columns));
+/* What a jump at a transition and the laws need in any case. */
+static void take_laws(mhb_variational *v) {
+  size_t contacts = (size_t)v->structure->contacts, n = 3 * contacts;
   v->linearised = shb_arena_take(&v->arena, contacts, sizeof *v->linearised);
+  v->du         = shb_arena_take(&v->arena, n, sizeof(double));
+  v->dsigma     = shb_arena_take(&v->arena, 2 * contacts, sizeof(double));
+  v->dp         = shb_arena_take(&v->arena, n, sizeof(double));
+}
+
+static int take_band(mhb_variational *v) {
+  const mhb_modal_structure *s      = v->structure;
+  size_t                     n      = (size_t)unknowns(s);
+  int                        groups = mhb_modal_structure_groups(s);
+  size_t                     blocks = ((size_t)v->capacity + MHB_COLUMNS - 1) / MHB_COLUMNS;
+  v->Y    = shb_arena_take(&v->arena, blocks * (size_t)v->rows, sizeof(mhb_columns));
+  v->P    = shb_arena_take(&v->arena, blocks * n, sizeof(mhb_columns));
+  v->work = shb_arena_take(&v->arena, 3 * n, sizeof(mhb_columns));
   if (!s->disc)
     v->propagator = shb_arena_take(&v->arena, (size_t)oscillators(s) * PROPAGATOR, sizeof(double));
   v->compliance = shb_arena_take(&v->arena, n * n, sizeof(double));
   v->neighbour  = shb_arena_take(&v->arena, (size_t)groups, sizeof *v->neighbour);
-  v->du         = shb_arena_take(&v->arena, n, sizeof(double));
-  v->dsigma     = shb_arena_take(&v->arena, 2 * contacts, sizeof(double));
   int ok        = mhb_ring_band_create(groups, unknowns(s) / groups, &v->band);
   if (ok && s->disc) ok = mhb_disc_propagation_create(s->disc, &v->disc) == SHB_OK;
+  if (!ok || v->arena.failed) return 0;
+  for (int b = 0; b < groups; b++)
+    v->n_neighbours = mhb_ring_band_neighbours(&v->band, b, v->neighbour[b]);
+  return 1;
+}
+
+shb_status mhb_variational_create(const mhb_modal_structure *s, const mhb_stuck_springs *springs,
+                                  int capacity, mhb_variational **out) {
+  mhb_variational *v = calloc(1, sizeof *v);
+  SHB_CHECK(v, SHB_ERR_IO, "out of memory");
+  v->structure = s;
+  v->capacity  = capacity;
+  v->rows      = 2 * modal_rows(s) + 5 * s->contacts;
+  v->h         = -1;
+  take_laws(v);
+  int ok = springs ? mhb_slider_propagation_create(springs, capacity, &v->sliders) == SHB_OK
+                   : take_band(v);
   if (!ok || v->arena.failed) {
     mhb_variational_destroy(v);
     SHB_FAIL(SHB_ERR_IO, "out of memory for the stability of %d columns", capacity);
   }
-  for (int b = 0; b < groups; b++)
-    v->n_neighbours = mhb_ring_band_neighbours(&v->band, b, v->neighbour[b]);
   *out = v;
   return SHB_OK;
 }
@@ -62,10 +77,15 @@ void mhb_variational_destroy(mhb_variational *v) {
   shb_arena_free(&v->arena);
   mhb_ring_band_destroy(&v->band);
   mhb_disc_propagation_destroy(v->disc);
+  mhb_slider_propagation_destroy(v->sliders);
   free(v);
 }
 
 void mhb_variational_clear(mhb_variational *v, int columns) {
+  if (v->sliders) {
+    mhb_slider_propagation_clear(v->sliders, columns);
+    return;
+  }
   v->columns    = columns;
   v->blocks     = (columns + MHB_COLUMNS - 1) / MHB_COLUMNS;
   size_t blocks = (size_t)v->blocks;
@@ -140,23 +160,34 @@ static void flush(mhb_variational *v) {
 
 void mhb_variational_finish(mhb_variational *v) {
   int rows = modal_rows(v->structure);
+  if (v->sliders) {
+    mhb_slider_propagation_finish(v->sliders);
+    return;
+  }
   flush(v);
   for (int k = 0; v->disc && k < v->blocks; k++)
     mhb_disc_propagation_end(v->disc, block_rows(v, k), block_rows(v, k) + rows);
 }
 
-void mhb_variational_set_step(mhb_variational *v, double h) {
+int mhb_variational_set_step(mhb_variational *v, double h) {
   const mhb_modal_structure *s = v->structure;
-  if (h == v->h) return;
+  if (v->sliders) return mhb_slider_propagation_set_step(v->sliders, h);
+  if (h == v->h) return 1;
   flush(v);
   v->h = h;
   if (v->disc) {
     mhb_disc_propagation_set_step(v->disc, h, v->compliance);
-    return;
+    return 1;
   }
   for (int i = 0; i < oscillators(s); i++)
     propagator_set(s->omega[i], s->zeta[i % s->modes], h, v->propagator + i * PROPAGATOR);
   set_compliance(v);
+  return 1;
+}
+
+void mhb_variational_forget(mhb_variational *v) {
+  v->h = -1;
+  if (v->sliders) v->sliders->h = -1;
 }
 
 /* ---- the contacts' system ---- */
@@ -175,6 +206,7 @@ static double coupling(const mhb_variational *v, int row, int column) {
 }
 
 int mhb_variational_factor(mhb_variational *v) {
+  if (v->sliders) return mhb_slider_propagation_factor(v->sliders, v->linearised);
   int block = v->band.block;
   mhb_ring_band_clear(&v->band);
   for (int row = 0; row < v->band.n; row++)
@@ -303,6 +335,10 @@ MHB_HOT static void step_any(const mhb_variational *v, mhb_columns *Y, mhb_colum
 }
 
 void mhb_variational_step(mhb_variational *v) {
+  if (v->sliders) {
+    mhb_slider_propagation_step(v->sliders, v->linearised);
+    return;
+  }
   const mhb_modal_structure *s = v->structure;
   int                        n = unknowns(s);
   for (int k = 0; k < v->blocks; k++) {
@@ -320,6 +356,10 @@ void mhb_variational_step(mhb_variational *v) {
 /* ---- transitions ---- */
 
 void mhb_variational_saltation(mhb_variational *v, const mhb_saltation *jump) {
+  if (v->sliders) {
+    mhb_slider_propagation_jump(v->sliders, jump, v->du, v->dsigma, v->dp);
+    return;
+  }
   const mhb_modal_structure *s = v->structure;
   int                        n = unknowns(s), j = jump->contact;
   for (int k = 0; k < v->blocks; k++) {

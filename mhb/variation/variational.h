@@ -16,29 +16,15 @@
  *   q [blade][mode] | v = q' [blade][mode] | u [3 j + (v, u, w)] | sigma [2 j + i]
  * sigma of a sticking contact: friction (fu, fw); slipping: (tau, -), the friction across the slip
  * direction; open: none. */
-#ifndef MHB_FLOQUET_VARIATIONAL_H
-#define MHB_FLOQUET_VARIATIONAL_H
+#ifndef MHB_VARIATION_VARIATIONAL_H
+#define MHB_VARIATION_VARIATIONAL_H
 
 #include "mesh/base/arena.h"
-#include "mhb/floquet/disc_propagation.h"
-#include "mhb/floquet/ring_band.h"
 #include "mhb/structure/modal_structure.h"
-
-/* Linearised law of one contact over one sub-step, for y = (dv, sigma) at its start and D:
- *   mean force       mean_y y + mean_du D/2
- *   change of force  df_y y + df_du D
- *   sigma at the end state_y y + state_du D */
-typedef struct {
-  double mean_y[3][3], mean_du[3][3], df_y[3][3], df_du[3][3]; /* N/m or -, by column of y or D */
-  double state_y[2][3], state_du[2][3];
-} mhb_linearised_law;
-
-/* Jump at a transition of a contact: sigma = set y. With residual flexibility alpha = measure . y
- * times the workspace's du and dsigma is added to the rows of all contacts. */
-typedef struct {
-  int    contact;
-  double set[2][3], measure[3];
-} mhb_saltation;
+#include "mhb/variation/disc_propagation.h"
+#include "mhb/variation/ring_band.h"
+#include "mhb/variation/slider_propagation.h"
+#include "mhb/variation/variational_law.h"
 
 typedef struct {
   const mhb_modal_structure *structure;
@@ -55,12 +41,18 @@ typedef struct {
   int (*neighbour)[3];              /* [group] groups that are coupled with it, itself too */
   int           n_neighbours;
   mhb_ring_band band;        /* I + C mean_du/2 + R df_du, factored */
-  double       *du, *dsigma; /* [n], [2 contacts] of a jump */
-  shb_arena     arena;
+  double       *du, *dsigma; /* [n], [2 contacts] of a jump: motion, sigma; */
+  double       *dp;          /* [n] and force */
+  /* In the place of Y and of all that solves, or NULL. */
+  mhb_slider_propagation *sliders;
+  shb_arena               arena;
 } mhb_variational;
 
-/* Room for capacity columns. SHB_ERR_IO: no memory. The structure must outlive it. */
-shb_status mhb_variational_create(const mhb_modal_structure *structure, int capacity,
+/* Room for capacity columns. SHB_ERR_IO: no memory. Structure and springs must outlive it.
+ *   springs  in  of a blade on the ground: only contacts that slip or are open cost anything
+ *                (slider_propagation.h), with the same result. Else NULL */
+shb_status mhb_variational_create(const mhb_modal_structure *structure,
+                                  const mhb_stuck_springs *springs, int capacity,
                                   mhb_variational **variational);
 void       mhb_variational_destroy(mhb_variational *variational);
 
@@ -68,6 +60,7 @@ void       mhb_variational_destroy(mhb_variational *variational);
 void mhb_variational_clear(mhb_variational *variational, int columns);
 
 static inline double *mhb_variational_at(mhb_variational *v, int row, int column) {
+  if (v->sliders) return v->sliders->Y + (long)row * v->sliders->width + column;
   return (double *)&v->Y[(long)(column / MHB_COLUMNS) * v->rows + row] + column % MHB_COLUMNS;
 }
 
@@ -75,8 +68,11 @@ static inline double *mhb_variational_at(mhb_variational *v, int row, int column
  * rows are the workspace's own. */
 void mhb_variational_begin(mhb_variational *variational);
 
-/* Sub-steps of h seconds from here on. */
-void mhb_variational_set_step(mhb_variational *variational, double h);
+/* Sub-steps of h seconds from here on. Returns 0 if singular. */
+int mhb_variational_set_step(mhb_variational *variational, double h);
+
+/* The structure has changed: the step must be set anew. */
+void mhb_variational_forget(mhb_variational *variational);
 
 /* Factor the contacts' system for the linearised laws. Returns 0 if singular. */
 int mhb_variational_factor(mhb_variational *variational);
