@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "cases/schema/case.h"
+#include "mesh/base/crash_guard.h"
 
 /* Does usage mention option as a whole word? */
 static bool mentions(const char *usage, const char *option) {
@@ -156,6 +157,7 @@ int command_finish(shb_status status) {
   if (status != SHB_OK && shb_message()[0] != '\0')
     fprintf(stderr, "shroudhb: %s: %s\n", status == SHB_NOT_CONVERGED ? "warning" : "error",
             shb_message());
+  shb_guard_told((int)status);
   return (int)status;
 }
 

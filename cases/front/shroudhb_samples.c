@@ -109,9 +109,9 @@ static shb_status share(void *context, const mhb_sample_work *work) {
   return crew_manage(&jobs, &computer);
 }
 
-static shb_status manage(const case_file *file, const command_options *options) {
+static shb_status manage(const case_file *file, const command_options *options, int sharing) {
   manager               m    = {.n = file->mistuning.samples};
-  const mhb_sample_crew crew = {&m, share};
+  const mhb_sample_crew crew = {&m, share, sharing};
   int                   ranks;
   MPI_Comm_size(MPI_COMM_WORLD, &ranks);
   const shb_status status = balance_run(file, options, ranks > 1 ? &crew : NULL);
@@ -139,7 +139,8 @@ static int work(const command_options *options) {
   if (rank == 0) status = read_case(options, &file);
   go = (int)status;
   MPI_Bcast(&go, 1, MPI_INT, 0, MPI_COMM_WORLD);
-  if (go == SHB_OK) status = rank == 0 ? manage(&file, options) : serve(options);
+  const int sharing = crew_sharing();
+  if (go == SHB_OK) status = rank == 0 ? manage(&file, options, sharing) : serve(options);
   if (rank == 0 && go == SHB_OK) case_free(&file);
   if (rank == 0) return command_finish(status);
   /* the manager would wait for ever */

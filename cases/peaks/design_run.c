@@ -61,9 +61,12 @@ static shb_status sweep(job *j, int harmonics) {
 }
 
 /* Whether a sweep with so few harmonics is less than what the case asks for. */
-static bool is_coarse(const job *j, int harmonics) {
-  const mhb_settings *s = &j->model->settings;
+static bool is_coarse(const mhb_settings *s, int harmonics) {
   return s->motion_tolerance > 0 || s->harmonics > harmonics * s->subharmonics;
+}
+
+int design_run_harmonics(const mhb_settings *s) {
+  return is_coarse(s, sweeps[0]) ? sweeps[0] * s->subharmonics : s->harmonics;
 }
 
 /* ---------------------------------------------------------------- outputs */
@@ -240,7 +243,7 @@ static shb_status sweep_for(job *j, solved_peak *walked) {
   shb_status       status;
   for (int i = 0; i < N_SWEEPS && !is_settled(j, &peak); i++) {
     exact_peak before = peak;
-    if (sweeps[i] > 0 && !is_coarse(j, sweeps[i])) continue;
+    if (sweeps[i] > 0 && !is_coarse(&j->model->settings, sweeps[i])) continue;
     status = sweep(j, sweeps[i]);
     if (status == SHB_ERR_INPUT && sweeps[i] > 0) continue; /* the load has more harmonics */
     if (status != SHB_OK && status != SHB_NOT_CONVERGED) return status;

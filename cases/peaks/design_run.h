@@ -8,6 +8,9 @@
 #include "cases/peaks/peak_walk.h"
 #include "postproc/study/design_study.h"
 
+/* Harmonics of the first sweep of a design. */
+int design_run_harmonics(const mhb_settings *settings);
+
 /* Compute the outputs on a modal model. Sets state, value, error, reason and curve of the design.
  * A design without an output is STUDY_FAILED with its reason, which is no error here.
  *

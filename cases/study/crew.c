@@ -22,6 +22,17 @@ int crew_workers(void) {
   return n > 1 ? n - 1 : 1;
 }
 
+int crew_sharing(void) {
+  MPI_Comm here;
+  int      rank, computes, n;
+  MPI_Comm_rank(MPI_COMM_WORLD, &rank);
+  computes = rank > 0 || n_ranks() == 1;
+  MPI_Comm_split_type(MPI_COMM_WORLD, MPI_COMM_TYPE_SHARED, 0, MPI_INFO_NULL, &here);
+  MPI_Allreduce(&computes, &n, 1, MPI_INT, MPI_SUM, here);
+  MPI_Comm_free(&here);
+  return n > 1 ? n : 1;
+}
+
 void crew_dismiss(void) {
   for (int rank = 1; rank < n_ranks(); rank++)
     MPI_Send(NULL, 0, MPI_DOUBLE, rank, TAG_STOP, MPI_COMM_WORLD);

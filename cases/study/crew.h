@@ -39,4 +39,7 @@ void crew_dismiss(void);
 /* Number of processes that compute. */
 int crew_workers(void);
 
+/* Those of them on this machine, at least 1. All ranks must call it. */
+int crew_sharing(void);
+
 #endif

@@ -59,9 +59,10 @@ static char **own_environment(void) {
 
 static int spawn(design_process *p, int in, int out) {
   char                      *program = subprocess_program("shroudhb-design");
-  char                      *study = strdup(p->study), **own = own_environment();
-  char                      *words[] = {program, study, NULL};
+  char                      *study = strdup(p->study), **own = own_environment(), sharing[16];
+  char                      *words[] = {program, study, sharing, NULL};
   posix_spawn_file_actions_t actions;
+  snprintf(sharing, sizeof sharing, "%d", p->sharing);
   posix_spawn_file_actions_init(&actions);
   posix_spawn_file_actions_adddup2(&actions, in, STDIN_FILENO);
   posix_spawn_file_actions_adddup2(&actions, out, STDOUT_FILENO);

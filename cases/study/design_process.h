@@ -11,7 +11,8 @@ typedef struct {
   const char *study;     /* path of the study file */
   int         n_request; /* values of a request: see below */
   int         n_outputs, n_derivatives;
-  pid_t       child; /* 0: not running */
+  int         sharing; /* processes on this machine that compute designs */
+  pid_t       child;   /* 0: not running */
   int         to, from;
 } design_process;
 

@@ -6,6 +6,7 @@
 #include <stdio.h>
 
 #include "cases/commands/command.h"
+#include "cases/parse/units.h"
 #include "cases/peaks/design_run.h"
 #include "cases/schema/case.h"
 #include "cases/study/design_message.h"
@@ -15,14 +16,16 @@
 #include "mesh/base/progress.h"
 
 static const char usage[] =
-    "usage: shroudhb-design STUDY.yaml\n"
+    "usage: shroudhb-design STUDY.yaml [PROCESSES]\n"
     "\n"
     "Computes designs for `shroudhb study`, which starts it. Values of the varied keys come from\n"
-    "standard input, results go to standard output, both in binary.\n";
+    "standard input, results go to standard output, both in binary. PROCESSES such programs share\n"
+    "the memory of this machine, else one.\n";
 
 typedef struct {
   study_spec  spec;
   modal_store store;
+  int         sharing; /* processes that share the memory */
 } server;
 
 /* The outputs of a design, from and to peaks of others (design_run_from). */
@@ -32,6 +35,7 @@ static shb_status run(server *s, const double *value, const solved_peak *from, s
   case_model  model;
   peak_field *field;
   SHB_TRY(study_spec_design(&s->spec, value, NULL, NULL, stderr, &file));
+  file.mhb.sharing  = s->sharing;
   shb_status status = modal_store_get(&s->store, value, &file, &model, &field);
   if (status == SHB_OK)
     status = design_run_from(&file, &model, field, s->spec.n_outputs, s->spec.output, from, found,
@@ -83,10 +87,24 @@ static shb_status compute(void *context, const double *value, char **bytes, size
   return status;
 }
 
+/* Take the number behind the path off the words. Returns 1 without one, 0 if it is wrong. */
+static int take_sharing(int *argc, char **argv) {
+  char why[CASE_WHY];
+  int  n = 1;
+  if (*argc != 3 || argv[1][0] == '-' || argv[2][0] == '-') return n;
+  if (!case_integer(argv[2], &n, why) || n < 1) return 0;
+  argv[--*argc] = NULL;
+  return n;
+}
+
 int main(int argc, char **argv) {
   command_options options;
-  server          s;
-  int             code = command_parse(argc, argv, usage, &options);
+  server          s = {.sharing = take_sharing(&argc, argv)};
+  if (s.sharing < 1) {
+    fputs("shroudhb: error: PROCESSES takes a number, from 1\n", stderr);
+    return SHB_ERR_INPUT;
+  }
+  int code = command_parse(argc, argv, usage, &options);
   if (code >= 0) return code;
   shb_status status = study_spec_read(options.path, false, stderr, &s.spec);
   if (status == SHB_OK) status = modal_store_open(&s.spec, &s.store);

@@ -9,6 +9,7 @@
 #include "cases/commands/command.h"
 #include "cases/commands/subprocess.h"
 #include "cases/parse/units.h"
+#include "cases/peaks/design_memory.h"
 #include "cases/study/design_process.h"
 #include "cases/study/study_run.h"
 #include "mesh/base/progress.h"
@@ -165,16 +166,21 @@ static shb_status manage(const study_spec *spec, const command_options *options,
 static int work(const command_options *options) {
   study_spec spec = {0};
   int        rank, go[4] = {SHB_OK, 0, 0, 0};
+  const int  sharing = crew_sharing();
+  shb_status status  = SHB_OK;
   MPI_Comm_rank(MPI_COMM_WORLD, &rank);
-  shb_status status = SHB_OK;
   if (rank == 0) status = study_spec_read(options->path, true, stderr, &spec);
+  if (rank == 0 && status == SHB_OK) status = design_memory_check(&spec, sharing);
   go[0] = (int)status;
   go[1] = spec.keys.n;
   go[2] = spec.n_outputs;
   go[3] = study_derivatives(spec.n_outputs, spec.output);
   MPI_Bcast(go, 4, MPI_INT, 0, MPI_COMM_WORLD);
-  design_process process = {
-      .study = options->path, .n_request = 2 * go[1], .n_outputs = go[2], .n_derivatives = go[3]};
+  design_process      process  = {.study         = options->path,
+                                  .n_request     = 2 * go[1],
+                                  .n_outputs     = go[2],
+                                  .n_derivatives = go[3],
+                                  .sharing       = sharing};
   const crew_computer computer = {&process, process.n_request, compute};
   if (go[0] == SHB_OK)
     status = rank == 0 ? manage(&spec, options, &computer) : crew_serve(&computer);

@@ -18,6 +18,7 @@ enum { SIGNALS = sizeof fatal / sizeof *fatal, STACK = 1 << 16 };
 /* Signal handlers have no arguments. */
 static struct {
   bool             active, muted;
+  int              code; /* of the end */
   char             line[1400];
   struct sigaction before[SIGNALS];
   stack_t          stack_before;
@@ -39,7 +40,7 @@ static void end_program(int number) {
   ssize_t   done  = write(where, guard.line, strlen(guard.line));
   (void)done;
   shb_publish_abandon();
-  _exit(SHB_ERR_INPUT);
+  _exit(guard.code);
 }
 
 static bool make_own_stream(void) {
@@ -71,6 +72,7 @@ enum { USED = true };
 void shb_guard_begin(const char *path, const char *why, bool mute) {
   snprintf(guard.line, sizeof guard.line - 1, "shroudhb: error: %s: %s", path, why);
   strcat(guard.line, "\n");
+  guard.code = SHB_ERR_INPUT;
   if (guard.active || !USED) return;
   const stack_t    own    = {.ss_sp = stack, .ss_size = sizeof stack};
   struct sigaction action = {.sa_handler = end_program, .sa_flags = SA_ONSTACK | SA_RESETHAND};
@@ -79,6 +81,11 @@ void shb_guard_begin(const char *path, const char *why, bool mute) {
   for (int i = 0; i < SIGNALS; i++) sigaction(fatal[i], &action, &guard.before[i]);
   mute_stderr(mute);
   guard.active = true;
+}
+
+void shb_guard_told(int code) {
+  guard.line[0] = '\0';
+  guard.code    = code;
 }
 
 void shb_guard_end(void) {

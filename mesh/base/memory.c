@@ -92,3 +92,40 @@ double shb_memory_available(void) {
   return fmin(fmin(kilobytes_of("/proc/meminfo", "MemAvailable:"), left_in_groups()),
               left_to_address());
 }
+
+/* ---- what fits ---- */
+
+static const double GIGA = 1e9;
+
+/* The largest number up to the present one with which the size fits; 0: none. */
+static int fits(const shb_memory_need *need, int *number) {
+  const int all = *number;
+  int       low = 0, high = all; /* low fits, or is 0; bytes grow with the number */
+  while (low < high) {
+    *number = low + (high - low + 1) / 2;
+    if (need->bytes(need->size) <= need->left)
+      low = *number;
+    else
+      high = *number - 1;
+  }
+  *number = all;
+  return low;
+}
+
+shb_status shb_memory_refuse(const shb_memory_need *need) {
+  const double needed   = need->bytes(need->size) / need->sharing;
+  const double left     = need->left / need->sharing;
+  char         fit[200] = "", sharing[64] = "";
+  size_t       length = 0;
+  for (int i = 0; i < need->n_numbers && length < sizeof fit; i++) {
+    const shb_memory_number *n       = &need->number[i];
+    const int                largest = fits(need, n->number);
+    if (largest >= n->least)
+      length += (size_t)snprintf(fit + length, sizeof fit - length, "%s %s: %d fits",
+                                 length ? ", or" : ";", n->key, largest);
+  }
+  if (need->sharing > 1)
+    snprintf(sharing, sizeof sharing, " for each of %d processes", need->sharing);
+  SHB_FAIL(SHB_ERR_INPUT, "%s needs about %.3g GB more memory, and %.3g GB are left%s%s",
+           need->what, needed / GIGA, left / GIGA, sharing, fit);
+}

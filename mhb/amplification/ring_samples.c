@@ -200,6 +200,7 @@ shb_status mhb_ring_samples(const modal_model *blade, const mhb_settings *settin
                            .progress = progress};
   mhb_settings one      = *settings;
   one.stability         = MHB_STABILITY_NEVER; /* as in mhb_ring_sample */
+  if (sampling->crew) one.sharing = sampling->crew->sharing;
   SHB_TRY(mhb_sweep_threads(&settings->ring->whole, &one, &w.threads));
   if (!response->samples) SHB_TRY(make(settings, sampling, preloads, &response->samples));
   mhb_publisher_start(&w.publisher, path, provenance);

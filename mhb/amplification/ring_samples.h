@@ -23,6 +23,7 @@ typedef struct {
 typedef struct {
   void *context;
   shb_status (*share)(void *context, const mhb_sample_work *work);
+  int sharing; /* processes that share the memory, each with a sample */
 } mhb_sample_crew;
 
 /* Which samples are drawn. */

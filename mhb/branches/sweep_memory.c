@@ -12,7 +12,10 @@
 #include "mhb/numerics/fourier.h"
 #include "modal/model/residual_series.h"
 
-static const double real = sizeof(double), complex_number = sizeof(double complex), giga = 1e9;
+static const double real = sizeof(double), complex_number = sizeof(double complex);
+
+/* Heap, plans and scratch of a thread that are no large arrays; measured with small sweeps. */
+static const double A_THREAD = 5e6;
 
 /* Evaluations of the contacts that a curve keeps: six points, the balance's own, the trial's. */
 enum { EVALUATIONS = 8 };
@@ -97,52 +100,40 @@ double mhb_sweep_bytes(const mhb_sweep_size *z) {
   const double floquet  = z->stability ? mhb_branch_floquet_bytes(mistuned ? z->blades : z->wave,
                                                                  z->pairs, z->modes, mistuned)
                                        : 0;
-  return (z->blades ? of_ring(z) : of_balance(z)) + points + floquet;
+  return (z->blades ? of_ring(z) : of_balance(z)) + points + floquet + A_THREAD;
 }
 
 /* ---- what fits ---- */
 
-/* The largest number up to *number, a member of size, with which size fits; 0: none. */
-static int fits(mhb_sweep_size *size, int *number, double left) {
-  const int all = *number;
-  int       low = 0, high = all; /* low fits, or is 0; bytes grow with the number */
-  while (low < high) {
-    *number = (low + high + 1) / 2;
-    if (mhb_sweep_bytes(size) <= left)
-      low = *number;
-    else
-      high = *number - 1;
-  }
-  *number = all;
-  return low;
+static double bytes_of_all(const void *size) {
+  const mhb_sweep_size *z = size;
+  return z->sharing * mhb_sweep_bytes(z);
 }
 
-static shb_status refuse(mhb_sweep_size z, double left) {
-  const double             needed   = mhb_sweep_bytes(&z);
-  const int                number[] = {fits(&z, &z.harmonics, left), fits(&z, &z.pairs, left),
-                                       fits(&z, &z.blades, left)};
-  static const char *const key[]    = {"mhb.harmonics", "contact.points", "rotor.blades"};
-  char                     fit[160] = "", ring[32] = "", workers[64] = "";
-  int                      length = 0;
-  for (int i = 0; i < 3; i++)
-    if (number[i] > (i == 2 ? 1 : 0))
-      length += snprintf(fit + length, sizeof fit - (size_t)length, "%s %s: %d fits",
-                         length ? ", or" : ";", key[i], number[i]);
+static shb_status refuse(const mhb_sweep_size *size, double left) {
+  mhb_sweep_size          z        = *size;
+  const shb_memory_number number[] = {{"mhb.harmonics", &z.harmonics, 1},
+                                      {"contact.points", &z.pairs, 1},
+                                      {"rotor.blades", &z.blades, 2},
+                                      {"processes", &z.sharing, 1}};
+  char                    ring[32] = "", what[160];
   if (z.blades) snprintf(ring, sizeof ring, "%d different blades, ", z.blades);
-  if (z.sharing > 1) snprintf(workers, sizeof workers, " for each of %d processes", z.sharing);
-  SHB_FAIL(
-      SHB_ERR_INPUT,
-      "the balance with %s%d contact point%s and %d harmonics needs about %.3g GB more memory, "
-      "and %.3g GB are left%s%s",
-      ring, z.pairs, z.pairs == 1 ? "" : "s", z.harmonics, needed / giga, left / giga, workers,
-      fit);
+  snprintf(what, sizeof what, "the balance with %s%d contact point%s and %d harmonics", ring,
+           z.pairs, z.pairs == 1 ? "" : "s", z.harmonics);
+  return shb_memory_refuse(
+      &(shb_memory_need){what, bytes_of_all, &z, 4, number, left, size->sharing});
+}
+
+shb_status mhb_sweep_fits(const mhb_sweep_size *size) {
+  const double left = shb_memory_available();
+  return bytes_of_all(size) > left ? refuse(size, left) : SHB_OK;
 }
 
 shb_status mhb_sweep_threads(const modal_model *model, const mhb_settings *settings, int *threads) {
   const mhb_sweep_size size = mhb_sweep_size_of(model, settings);
-  const double         each = mhb_sweep_bytes(&size), left = shb_memory_available() / size.sharing;
+  const double         all = bytes_of_all(&size), left = shb_memory_available();
   *threads = omp_get_max_threads();
-  if (each > left) return refuse(size, left);
-  if (left < each * *threads) *threads = (int)(left / each);
+  if (all > left) return refuse(&size, left);
+  if (left < all * *threads) *threads = (int)(left / all);
   return SHB_OK;
 }

@@ -28,9 +28,12 @@ mhb_sweep_size mhb_sweep_size_of(const modal_model *model, const mhb_settings *s
 /* Bytes for one preload. */
 double mhb_sweep_bytes(const mhb_sweep_size *size);
 
-/* Preloads that memory allows at a time, as many as there are threads at most.
- * SHB_ERR_INPUT: not even one. The message has the bytes needed and left, and the most harmonics,
- * contact points and blades that fit. */
+/* SHB_ERR_INPUT: the memory left is too little for one preload in each process. The message has the
+ * bytes needed and left, and the most harmonics, contact points, blades and processes that fit. */
+shb_status mhb_sweep_fits(const mhb_sweep_size *size);
+
+/* Preloads that memory allows at a time, as many as there are threads at most. Errors: as
+ * mhb_sweep_fits. */
 shb_status mhb_sweep_threads(const modal_model *model, const mhb_settings *settings, int *threads);
 
 #endif

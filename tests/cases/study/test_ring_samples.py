@@ -3,6 +3,7 @@
 Usage: test_ring_samples.py BIN SCENE_FOLDER, with the programs in BIN.
 """
 import os
+import re
 import signal
 import subprocess
 import sys
@@ -84,6 +85,32 @@ def check_faults():
     assert done.returncode == 2 and told == 1, (done.returncode, done.stderr)
 
 
+def check_memory():
+    """Designs whose rings do not fit beside each other are refused before one begins."""
+    sizes = 'vary: {contact.n0: [20 N, 60 N]}\noutputs: [peak]\n'
+    large = text.replace('  harmonics: 3\n', '  harmonics: 200\n').replace('blades: 40',
+                                                                          'blades: 1000')
+    for name, what in ('large.yaml', large), ('study.yaml', f'case: large.yaml\n{sizes}'):
+        with open(name, 'w', encoding='utf-8') as out:
+            out.write(what)
+    told = {}
+    for ranks in 1, 4:
+        done = subprocess.run(['mpiexec', '-n', str(ranks), '--oversubscribe', '--quiet',
+                               program('shroudhb-study'), '--quiet', 'study.yaml'],
+                              capture_output=True, text=True, env=ENVIRONMENT, timeout=100,
+                              check=False)
+        found = re.search(r'1000 different blades, 1 contact point and 200 harmonics needs about '
+                          r'(\d+) GB more memory, and ([\d.]+) GB are left(.*); mhb.harmonics: '
+                          r'(\d+) fits, or rotor.blades: (\d+) fits', done.stderr)
+        assert done.returncode == 2 and found, (ranks, done.returncode, done.stderr)
+        assert len(done.stderr.splitlines()) == 1, done.stderr
+        told[ranks] = float(found[2]), found[3], int(found[5])
+    assert told[1][1] == '' and told[4][1] == ' for each of 3 processes', told
+    assert 2 < told[1][0] / told[4][0] < 4 and told[4][2] < told[1][2], told
+    assert not os.path.exists('study.study.h5')
+    print(f'alone and beside two others (GB left, blades that fit): {told}')
+
+
 with tempfile.TemporaryDirectory() as folder:
     with open(os.path.join(SCENE, 'case.yaml'), encoding='utf-8') as source:
         text = source.read()
@@ -93,3 +120,4 @@ with tempfile.TemporaryDirectory() as folder:
     run(program('shroudhb'), 'modal', '--quiet', *WORDS, 'case.yaml')
     check_stop(check_ranks())
     check_faults()
+    check_memory()

@@ -59,6 +59,13 @@ static void nothing(void) {
   _exit(7);
 }
 
+/* As of a library that cannot close a damaged file. */
+static void crash_after_the_last_word(void) {
+  fprintf(stderr, "spoken\n");
+  shb_guard_told(4);
+  raise(SIGSEGV);
+}
+
 /* The state of a child that does something under a guard, and what it printed. */
 static int guarded(void (*act)(void), bool mute, char text[500]) {
   int ends[2], state = 0;
@@ -145,12 +152,23 @@ static void temporary_files_are_removed(void **state) {
   free(unpublished);
 }
 
+static void a_crash_after_the_last_word_says_nothing(void **state) {
+  (void)state;
+  char text[500];
+  skip_with_sanitizer();
+  const int end = guarded(crash_after_the_last_word, false, text);
+  assert_true(WIFEXITED(end));
+  assert_int_equal(WEXITSTATUS(end), 4);
+  assert_string_equal(text, "spoken\n");
+}
+
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(a_crash_is_one_line),
       cmocka_unit_test(the_program_may_speak_and_the_c_library_may_not),
       cmocka_unit_test(it_ends),
       cmocka_unit_test(temporary_files_are_removed),
+      cmocka_unit_test(a_crash_after_the_last_word_says_nothing),
   };
   return cmocka_run_group_tests(tests, scratch_make, scratch_remove);
 }

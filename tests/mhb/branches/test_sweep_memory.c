@@ -15,24 +15,33 @@
 #include "mhb/mistuning/deviations.h"
 #include "mhb/mistuning/mistuned_ring.h"
 #include "tests/support/check.h"
+#include "tests/support/random_disc.h"
 #include "tests/support/random_model.h"
 
 typedef struct {
   const char *name;
   int         pairs, harmonics, blades; /* blades 1: on the ground */
-  bool        mistuned, coriolis, stability;
+  bool        mistuned, coriolis, stability, disc;
 } scene;
 
 typedef struct {
-  modal_model        model;
-  mhb_settings       settings;
-  mhb_mistuned_ring *ring;
-  const modal_model *whole;
+  modal_model           model;
+  mhb_settings          settings;
+  mhb_mistuned_ring    *ring;
+  modal_nodal_diameters disc; /* owner of the model, if there is one */
+  const modal_model    *whole;
 } sweep;
 
 static void make(const scene *c, sweep *s) {
-  *s = (sweep){.settings = random_settings(c->harmonics)};
-  random_model(c->pairs, c->blades > 1 ? WITH_LEFT : 0, 5, &s->model);
+  *s              = (sweep){.settings = random_settings(c->harmonics)};
+  const int parts = c->blades > 1 ? WITH_LEFT : 0;
+  if (c->disc) {
+    random_disc(c->pairs, c->blades, parts | WITH_RESIDUAL, false, 5, &s->disc);
+    s->model                    = s->disc.model[0];
+    s->settings.nodal_diameters = &s->disc;
+  } else {
+    random_model(c->pairs, parts, 5, &s->model);
+  }
   s->whole                 = &s->model;
   s->settings.blades       = c->blades;
   s->settings.to_ground    = c->blades == 1;
@@ -60,7 +69,10 @@ static void make(const scene *c, sweep *s) {
 
 static void drop(sweep *s) {
   mhb_mistuned_ring_destroy(s->ring);
-  modal_model_free(&s->model);
+  if (s->settings.nodal_diameters)
+    modal_nodal_diameters_free(&s->disc);
+  else
+    modal_model_free(&s->model);
 }
 
 /* What a process of its own tells: its points, and its most memory in bytes. */
@@ -99,15 +111,18 @@ static measured run(const scene *c) {
 /* Bytes above those of a small sweep; told and measured agree within the band. */
 static void memory_is_that_of_runs(void **state) {
   (void)state;
-  static const scene least  = {"", 1, 2, 3, true, false, true};
+  static const scene least  = {"", 1, 2, 3, true, false, true, false};
   static const scene rows[] = {
-      {"one blade, one contact point", 1, 60, 1, false, false, false},
-      {"one blade, ten contact points", 10, 20, 1, false, false, false},
-      {"the same with Coriolis terms", 10, 12, 1, false, true, false},
-      {"30 different blades", 1, 11, 30, true, false, false},
-      {"8 different blades, four contact points", 4, 5, 8, true, false, false},
-      {"wave of 30 blades, stability", 2, 2, 30, false, false, true},
-      {"30 different blades, stability", 1, 3, 30, true, false, true},
+      {"one blade, one contact point", 1, 90, 1, false, false, false, false},
+      {"one blade, ten contact points", 10, 20, 1, false, false, false, false},
+      {"the same with Coriolis terms", 10, 12, 1, false, true, false, false},
+      {"30 different blades", 1, 11, 30, true, false, false, false},
+      {"8 different blades, four contact points", 4, 5, 8, true, false, false, false},
+      {"wave of 30 blades, stability", 2, 2, 30, false, false, true, false},
+      {"30 different blades, stability", 1, 4, 30, true, false, true, false},
+      {"disc of 12 sectors, ten contact points", 10, 12, 12, false, false, false, true},
+      {"disc of 8 sectors, 25 contact points", 25, 7, 8, false, false, false, true},
+      {"disc of 20 sectors, stability", 1, 5, 20, false, false, true, true},
   };
   const measured base    = run(&least);
   int            outside = 0; /* of the band */
@@ -174,7 +189,7 @@ static int number_after(const char *key) {
 /* In a process with little address space: what does not fit is refused, with the largest that
  * does. */
 static void too_large_is_refused(void) {
-  static const scene ring = {"", 4, 20, 50, true, false, false};
+  static const scene ring = {"", 4, 20, 50, true, false, false, false};
   sweep              s;
   struct rlimit      limit;
   int                threads;
@@ -203,7 +218,20 @@ static void too_large_is_refused(void) {
   }
   s.settings.sharing = 4; /* a quarter each */
   assert_int_equal(mhb_sweep_threads(s.whole, &s.settings, &threads), SHB_ERR_INPUT);
+  puts(shb_message());
   assert_non_null(strstr(shb_message(), "for each of 4 processes"));
+  /* a smaller ring fits once or twice, but not four times */
+  s.settings.harmonics = 4;
+  mhb_sweep_size size  = mhb_sweep_size_of(s.whole, &s.settings);
+  left                 = shb_memory_available();
+  while (4 * mhb_sweep_bytes(&size) < left) size.harmonics++;
+  s.settings.harmonics = size.harmonics;
+  assert_int_equal(mhb_sweep_threads(s.whole, &s.settings, &threads), SHB_ERR_INPUT);
+  puts(shb_message());
+  assert_int_equal(number_after("processes: "), 3);
+  s.settings.sharing = 3;
+  assert_int_equal(mhb_sweep_threads(s.whole, &s.settings, &threads), SHB_OK);
+  assert_int_equal(threads, 1);
   drop(&s);
 }
 
