@@ -42,7 +42,8 @@ set(INTEGRATION_TESTS cases.study.study cases.study.samples cases.study.eval
   mhb.ring.ring_step mhb.ring.neimark_sacker cases.install.install
   mhb.tracking.corner mhb.tracking.corner_pairs mhb.tracking.tracked_curve
   mhb.tracking.tracked_multiplier bench.tracking
-  robust.same_bits robust.fail_nth_mesh mesh.blade.shroud_angle cases.converge.points_ladder
+  robust.same_bits robust.not_finite robust.fail_nth_integrate
+  robust.fail_nth_mesh mesh.blade.shroud_angle cases.converge.points_ladder
   robust.memory
   cases.commands.contact_points modal.hdf5.stamp)
 if(SHROUDHB_CHROMIUM AND SHROUDHB_PYTHON)

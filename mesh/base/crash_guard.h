@@ -13,7 +13,8 @@ void shb_guard_begin(const char *path, const char *why, bool mute);
 void shb_guard_end(void);
 
 /* The program has told its last word, and ends with this code. A fatal signal under a guard that is
- * still up, as of a library that cannot close a damaged file, ends it so without another line. */
+ * still up then ends it so without another line. So may end a library that cannot close a damaged
+ * file. */
 void shb_guard_told(int code);
 
 #endif

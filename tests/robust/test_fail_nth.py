@@ -2,7 +2,7 @@
 
 Usage: test_fail_nth.py FOLDER_OF_PROGRAMS LIBRARY CASE_FOLDER [MOST [STAGE]...]
 MOST calls of each function fail in turn, of a negative MOST the first ones; without it all calls.
-Without a stage: all of mhb, post, mesh, modal. STAGE:FUNCTION takes one function only. Exit code
+Without a stage: all of mhb, integrate, post, mesh, modal. STAGE:FUNCTION takes one function only. Exit code
 77: no h5py.
 
 A run must end with a code of its own and say why, or publish what it would have published.
@@ -27,7 +27,7 @@ from results import content
 
 BIN, LIBRARY, SCENE = (os.path.abspath(word) for word in sys.argv[1:4])
 MOST = int(sys.argv[4]) if len(sys.argv) > 4 else None
-WORDS = [word.partition(':') for word in sys.argv[5:] or ['mhb', 'post', 'mesh', 'modal']]
+WORDS = [word.partition(':') for word in sys.argv[5:] or ['mhb', 'integrate', 'post', 'mesh', 'modal']]
 STAGES = {stage: only for stage, _, only in WORDS} # the only function that fails; empty: all
 H5 = ('H5Fcreate', 'H5Fopen', 'H5Fclose', 'H5Gcreate2', 'H5Gopen2', 'H5Dcreate2', 'H5Dopen2',
       'H5Dwrite', 'H5Dread', 'H5Dclose', 'H5Screate_simple', 'H5Awrite', 'H5Aread')
@@ -155,6 +155,12 @@ def check_balance():
     if 'mhb' in STAGES:
         bad += check('mhb', 'case.yaml', 'three_degree.response.h5',
                      lambda: run(program('mhb'), '--quiet', '--force', 'other.yaml'))
+    if 'integrate' in STAGES:
+        block = '\nintegrate: {frequencies: [0.2 Hz], start: rest, tolerance: 1e-2}\n'
+        for name in 'case.yaml', 'other.yaml':
+            write(name, open(name).read() + block)
+        bad += check('integrate', 'case.yaml', 'three_degree.integration.h5',
+                     lambda: run(program('integrate'), '--quiet', '--force', 'other.yaml'))
     if 'post' in STAGES:
         run(program('mhb'), '--quiet', '--force', 'case.yaml')
         bad += check('post', 'case.yaml', 'three_degree.csv',
