@@ -1,9 +1,9 @@
 """robust.fail_nth: the n-th call of a function fails, in every stage of a small case.
 
 Usage: test_fail_nth.py FOLDER_OF_PROGRAMS LIBRARY CASE_FOLDER [MOST [STAGE]...]
-MOST calls of each function fail in turn, of a negative MOST the first ones; without it all calls.
-Without a stage: all of mhb, integrate, post, mesh, modal. STAGE:FUNCTION takes one function only. Exit code
-77: no h5py.
+MOST calls of each function fail in turn, of a negative MOST the first ones; without it all.
+Without a stage: all of mhb, integrate, post, mesh, modal. STAGE:FUNCTION takes one function only.
+Exit code 77: no h5py.
 
 A run must end with a code of its own and say why, or publish what it would have published.
 A result of another run lies in its way: it must be untouched, or replaced by a whole one. A sweep
@@ -27,7 +27,8 @@ from results import content
 
 BIN, LIBRARY, SCENE = (os.path.abspath(word) for word in sys.argv[1:4])
 MOST = int(sys.argv[4]) if len(sys.argv) > 4 else None
-WORDS = [word.partition(':') for word in sys.argv[5:] or ['mhb', 'integrate', 'post', 'mesh', 'modal']]
+WORDS = [word.partition(':')
+         for word in sys.argv[5:] or ['mhb', 'integrate', 'post', 'mesh', 'modal']]
 STAGES = {stage: only for stage, _, only in WORDS} # the only function that fails; empty: all
 H5 = ('H5Fcreate', 'H5Fopen', 'H5Fclose', 'H5Gcreate2', 'H5Gopen2', 'H5Dcreate2', 'H5Dopen2',
       'H5Dwrite', 'H5Dread', 'H5Dclose', 'H5Screate_simple', 'H5Awrite', 'H5Aread')
