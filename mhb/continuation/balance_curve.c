@@ -153,6 +153,8 @@ shb_status mhb_balance_curve_create(mhb_balance *b, double low, double high, mhb
                                       .least              = mhb_parameter_least(b->parameter),
                                       .relative           = frequency,
                                       .smooth             = b->settings->tolerance <= SMOOTH,
+                                      .costly             = b->receptance->ring != NULL,
+                                      .brief_events       = b->receptance->ring != NULL,
                                       .row_length         = b->nb,
                                       .copies             = mhb_motion_copies(b),
                                       .copy               = copy,

@@ -35,9 +35,10 @@ struct mhb_curve_system {
   bool   plain;    /* where no ordinary step converges it is the user who tries others */
   bool   smooth;   /* the residual is accurate enough for chord steps */
   bool   costly;   /* a correction that gains little is given up: a shorter step costs less */
-  int    row_length; /* x is [n / row_length][row_length]; a finer system of the same curve has as
+  bool   brief_events; /* events are located to 1e-8 of the value, with few factors */
+  int    row_length;   /* x is [n / row_length][row_length]; a finer system of the same curve has as
                       * many rows, longer ones, that begin with the same unknowns */
-  int    copies;     /* of a solution that are the same motion, itself included; 1: none */
+  int    copies;       /* of a solution that are the same motion, itself included; 1: none */
 
   void (*destroy)(mhb_curve_system *system); /* the system and all that it owns */
   /* NULL where points need none. SHB_ERR_IO: no memory. */

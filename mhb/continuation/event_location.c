@@ -6,13 +6,19 @@
 #include "mhb/continuation/corrector.h"
 
 /* Relative widths of a bracket. */
-static const double CHORD_FOUND = 1e-9, VALUE_FOUND = 1e-10;  /* the event is located */
+static const double CHORD_FOUND = 1e-9; /* the event is located */
+typedef struct {
+  double value, chord; /* or by both */
+} width;
+static const width  FOUND = {1e-10, 1e-4}, FOUND_BRIEFLY = {1e-8, 1e-2};
 static const double VALUE_NARROW = 2e-7, CHORD_NARROW = 0.01; /* a kink is the event */
 static const double VALUE_BESIDE      = 3e-8;                 /* distance kept from a kink */
 static const double VALUE_LAST_RESORT = 1e-4;                 /* accepted if nothing converges */
 static const double ROUNDED           = 1e-9;                 /* residual of round-off */
+static const double SAME_PLACE        = 1e-3;                 /* part of a bracket */
 enum {
   BISECTED_FROM = 24, /* from here on by bisection: a test function that jumps misleads Illinois */
+  LAG           = 2,  /* where events are brief: steps that Illinois may stay behind bisection */
   MAX_STEPS     = 64,
   MAX_TO_KINK   = 100,
   GUESSES       = 4
@@ -90,7 +96,8 @@ static double place_of_trial(const search *s) {
 }
 
 /* trial <- the solution in the plane across the chord at fraction *at, and *at its true place. A
- * guess that stopped at round-off is taken if no other converges. */
+ * guess that stopped at round-off is taken if no other converges. Where events are brief it is taken
+ * at once. */
 static int solve_at(search *s, double *at) {
   mhb_arclength *curve   = s->curve;
   int            rounded = -1;
@@ -99,7 +106,9 @@ static int solve_at(search *s, double *at) {
     if (!correct_guess(s, *at, which)) continue;
     double place = which < 3 ? *at : place_of_trial(s);
     if (!(place > s->at[0] && place < s->at[1])) continue;
-    if (curve->trial.residual <= curve->tolerance &&
+    const double enough = curve->system->brief_events && which < 3 ? fmax(ROUNDED, curve->tolerance)
+                                                                   : curve->tolerance;
+    if (curve->trial.residual <= enough &&
         mhb_arclength_set_tangent(curve, curve->chord, &curve->trial)) {
       s->guess = which;
       *at      = place;
@@ -111,12 +120,13 @@ static int solve_at(search *s, double *at) {
          mhb_arclength_set_tangent(curve, curve->chord, &curve->trial);
 }
 
-/* The same at other places of the bracket; *at: where. */
+/* The same at other places of the bracket than *at, where it failed; *at: where it did not. */
 static int solve_somewhere(search *s, double *at) {
   static const double other[] = {0.5, 0.2, 0.8, 0.05, 0.95};
+  const double        failed = *at, all = s->at[1] - s->at[0];
   for (int i = 0; i < 5; i++) {
-    *at = s->at[0] + other[i] * (s->at[1] - s->at[0]);
-    if (solve_at(s, at)) return 1;
+    *at = s->at[0] + other[i] * all;
+    if (fabs(*at - failed) > SAME_PLACE * all && solve_at(s, at)) return 1;
   }
   return 0;
 }
@@ -203,20 +213,25 @@ bool mhb_arclength_locate(mhb_arclength *curve, mhb_test_function g, void *conte
                           double at_current, double at_next, double exact, double *fraction) {
   for (int i = 0; i < curve->n; i++) curve->chord[i] = curve->next.x[i] - curve->current.x[i];
   curve->chord[curve->n] = curve->next.value - curve->current.value;
-  double change          = fabs(curve->chord[curve->n]);
-  search s               = {.curve          = curve,
+  double      change     = fabs(curve->chord[curve->n]);
+  search      s          = {.curve          = curve,
                             .end            = {&curve->current, &curve->next},
                             .at             = {0, 1},
                             .g              = {at_current, at_next},
                             .relative_value = change / mhb_arclength_size(curve),
                             .guesses        = exact > 0 ? 1 : GUESSES};
-  int    last_side = -1, kinks = 0;
+  const bool  brief      = curve->system->brief_events;
+  const width found      = brief ? FOUND_BRIEFLY : FOUND;
+  int         last_side  = -1;
+  bool        kink       = true; /* one may yet be the event */
   for (int i = 0; i < MAX_STEPS; i++) {
-    double at = (s.at[0] * s.g[1] - s.at[1] * s.g[0]) / (s.g[1] - s.g[0]);
-    if (i % 4 == 3 || i >= BISECTED_FROM || !(at > s.at[0] && at < s.at[1]))
-      at = 0.5 * (s.at[0] + s.at[1]);
-    bool solved = (kinks > 0 || !is_narrow(&s)) && solve_at(&s, &at);
-    if (!solved && kinks++ == 0) {
+    double at   = (s.at[0] * s.g[1] - s.at[1] * s.g[0]) / (s.g[1] - s.g[0]);
+    bool   late = brief ? s.at[1] - s.at[0] > exp2(LAG - i) : i % 4 == 3 || i >= BISECTED_FROM;
+    if (late || !(at > s.at[0] && at < s.at[1])) at = 0.5 * (s.at[0] + s.at[1]);
+    bool at_kink = kink && linear_side(&s) >= 0;
+    bool solved  = !(at_kink && is_narrow(&s)) && solve_at(&s, &at);
+    if (!solved && at_kink) {
+      kink      = false;
       *fraction = at;
       if (locate_at_kink(&s, g, context)) return true;
       continue;
@@ -235,7 +250,7 @@ bool mhb_arclength_locate(mhb_arclength *curve, mhb_test_function g, void *conte
     s.g[side] = value;
     left      = fmin(s.at[1 - side] > at ? s.at[1 - side] - at : at - s.at[1 - side], moved);
     if (left < fmax(exact, CHORD_FOUND) ||
-        (i > 2 && left * s.relative_value < VALUE_FOUND && left < VALUE_LAST_RESORT))
+        (i > 2 && left * s.relative_value < found.value && left < found.chord))
       return true;
     set_end(&s, side, at);
     last_side = side;
