@@ -14,7 +14,8 @@
 
 static const double real = sizeof(double), complex_number = sizeof(double complex);
 
-/* Heap, plans and scratch of a thread that are no large arrays; measured with small sweeps. */
+/* Heap, plans and scratch of a thread that are no large arrays: chosen by the smallest sweeps of
+ * test_sweep_memory. */
 static const double A_THREAD = 5e6;
 
 /* Evaluations of the contacts that a curve keeps: six points, the balance's own, the trial's. */

@@ -96,8 +96,8 @@ static double place_of_trial(const search *s) {
 }
 
 /* trial <- the solution in the plane across the chord at fraction *at, and *at its true place. A
- * guess that stopped at round-off is taken if no other converges. Where events are brief it is taken
- * at once. */
+ * guess that stopped at round-off is taken if no other converges. Where events are brief it is
+ * taken at once. */
 static int solve_at(search *s, double *at) {
   mhb_arclength *curve   = s->curve;
   int            rounded = -1;
