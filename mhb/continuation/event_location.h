@@ -14,8 +14,9 @@ typedef double (*mhb_test_function)(mhb_arclength *curve, const mhb_curve_point 
  *   trial     out  the point located, with its evaluation and tangent
  *   fraction  out  its place on the chord from current to next, 0 to 1
  * Returns true if it was located to exact, to 1e-9 of the chord, to 1e-10 of the value, or beside a
- * kink.
- * Method: Illinois with planes across the chord, then bisection. Newton's method on g would fail,
+ * kink. Where the system's events are brief, 1e-8 of the value is enough.
+ * Method: Illinois with planes across the chord, then bisection. Where events are brief, bisection
+ * comes in as soon as Illinois falls behind it by two steps. Newton's method on g would fail,
  * because g may jump at kinks. */
 bool mhb_arclength_locate(mhb_arclength *curve, mhb_test_function g, void *context,
                           double at_current, double at_next, double exact, double *fraction);

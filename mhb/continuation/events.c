@@ -4,8 +4,8 @@
 
 #include "mhb/continuation/corrector.h"
 
-/* Events are located to 1e-9 of the chord or 1e-10 of the value, and to 3e-8 beside a kink. Nearer
- * than this they are at the same place. */
+/* Events are located to 1e-9 of the chord or 1e-10 of the value (1e-8 where events are brief), and
+ * to 3e-8 beside a kink. Nearer than this they are at the same place. */
 static const double SAME_PLACE = 1e-8, SAME_VALUE = 1e-7, SAME_PART = 1e-3;
 
 /* Relative to the value: folds nearer to each other than this are not searched for. */
