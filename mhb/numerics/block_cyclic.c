@@ -6,8 +6,8 @@
 
 #include "mhb/numerics/simd.h"
 
-/* Rows and vectors of a tile of a product that registers hold. */
-enum { TILE_ROWS = 4, TILE_LANES = 2, TILE = TILE_LANES * MHB_LANES };
+/* Rows and vectors of a tile of a product that the 16 registers of AVX2 hold. */
+enum { TILE_ROWS = 4, TILE_VECTORS = 2, TILE = TILE_VECTORS * MHB_HALF_LANES };
 
 static int whole_tiles(int n) {
   return (n + TILE - 1) / TILE * TILE;
@@ -153,13 +153,14 @@ MHB_HOT static void solve_rows(int n, int width, const double *A, const int *piv
 /* A tile of the product of A[..][s] and B[s][width]. */
 MHB_INLINE void multiply_tile(int rows, int s, int width, const double *A, const double *B,
                               double *C) {
-  mhb_lanes sum[TILE_ROWS][TILE_LANES] = {{{0}}};
+  mhb_half_lanes sum[TILE_ROWS][TILE_VECTORS] = {{{0}}};
   for (int l = 0; l < s; l++)
     for (int i = 0; i < rows; i++)
-      for (int j = 0; j < TILE_LANES; j++)
-        sum[i][j] += A[i * s + l] * lanes_load(B + l * width + j * MHB_LANES);
+      for (int j = 0; j < TILE_VECTORS; j++)
+        sum[i][j] += A[i * s + l] * half_lanes_load(B + l * width + j * MHB_HALF_LANES);
   for (int i = 0; i < rows; i++)
-    for (int j = 0; j < TILE_LANES; j++) lanes_store(C + i * width + j * MHB_LANES, sum[i][j]);
+    for (int j = 0; j < TILE_VECTORS; j++)
+      half_lanes_store(C + i * width + j * MHB_HALF_LANES, sum[i][j]);
 }
 
 /* C[rows][columns] <- A[rows][s] B[s][columns], columns in whole tiles; B and C have rows of

@@ -2,16 +2,20 @@
  *
  * GCC and Clang vector extensions: one AVX-512 register, two of AVX2, four of SSE2. Functions
  * marked MHB_HOT are compiled for each of them; one is chosen when the program starts. Functions
- * marked MHB_INLINE become part of their callers. */
+ * marked MHB_INLINE become part of their callers.
+ *
+ * A running sum has four numbers: GCC keeps one of eight in memory where registers hold four, and
+ * every term then waits for the memory. */
 #ifndef MHB_NUMERICS_SIMD_H
 #define MHB_NUMERICS_SIMD_H
 
 #include <math.h>
 #include <string.h>
 
-enum { MHB_LANES = 8 };
+enum { MHB_LANES = 8, MHB_HALF_LANES = 4 };
 
 typedef double    mhb_lanes __attribute__((vector_size(64)));
+typedef double    mhb_half_lanes __attribute__((vector_size(32))); /* for running sums */
 typedef long long mhb_lanes_bits __attribute__((vector_size(64)));
 
 #define MHB_INLINE static inline __attribute__((always_inline))
@@ -49,6 +53,16 @@ MHB_INLINE mhb_lanes lanes_load(const double *x) {
 }
 
 MHB_INLINE void lanes_store(double *x, mhb_lanes y) {
+  memcpy(x, &y, sizeof y);
+}
+
+MHB_INLINE mhb_half_lanes half_lanes_load(const double *x) {
+  mhb_half_lanes y;
+  memcpy(&y, x, sizeof y);
+  return y;
+}
+
+MHB_INLINE void half_lanes_store(double *x, mhb_half_lanes y) {
   memcpy(x, &y, sizeof y);
 }
 

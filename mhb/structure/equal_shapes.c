@@ -74,10 +74,13 @@ static modal_series set_weights(mhb_equal_shapes *e, const mhb_receptance *blade
 MHB_INLINE void sum_outer(int count, const double *factor, int square, const double *outer,
                           int adds, double *to) {
   for (int e = 0; e < square; e += MHB_LANES) {
-    mhb_lanes sum = adds ? lanes_load(to + e) : lanes_all(0);
+    mhb_half_lanes sum[2] = {{0}};
+    for (int j = 0; j < 2 && adds; j++) sum[j] = half_lanes_load(to + e + j * MHB_HALF_LANES);
     for (int i = 0; i < count; i++)
-      sum += factor[i] * lanes_load(outer + (size_t)i * (size_t)square + e);
-    lanes_store(to + e, sum);
+      for (int j = 0; j < 2; j++)
+        sum[j] += factor[i] *
+                  half_lanes_load(outer + (size_t)i * (size_t)square + e + j * MHB_HALF_LANES);
+    for (int j = 0; j < 2; j++) half_lanes_store(to + e + j * MHB_HALF_LANES, sum[j]);
   }
 }
 
