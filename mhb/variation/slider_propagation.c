@@ -95,12 +95,17 @@ void mhb_slider_propagation_clear(mhb_slider_propagation *x, int columns) {
 
 /* ---- which contacts ---- */
 
-static void set_active(mhb_slider_propagation *x, int contact, bool is_active) {
-  x->is_active[contact] = is_active;
-  x->gathered           = false;
-  x->n_active           = 0;
+/* The list of active contacts, anew. */
+static void list_active(mhb_slider_propagation *x) {
+  x->gathered = false;
+  x->n_active = 0;
   for (int j = 0; j < x->springs->n / 3; j++)
     if (x->is_active[j]) x->active[x->n_active++] = j;
+}
+
+static void set_active(mhb_slider_propagation *x, int contact, bool is_active) {
+  x->is_active[contact] = is_active;
+  list_active(x);
 }
 
 /* Copies of the rows of A, one beside the other. */
@@ -121,13 +126,13 @@ static void gather(mhb_slider_propagation *x) {
 /* z of a contact's columns: K u less the force by u and sigma. */
 static void set_sliders(mhb_slider_propagation *x, int contact, const double of_u[3][3],
                         const double of_sigma[3][2]) {
-  const double *K = x->springs->K + 9 * (size_t)contact, *u = motion_rows(x, contact);
-  const double *sigma = sigma_rows(x, contact);
+  const double *K = x->springs->K + 9 * (size_t)contact;
+  double       *u = motion_rows(x, contact), *sigma = sigma_rows(x, contact);
   for (int r = 0; r < 3; r++)
     for (int c = 0; c < x->columns; c++) {
       double sum = 0;
-      for (int k = 0; k < 3; k++) sum += (K[3 * r + k] - of_u[r][k]) * row(x, (double *)u, k)[c];
-      for (int k = 0; k < 2; k++) sum -= of_sigma[r][k] * row(x, (double *)sigma, k)[c];
+      for (int k = 0; k < 3; k++) sum += (K[3 * r + k] - of_u[r][k]) * row(x, u, k)[c];
+      for (int k = 0; k < 2; k++) sum -= of_sigma[r][k] * row(x, sigma, k)[c];
       row(x, x->z, 3 * contact + r)[c] = sum;
     }
 }
@@ -135,9 +140,10 @@ static void set_sliders(mhb_slider_propagation *x, int contact, const double of_
 void mhb_slider_propagation_begin(mhb_slider_propagation *x, const bool *is_stuck,
                                   const double (*of_u)[3][3], const double (*of_sigma)[3][2]) {
   for (int j = 0; j < x->springs->n / 3; j++) {
-    set_active(x, j, !is_stuck[j]);
+    x->is_active[j] = !is_stuck[j];
     set_sliders(x, j, of_u[j], of_sigma[j]);
   }
+  list_active(x);
   add_transposed(x, x->springs->modes, x->springs->n, 1, x->springs->stuck, x->z, x->g);
 }
 
