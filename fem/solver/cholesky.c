@@ -161,7 +161,7 @@ static bool create_lower(const block_rows *b, const int *place, fem_lower_blocks
   return true;
 }
 
-/* Memory in large pages: a solve reads all of it. */
+/* Memory in large pages, for what is read as a whole. */
 static double *allocate_values(size_t count) {
   const size_t bytes = (count * sizeof(double) + PAGE) / PAGE * PAGE;
   double      *value = aligned_alloc(PAGE, bytes);
@@ -190,16 +190,17 @@ PetscErrorCode fem_cholesky_update(fem_cholesky *factor, Mat A, bool *definite) 
 /* ------------------------------------------------------------------ solves */
 
 /* Solve for one block of columns by BLAS. false: no memory. */
-static bool solve_block(const fem_cholesky *factor, size_t count, const double *b, size_t ldb,
-                        double *x, size_t ldx) {
+static bool solve_block(const fem_cholesky *factor, const bool *needed, size_t count,
+                        const double *b, size_t ldb, double *x, size_t ldx) {
   const size_t n = 3 * (size_t)factor->n, rows = (size_t)factor->panels.most_rows;
-  double      *own = malloc((n + rows) * count * sizeof *own);
+  double      *own = allocate_values((n + rows) * count);
   if (!own) return false;
   for (size_t i = 0; i < n; i++) {
     double *at = own + (3 * (size_t)factor->place[i / 3] + i % 3) * count;
     for (size_t c = 0; c < count; c++) at[c] = b[c * ldb + i];
   }
-  fem_supernodal_solve_block(&factor->panels, factor->value, (int)count, own, own + n * count);
+  fem_supernodal_solve_block(&factor->panels, factor->value, needed, (int)count, own,
+                             own + n * count);
   for (size_t i = 0; i < n; i++) {
     const double *at = own + (3 * (size_t)factor->place[i / 3] + i % 3) * count;
     for (size_t c = 0; c < count; c++) x[c * ldx + i] = at[c];
@@ -208,14 +209,14 @@ static bool solve_block(const fem_cholesky *factor, size_t count, const double *
   return true;
 }
 
-static PetscErrorCode solve_many(const fem_cholesky *factor, size_t count, const double *b,
-                                 size_t ldb, double *x, size_t ldx) {
+static PetscErrorCode solve_many(const fem_cholesky *factor, const bool *needed, size_t count,
+                                 const double *b, size_t ldb, double *x, size_t ldx) {
   bool good = true;
   PetscFunctionBeginUser;
 #pragma omp parallel for schedule(dynamic, 1) reduction(&& : good)
   for (size_t c = 0; c < count; c += BLOCK) {
     const size_t here = count - c < BLOCK ? count - c : BLOCK;
-    good              = solve_block(factor, here, b + c * ldb, ldb, x + c * ldx, ldx) && good;
+    good = solve_block(factor, needed, here, b + c * ldb, ldb, x + c * ldx, ldx) && good;
   }
   PetscCheck(good, PETSC_COMM_SELF, PETSC_ERR_MEM, "no memory for %d solutions", (int)count);
   PetscFunctionReturn(0);
@@ -266,13 +267,27 @@ PetscErrorCode fem_cholesky_solve(fem_cholesky *factor, int count, const double 
   const size_t all = (size_t)count;
   PetscFunctionBeginUser;
   if (all >= MANY) {
-    PetscCall(solve_many(factor, all, b, ldb, x, ldx));
+    PetscCall(solve_many(factor, NULL, all, b, ldb, x, ldx));
     PetscFunctionReturn(0);
   }
   for (size_t c = 0; c < all; c += FEM_LANES) {
     size_t here = all - c < FEM_LANES ? all - c : FEM_LANES;
     PetscCall(solve_few(factor, here, b + c * ldb, ldb, x + c * ldx, ldx));
   }
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode fem_cholesky_solve_at(fem_cholesky *factor, const bool *node, int count,
+                                     const double *b, size_t ldb, double *x, size_t ldx) {
+  bool *row, *needed;
+  PetscFunctionBeginUser;
+  PetscCall(PetscMalloc2((size_t)factor->panels.n + 1, &row, (size_t)factor->panels.n_panels + 1,
+                         &needed));
+  for (int i = 0; i < factor->n; i++)
+    for (int d = 0; d < 3; d++) row[3 * factor->place[i] + d] = node[i];
+  fem_supernodes_needed(&factor->panels, row, needed);
+  PetscCall(solve_many(factor, needed, (size_t)count, b, ldb, x, ldx));
+  PetscCall(PetscFree2(row, needed));
   PetscFunctionReturn(0);
 }
 

@@ -33,6 +33,12 @@ PetscErrorCode fem_cholesky_update(fem_cholesky *factor, Mat A, bool *definite);
 PetscErrorCode fem_cholesky_solve(fem_cholesky *factor, int count, const double *b, size_t ldb,
                                   double *x, size_t ldx);
 
+/* The same where only the rows of some nodes are wanted. Such a solution reads little of the factor
+ * on its way back.
+ *   node  in   [block rows of A] true: wanted; the other rows of x mean nothing */
+PetscErrorCode fem_cholesky_solve_at(fem_cholesky *factor, const bool *node, int count,
+                                     const double *b, size_t ldb, double *x, size_t ldx);
+
 void fem_cholesky_destroy(fem_cholesky *factor); /* NULL: nothing */
 
 #endif

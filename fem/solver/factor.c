@@ -177,7 +177,8 @@ PetscErrorCode fem_factor_solve(fem_factor *factor, Vec b, Vec x) {
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode fem_factor_solve_many(fem_factor *factor, Mat B, Mat X) {
+/* node NULL: all rows are wanted. */
+static PetscErrorCode solve_columns(fem_factor *factor, const bool *node, Mat B, Mat X) {
   const double *from;
   double       *to;
   PetscInt      count, ldb, ldx;
@@ -192,9 +193,25 @@ PetscErrorCode fem_factor_solve_many(fem_factor *factor, Mat B, Mat X) {
   PetscCall(MatDenseGetLDA(X, &ldx));
   PetscCall(MatDenseGetArrayRead(B, &from));
   PetscCall(MatDenseGetArrayWrite(X, &to));
-  PetscCall(fem_cholesky_solve(factor->cholesky, (int)count, from, (size_t)ldb, to, (size_t)ldx));
+  if (node)
+    PetscCall(fem_cholesky_solve_at(factor->cholesky, node, (int)count, from, (size_t)ldb, to,
+                                    (size_t)ldx));
+  else
+    PetscCall(fem_cholesky_solve(factor->cholesky, (int)count, from, (size_t)ldb, to, (size_t)ldx));
   PetscCall(MatDenseRestoreArrayWrite(X, &to));
   PetscCall(MatDenseRestoreArrayRead(B, &from));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode fem_factor_solve_many(fem_factor *factor, Mat B, Mat X) {
+  PetscFunctionBeginUser;
+  PetscCall(solve_columns(factor, NULL, B, X));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode fem_factor_solve_at(fem_factor *factor, const bool *node, Mat B, Mat X) {
+  PetscFunctionBeginUser;
+  PetscCall(solve_columns(factor, node, B, X));
   PetscFunctionReturn(0);
 }
 

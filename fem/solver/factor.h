@@ -27,6 +27,10 @@ PetscErrorCode fem_factor_update(fem_factor *factor, Mat A, bool *definite);
 PetscErrorCode fem_factor_solve(fem_factor *factor, Vec b, Vec x);
 PetscErrorCode fem_factor_solve_many(fem_factor *factor, Mat B, Mat X);
 
+/* The same where only the rows of some nodes are wanted; cheaper on one rank.
+ *   node  in   [block rows of this rank] true: wanted; the other rows of X mean nothing */
+PetscErrorCode fem_factor_solve_at(fem_factor *factor, const bool *node, Mat B, Mat X);
+
 /* Make pc apply the factor to one vector or many. The factor must outlive pc. */
 PetscErrorCode fem_factor_set_pc(fem_factor *factor, PC pc);
 

@@ -176,8 +176,9 @@ static void backward_block(const fem_supernodes *s, const double *value, const f
               1, L, p->rows, own, count);
 }
 
-void fem_supernodal_solve_block(const fem_supernodes *s, const double *value, int count, double *x,
-                                double *work) {
+void fem_supernodal_solve_block(const fem_supernodes *s, const double *value, const bool *needed,
+                                int count, double *x, double *work) {
   for (int k = 0; k < s->n_panels; k++) forward_block(s, value, &s->panel[k], count, x, work);
-  for (int k = s->n_panels; k-- > 0;) backward_block(s, value, &s->panel[k], count, x, work);
+  for (int k = s->n_panels; k-- > 0;)
+    if (!needed || needed[k]) backward_block(s, value, &s->panel[k], count, x, work);
 }

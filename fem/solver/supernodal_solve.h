@@ -21,9 +21,11 @@ void fem_supernodal_solve(const fem_supernodes *s, const double *value, int thre
                           fem_lanes *work);
 
 /* The same for count columns by BLAS, on the calling thread.
- *   x     in/out   [n][count]
- *   work  scratch  [most_rows][count] */
-void fem_supernodal_solve_block(const fem_supernodes *s, const double *value, int count, double *x,
-                                double *work);
+ *   needed  in       [n_panels] panels whose rows are wanted (fem_supernodes_needed), or NULL: all;
+ *                    the other rows of x mean nothing afterwards
+ *   x       in/out   [n][count]
+ *   work    scratch  [most_rows][count] */
+void fem_supernodal_solve_block(const fem_supernodes *s, const double *value, const bool *needed,
+                                int count, double *x, double *work);
 
 #endif

@@ -205,6 +205,16 @@ bool fem_supernodes_create(const cholmod_factor *L, fem_supernodes *out) {
   return good;
 }
 
+void fem_supernodes_needed(const fem_supernodes *s, bool *row, bool *needed) {
+  for (int k = 0; k < s->n_panels; k++) {
+    const fem_panel *p = &s->panel[k];
+    needed[k]          = false;
+    for (int c = 0; c < p->columns; c++) needed[k] = needed[k] || row[p->first + c];
+    if (needed[k] && p->rows > p->columns)
+      row[fem_supernodes_row(s, p->row + (size_t)p->columns)] = true;
+  }
+}
+
 void fem_supernodes_free(fem_supernodes *s) {
   free(s->panel);
   free(s->row);

@@ -51,6 +51,11 @@ typedef struct {
 bool fem_supernodes_create(const cholmod_factor *L, fem_supernodes *out);
 void fem_supernodes_free(fem_supernodes *s); /* also of a zeroed struct */
 
+/* Panels that a backward solution for some rows needs: those that hold a row, and all above them.
+ *   row     in/out  [n] true: the row is wanted; a row of each panel above is marked too
+ *   needed  out     [n_panels] */
+void fem_supernodes_needed(const fem_supernodes *s, bool *row, bool *needed);
+
 /* The row itself where the entry of fem_supernodes.row is a copy. */
 static inline int fem_supernodes_row(const fem_supernodes *s, size_t at) {
   return s->row[at] < s->n ? s->row[at] : s->original[s->row[at] - s->n];

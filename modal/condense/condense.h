@@ -34,11 +34,4 @@ typedef struct {
 shb_status modal_condense(const fem_system *system, const modal_eigen *eigen,
                           const modal_condensation *to, shb_progress *progress, modal_model *model);
 
-/* Store the tails of the contact dofs and of the load harmonics in a model. The error matrix of the
- * columns is positive semi-definite: this bounds the tail of a sum of patterns.
- *   order  in  model->tail_order
- *   tail   in  [n_contact + patterns of the load] both terms of each column */
-void modal_store_tails(int order, int n_contact, double *const tail[2], const modal_load *load,
-                       modal_model *model);
-
 #endif

@@ -7,6 +7,7 @@
 
 #include "mesh/base/constants.h"
 #include "mesh/base/progress.h"
+#include "modal/condense/residual_terms.h"
 #include "modal/cyclic/wave_ritz.h"
 
 /* As in modal/condense/condense.c. */

@@ -136,6 +136,12 @@ PetscErrorCode modal_eigen_inverse(const modal_eigen *eigen, Mat B, Mat X) {
   PetscFunctionReturn(0);
 }
 
+PetscErrorCode modal_eigen_inverse_at(const modal_eigen *eigen, const bool *node, Mat B, Mat X) {
+  PetscFunctionBeginUser;
+  PetscCall(fem_factor_solve_at(eigen->factor, node, B, X));
+  PetscFunctionReturn(0);
+}
+
 PetscErrorCode modal_eigen_project_out(const fem_system *system, const modal_eigen *eigen, Mat X) {
   const PetscScalar *phi, *m_phi;
   PetscScalar       *x, *coefficient, one = 1, minus = -1, zero = 0;

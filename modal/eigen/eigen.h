@@ -47,6 +47,9 @@ PetscErrorCode modal_eigen_solve(const fem_system *system, const modal_eigen_set
 /* X = (K - shift M)^-1 B, all columns at once. */
 PetscErrorCode modal_eigen_inverse(const modal_eigen *eigen, Mat B, Mat X);
 
+/* The same at the free nodes of this rank that node marks; the other rows of X mean nothing. */
+PetscErrorCode modal_eigen_inverse_at(const modal_eigen *eigen, const bool *node, Mat B, Mat X);
+
 /* X -= phi phi^T M X: remove the modes from every column. */
 PetscErrorCode modal_eigen_project_out(const fem_system *system, const modal_eigen *eigen, Mat X);
 

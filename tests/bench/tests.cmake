@@ -28,6 +28,8 @@ shb_bench(optimisers)
 target_link_libraries(bench_optimisers PRIVATE shb_cases_study)
 shb_bench(elements z_notch.c)
 target_link_libraries(bench_elements PRIVATE shb_modal)
+shb_bench(residuals z_notch.c)
+target_link_libraries(bench_residuals PRIVATE shb_modal m)
 shb_bench(solver z_notch.c)
 target_link_libraries(bench_solver PRIVATE shb_modal OpenMP::OpenMP_C m)
 add_executable(bench_modal bench/bench_modal.c bench/z_notch.c)
@@ -37,6 +39,6 @@ add_executable(bench_cyclic bench/bench_cyclic.c bench/z_notch.c)
 target_link_libraries(bench_cyclic PRIVATE shb_modal m)
 add_test(NAME bench.cyclic COMMAND bench_cyclic "$<$<BOOL:${SHROUDHB_CCX}>:${SHROUDHB_CCX}>"
   --quick)
-set_tests_properties(bench.elements bench.solver bench.modal bench.cyclic
+set_tests_properties(bench.elements bench.residuals bench.solver bench.modal bench.cyclic
   PROPERTIES
   ENVIRONMENT OPENBLAS_NUM_THREADS=1)
