@@ -139,6 +139,10 @@ if(SHROUDHB_PYTHON)
             $<TARGET_FILE:shroudhb> ${PROJECT_SOURCE_DIR}/cases/first_case/case.yaml
             ${PROJECT_SOURCE_DIR}/cases/read_results)
   set_tests_properties(cases.scenes.read_results PROPERTIES SKIP_RETURN_CODE 77)
+  add_test(NAME cases.scenes.disc_vary
+    COMMAND ${SHROUDHB_PYTHON} -B ${CMAKE_CURRENT_SOURCE_DIR}/cases/scenes/test_disc_vary.py
+            $<TARGET_FILE_DIR:shroudhb> ${PROJECT_SOURCE_DIR}/cases/bladed_disc)
+  set_tests_properties(cases.scenes.disc_vary PROPERTIES SKIP_RETURN_CODE 77)
 endif()
 
 # The example of cases/bring_your_own; skipped where python3 has no h5py.
