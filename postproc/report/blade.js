@@ -223,6 +223,19 @@ const Blade = (() => {
       return (i === j ? c : 0) + (1 - c) * a[i] * a[j] + s * skew;
     }));
   }
+  /* What is drawn: blades from .. to, 0 being this one, and the middle and half size of them all. */
+  function extent() {
+    const which = $("blade-ring").value;
+    if (which !== "all")
+      return {from: -which, to: +which, centre, radius, deep: radius * (1 + 2 * which)};
+    const along = centre.reduce((sum, c, d) => sum + c * axial[d], 0);
+    let ring = 0;
+    for (let corner = 0; corner < 8; corner++) {
+      const x = D.lo.map((v, d) => v + (corner >> d & 1) * D.size[d]);
+      ring = Math.max(ring, Math.hypot(...cross(axial, x)));
+    }
+    return {from: 0, to: D.blades - 1, centre: axial.map(a => a * along), radius: ring, deep: ring};
+  }
   let clock = 0; /* periods */
   function draw() {
     const box = canvas.parentElement, w = Math.max(280, box.clientWidth), h = Math.min(560, 0.7 * w),
@@ -235,13 +248,13 @@ const Blade = (() => {
     gl.viewport(0, 0, canvas.width, canvas.height);
     gl.clearColor(0, 0, 0, 0);
     gl.clear(gl.COLOR_BUFFER_BIT | gl.DEPTH_BUFFER_BIT);
-    const side = +$("blade-ring").value, scale = camera.zoom * 0.95 / radius;
+    const all = extent(), scale = camera.zoom * 0.95 / all.radius;
     gl.uniformMatrix3fv(where.view, false, columns(viewRows()));
-    gl.uniform3fv(where.centre, centre);
+    gl.uniform3fv(where.centre, all.centre);
     gl.uniform2f(where.size, scale * h / w, scale);
-    gl.uniform4f(where.shift, camera.x, camera.y, 0, 0.2 / (radius * (1 + 2 * side)));
+    gl.uniform4f(where.shift, camera.x, camera.y, 0, 0.2 / all.deep);
     const f = factor();
-    for (let blade = -side; blade <= side; blade++) {
+    for (let blade = all.from; blade <= all.to; blade++) {
       const phase = new Float32Array(2 * HARMONICS);
       shown.ks.forEach((k, j) => {
         const angle = k * (2 * Math.PI * clock - blade * D.lag) / shown.order;

@@ -282,7 +282,7 @@ void post_blade_section(const post_analysis *analysis, const post_blade_view *vi
       "value=\"40\"></label>\n"
       "<label>Neighbours<select id=\"blade-ring\"><option value=\"0\">none</option>"
       "<option value=\"1\">one on each side</option><option value=\"3\">three on each side"
-      "</option></select></label>\n"
+      "</option><option value=\"all\">the whole ring</option></select></label>\n"
       "<button type=\"button\" id=\"blade-play\">Pause</button>\n"
       "<button type=\"button\" id=\"blade-home\">Whole blade</button>\n"
       "<button type=\"button\" id=\"blade-save\">PNG</button>\n</div>\n"

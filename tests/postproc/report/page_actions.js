@@ -126,6 +126,8 @@
     set("blade-colour", "motion");
     set("blade-scale", "90", "input");
     set("blade-ring", "1");
+    set("blade-ring", "all");
+    set("blade-ring", "3");
     const c = $("blade-canvas"), b = c.getBoundingClientRect();
     send(c, "pointerdown", b.left + 100, b.top + 100);
     send(c, "pointermove", b.left + 180, b.top + 130);
