@@ -38,7 +38,8 @@ set(INTEGRATION_TESTS cases.study.study cases.study.samples cases.study.eval
   cases.scenes.paper_fig8_direct cases.scenes.lost_curves cases.scenes.snubber_blade
   hard.three_degree hard.jumps hard.ends hard.friction hard.resonance hard.balance hard.pairs
   hard.peaks hard.isolas hard.parameters bench.stability bench.modal bench.contact
-  bench.integrate bench.lasting bench.study mhb.floquet.friction_limit docs.first_case
+  bench.integrate bench.lasting bench.study bench.study_rates mhb.floquet.friction_limit
+  docs.first_case
   mhb.ring.ring_step mhb.ring.neimark_sacker cases.install.install
   mhb.tracking.corner mhb.tracking.corner_pairs mhb.tracking.tracked_curve
   mhb.tracking.tracked_multiplier bench.tracking

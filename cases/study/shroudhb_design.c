@@ -4,6 +4,7 @@
 #include <math.h>
 #include <omp.h>
 #include <stdio.h>
+#include <stdlib.h>
 
 #include "cases/commands/command.h"
 #include "cases/parse/units.h"
@@ -97,6 +98,15 @@ static int take_sharing(int *argc, char **argv) {
   return n;
 }
 
+/* Mesh and modes of a design have this process's share of the cores, unless the user has said how
+ * many threads. With more than there are cores, threads wait for each other. */
+static void share_cores(int sharing) {
+  char      threads[16];
+  const int own = omp_get_num_procs() / sharing;
+  snprintf(threads, sizeof threads, "%d", own > 1 ? own : 1);
+  setenv("OMP_NUM_THREADS", threads, 0);
+}
+
 int main(int argc, char **argv) {
   command_options options;
   server          s = {.sharing = take_sharing(&argc, argv)};
@@ -110,6 +120,7 @@ int main(int argc, char **argv) {
   if (status == SHB_OK) status = modal_store_open(&s.spec, &s.store);
   if (status != SHB_OK) return command_finish(status);
   shb_interrupt_catch();
+  share_cores(s.sharing);
   openblas_set_num_threads(1);
   omp_set_num_threads(1); /* the designs run side by side */
   status = design_process_serve(2 * s.spec.keys.n, compute, &s);

@@ -42,3 +42,8 @@ add_test(NAME bench.cyclic COMMAND bench_cyclic "$<$<BOOL:${SHROUDHB_CCX}>:${SHR
 set_tests_properties(bench.elements bench.residuals bench.solver bench.modal bench.cyclic
   PROPERTIES
   ENVIRONMENT OPENBLAS_NUM_THREADS=1)
+if(SHROUDHB_PYTHON)
+  add_test(NAME bench.study_rates
+    COMMAND ${SHROUDHB_PYTHON} -B ${CMAKE_CURRENT_SOURCE_DIR}/bench/bench_study_rates.py
+            $<TARGET_FILE_DIR:shroudhb-study> --quick)
+endif()
