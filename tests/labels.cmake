@@ -54,7 +54,8 @@ set(SLOW_TESTS
   cases.scenes.mistuned_ring cases.scenes.bladed_disc
   mesh.blade.blade mhb.floquet.monodromy mhb.branches.verdicts cases.converge.converge hard.gaps
   hard.oblique
-  bench.elements cases.scenes.optimum_preload fuzz.libfuzzer mhb.tracking.tracked_response
+  bench.elements cases.scenes.optimum_preload cases.scenes.tracked_peaks
+  fuzz.libfuzzer mhb.tracking.tracked_response
   robust.fail_nth robust.kills robust.damaged)
 
 set(NIGHTLY_TESTS robust.fail_nth_all robust.kills_many robust.damaged_many)
