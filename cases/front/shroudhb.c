@@ -194,6 +194,7 @@ static int study_main(const char *name, int argc, char **argv, run_words end) {
   char  *path  = subprocess_program("shroudhb-study");
   (void)name;
   snprintf(ranks, sizeof ranks, "%d", n_cores() + 1);
+  if (isatty(STDERR_FILENO)) setenv("SHROUDHB_TERMINAL", "1", 1); /* the ranks write to a pipe */
   if (!words || !path) {
     fputs("shroudhb: error: out of memory\n", stderr);
     return SHB_ERR_IO;

@@ -148,6 +148,7 @@ static shb_status manage(const study_spec *spec, const command_options *options,
                          const crew_computer *computer) {
   shb_progress progress = shb_progress_start("study", options->quiet, options->verbose);
   design_study study    = {0};
+  if (getenv("SHROUDHB_TERMINAL")) progress.terminal = true; /* `shroudhb study` says so */
   tell_one_core();
   shb_status status = study_run(spec, options->force, computer, &progress, &study);
   bool       whole  = status == SHB_OK || status == SHB_NOT_CONVERGED;

@@ -3,6 +3,7 @@ that are read."""
 import contextlib
 import csv
 import os
+import pty
 import shutil
 import subprocess
 import tempfile
@@ -17,6 +18,24 @@ def run(*words, code=0):
         raise AssertionError(f'{words}: code {done.returncode}, not {code}\n{done.stdout}'
                              f'{done.stderr}')
     return done.stdout + done.stderr
+
+
+def run_on_terminal(*words):
+    """Run a program on a terminal to its end; what it said there. AssertionError: an exit code."""
+    said = b''
+    child, terminal = pty.fork()
+    if child == 0:
+        os.execvpe(words[0], words, ENVIRONMENT)
+    with open(terminal, 'rb', buffering=0) as source:
+        try:
+            while part := source.read(4096):
+                said += part
+        except OSError:  # the other end is closed
+            pass
+    code = os.waitpid(child, 0)[1]
+    if code != 0:
+        raise AssertionError(f'{words}: status {code}\n{said.decode()}')
+    return said.decode()
 
 
 def write(name, text):

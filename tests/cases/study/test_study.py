@@ -3,6 +3,7 @@
 Usage: test_study.py BIN CASE_FOLDER, with the programs in BIN. Exit code 77: h5py is missing.
 """
 import os
+import re
 import signal
 import subprocess
 import sys
@@ -14,7 +15,7 @@ except ImportError:
     sys.exit(77)
 
 sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), '../../support'))
-from programs import ENVIRONMENT, bring_your_own, near, read, rows, run, write
+from programs import ENVIRONMENT, bring_your_own, near, read, rows, run, run_on_terminal, write
 
 BIN, SCENE = os.path.abspath(sys.argv[1]), os.path.abspath(sys.argv[2])
 
@@ -182,6 +183,29 @@ def check_ranks():
     assert read('grid.study.csv') == alone
     run(program('shroudhb'), 'study', '--quiet', '--force', 'grid.yaml')
     assert read('grid.study.csv') == alone
+
+
+def check_progress():
+    """On a terminal a study tells how many designs are done and the time left, on all cores too."""
+    for words in ((program('shroudhb-study'),), (program('shroudhb'), 'study')):
+        said = run_on_terminal(*words, '--force', 'grid.yaml')
+        shown = re.findall(r'study +(\d+) %  design (\d+) of 10  0 failed  (\d+) s left', said)
+        print(words[0], shown)
+        assert shown, said
+        done = [int(design) for _, design, _ in shown]
+        assert done == sorted(done) and all(int(share) == 10 * int(design)
+                                            for share, design, _ in shown), shown
+    said = run(program('shroudhb-study'), '--force', 'grid.yaml')
+    assert ' left' not in said, said  # a pipe is no terminal
+    write('long.csv', 'contact.n0\n' + ''.join(f'{0.10031 + 1e-3 * i}\n' for i in range(200)))
+    write('long.yaml', 'case: case.yaml\nplan: {table: long.csv}\noutputs: [peak]\n')
+    began = time.monotonic()
+    said = run_on_terminal(program('shroudhb-study'), 'long.yaml')
+    took = time.monotonic() - began
+    half = re.findall(r'design 1\d\d of 200 .*?(?:(\d+) min )?(\d+) s left', said)[0]
+    left = 60 * int(half[0] or 0) + int(half[1])
+    print(f'200 designs took {took:.1f} s; half way {left} s were left')
+    assert left < took and abs(left - took / 2) < 0.35 * took + 1, (left, took)
 
 
 def check_reuse():
@@ -424,8 +448,8 @@ def main():
         write('grid.yaml', GRID)
         run(program('shroudhb-study'), '--quiet', 'grid.yaml')
         for check in (check_values, check_derivatives, check_optimise, check_one_key,
-                      check_ranks, check_reuse, check_crash, check_kill, check_again,
-                      check_faults, check_overrides, check_one_design):
+                      check_ranks, check_progress, check_reuse, check_crash, check_kill,
+                      check_again, check_faults, check_overrides, check_one_design):
             check()
             print(check.__name__, 'passed')
 
