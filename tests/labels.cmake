@@ -41,7 +41,7 @@ set(INTEGRATION_TESTS cases.study.study cases.study.samples cases.study.eval
   bench.integrate bench.lasting bench.study bench.study_rates mhb.floquet.friction_limit
   docs.first_case
   mhb.ring.ring_step mhb.ring.neimark_sacker cases.install.install
-  mhb.tracking.corner mhb.tracking.corner_pairs mhb.tracking.tracked_curve
+  mhb.tracking.corner mhb.tracking.tracked_curve
   mhb.tracking.tracked_multiplier bench.tracking
   robust.same_bits robust.not_finite robust.fail_nth_integrate
   robust.fail_nth_mesh mesh.blade.shroud_angle cases.converge.points_ladder
@@ -55,6 +55,7 @@ set(SLOW_TESTS
   mesh.blade.blade mhb.floquet.monodromy mhb.branches.verdicts cases.converge.converge hard.gaps
   hard.oblique
   bench.elements cases.scenes.optimum_preload cases.scenes.tracked_peaks
+  mhb.tracking.corner_pairs
   fuzz.libfuzzer mhb.tracking.tracked_response
   robust.fail_nth robust.kills robust.damaged)
 

@@ -13,7 +13,14 @@ static const double SAME = 1e-6;
 
 /* A curve is looked at this far beside a peak, and is level below this slope, both relative. A
  * resonance has slopes of some 1 / (2 damping). */
-static const double BESIDE = 5e-6, LEVEL = 1e-3;
+static const double BESIDE = 1e-5, LEVEL = 1e-3;
+
+/* A sweep locates a corner to this, relative. */
+static const double CORNER = 2e-6;
+
+/* Sweeps of these neighbourhoods, relative; the last is the whole range. */
+enum { N_WINDOWS = 5 };
+static const double WINDOW[N_WINDOWS] = {1e-3, 1e-5, 1e-4, 1e-2, 1};
 
 mhb_response *peak_scan_follow(const peak_scan *scan) {
   mhb_response *r;
@@ -40,11 +47,19 @@ mhb_response *peak_scan_sweep(const peak_scan *scan, double value) {
   return r;
 }
 
+/* Amplitude of the output that the run follows. */
+static double amplitude_of(const peak_scan *scan, const mhb_response *r, const mhb_branch *b,
+                           int point) {
+  int output;
+  assert_ok(mhb_output_named(scan->model, scan->settings->output, &output));
+  return mhb_response_amplitude(r, b, point, output);
+}
+
 double peak_scan_highest(const peak_scan *scan, double value) {
   double        most = 0;
   mhb_response *r    = peak_scan_sweep(scan, value);
   for (int i = 0; i < r->branch[0].n_points; i++)
-    most = fmax(most, mhb_response_output(r, &r->branch[0], i));
+    most = fmax(most, amplitude_of(scan, r, &r->branch[0], i));
   mhb_response_destroy(r);
   return most;
 }
@@ -95,13 +110,14 @@ static double harmonic_at(const mhb_branch *b, int point, int k) {
 }
 
 /* The maximum of a sweep that is nearest to *frequency; NAN: there is none. */
-static double nearest_maximum(const mhb_response *r, double *frequency, bool *first) {
+static double nearest_maximum(const peak_scan *scan, const mhb_response *r, double *frequency,
+                              bool *first) {
   double            near = INFINITY, wanted = *frequency, amplitude = NAN;
   const mhb_branch *b = &r->branch[0];
   for (int i = 1; i + 1 < b->n_points; i++) {
     double here[3], of_first[3];
     for (int j = 0; j < 3; j++) {
-      here[j]     = mhb_response_output(r, b, i - 1 + j);
+      here[j]     = amplitude_of(scan, r, b, i - 1 + j);
       of_first[j] = harmonic_at(b, i - 1 + j, 1);
     }
     const double away = fabs(b->frequency[i] - wanted);
@@ -114,17 +130,22 @@ static double nearest_maximum(const mhb_response *r, double *frequency, bool *fi
   return amplitude;
 }
 
+/* A sweep of the neighbourhood of a frequency, at most so far from it, relative. */
+static mhb_response *sweep_beside(const peak_scan *scan, double value, double frequency,
+                                  double away) {
+  mhb_settings local = *scan->settings;
+  local.frequency[0] = fmax(local.frequency[0], frequency * (1 - away));
+  local.frequency[1] = fmin(local.frequency[1], frequency * (1 + away));
+  return peak_scan_sweep(&(peak_scan){scan->model, &local}, value);
+}
+
 double peak_scan_near(const peak_scan *scan, double value, double *frequency, bool *first) {
-  static const double WINDOW[]  = {1e-3, 1e-5, 1e-2, 1}; /* relative; the last is the whole range */
-  const double        wanted    = *frequency;
-  double              amplitude = NAN;
-  for (size_t i = 0; i < sizeof WINDOW / sizeof *WINDOW; i++) {
-    double       f     = wanted;
-    mhb_settings local = *scan->settings;
-    local.frequency[0] = fmax(local.frequency[0], wanted * (1 - WINDOW[i]));
-    local.frequency[1] = fmin(local.frequency[1], wanted * (1 + WINDOW[i]));
-    mhb_response *r    = peak_scan_sweep(&(peak_scan){scan->model, &local}, value);
-    const double  here = nearest_maximum(r, &f, first);
+  const double wanted    = *frequency;
+  double       amplitude = NAN;
+  for (size_t i = 0; i < N_WINDOWS; i++) {
+    double        f    = wanted;
+    mhb_response *r    = sweep_beside(scan, value, wanted, WINDOW[i]);
+    const double  here = nearest_maximum(scan, r, &f, first);
     mhb_response_destroy(r);
     if (isnan(here) || (!isnan(amplitude) && fabs(f - wanted) >= fabs(*frequency - wanted)))
       continue;
@@ -135,46 +156,56 @@ double peak_scan_near(const peak_scan *scan, double value, double *frequency, bo
   return amplitude;
 }
 
-/* Whether the curve of a sweep passes through a point, and is level there or has a corner.
- *   corner  in  the sweep has a maximum at this frequency, to SAME */
+/* Whether the curve of a sweep passes through a point, and has its corner there, is level there or
+ * nowhere higher beside it.
+ *   corner  in  a sweep has a maximum at this frequency, to CORNER */
+static bool curve_passes(const peak_scan *scan, const mhb_response *r, double frequency,
+                         double amplitude, bool corner) {
+  const mhb_branch *b  = &r->branch[0];
+  bool              on = false, level = false, highest = true;
+  for (int i = 0; i + 1 < b->n_points; i++) {
+    double from = b->frequency[i] / frequency - 1, to = b->frequency[i + 1] / frequency - 1;
+    if (fabs(from) > BESIDE) continue;
+    highest = highest && amplitude_of(scan, r, b, i) < amplitude * (1 + SAME);
+    if (mhb_response_is_linear(r, b, i) != mhb_response_is_linear(r, b, i + 1)) continue;
+    if (fabs(to) > BESIDE || fabs(to - from) < 1e-9) continue;
+    const double a     = amplitude_of(scan, r, b, i) / amplitude - 1;
+    const double slope = (amplitude_of(scan, r, b, i + 1) / amplitude - 1 - a) / (to - from);
+    const bool   here  = fabs(a - slope * from) < SAME;
+    on                 = on || here;
+    level              = level || (here && fabs(slope) < LEVEL);
+  }
+  return on && (corner || level || highest);
+}
+
+/* The same of sweeps of several neighbourhoods, which may begin on other motions. */
 static bool passes(const peak_scan *scan, double value, double frequency, double amplitude,
                    bool corner) {
-  mhb_settings local  = *scan->settings;
-  bool         good   = false;
-  local.frequency[0]  = frequency * (1 - 4 * BESIDE);
-  local.frequency[1]  = frequency * (1 + 4 * BESIDE);
-  mhb_response     *r = peak_scan_sweep(&(peak_scan){scan->model, &local}, value);
-  const mhb_branch *b = &r->branch[0];
-  for (int i = 0; i + 1 < b->n_points && !good; i++) {
-    double from = b->frequency[i] / frequency - 1, to = b->frequency[i + 1] / frequency - 1;
-    if (mhb_response_is_linear(r, b, i) != mhb_response_is_linear(r, b, i + 1)) continue;
-    if (fmax(fabs(from), fabs(to)) > BESIDE || fabs(to - from) < 1e-9) continue;
-    const double a     = mhb_response_output(r, b, i) / amplitude - 1;
-    const double slope = (mhb_response_output(r, b, i + 1) / amplitude - 1 - a) / (to - from);
-    good               = fabs(a - slope * from) < SAME && (corner || fabs(slope) < LEVEL);
+  bool found = false;
+  for (size_t i = 0; i < N_WINDOWS && !found; i++) {
+    mhb_response *r = sweep_beside(scan, value, frequency, WINDOW[i]);
+    found           = curve_passes(scan, r, frequency, amplitude, corner);
+    mhb_response_destroy(r);
   }
-  mhb_response_destroy(r);
-  return good;
+  return found;
 }
 
 /* One tracked peak. */
 static void compare(const peak_scan *scan, const mhb_response *tracked, const mhb_branch *t, int i,
                     peak_agreement *out) {
   bool         first = false;
-  const double value = t->value[i], amplitude = mhb_response_output(tracked, t, i);
+  const double value = t->value[i], amplitude = amplitude_of(scan, tracked, t, i);
   double       f = t->frequency[i], swept = peak_scan_near(scan, value, &f, &first);
   const double of_amplitude = isnan(swept) ? INFINITY : fabs(amplitude / swept - 1);
   const double of_frequency = fabs(t->frequency[i] / f - 1);
   out->n++;
   out->n_first += first;
   if (!(of_amplitude < SAME && of_frequency < SAME)) {
-    const bool corner = of_frequency < SAME && isfinite(swept);
+    const bool corner = of_frequency < CORNER && isfinite(swept);
     const bool there  = passes(scan, value, t->frequency[i], amplitude, corner);
     print_message("  point %d at %.9g, %.9g Hz: amplitude %.1e, frequency %.1e%s\n", i, value,
                   t->frequency[i], of_amplitude, of_frequency,
-                  !there   ? ""
-                  : corner ? "; on the curve of the sweep, at its corner"
-                           : "; on the curve of the sweep, which is level there");
+                  there ? "; on the curve of the sweep" : "");
     out->n_on_curve += there;
     if (there) return;
   }

@@ -38,10 +38,10 @@ double peak_scan_near(const peak_scan *scan, double value, double *frequency, bo
 
 /* How far the tracked peaks of a response are from those of sweeps, without the ends of branches.
  *
- * Where a maximum and a minimum meet, a sweep steps over both. It locates a corner to 1e-6 of the
+ * Where a maximum and a minimum meet, a sweep steps over both. It locates a corner to 2e-6 of the
  * frequency only, where the amplitude is steep. Such peaks count in n_on_curve and not in the
  * differences. The sweep's curve must have their amplitude to 1e-6 at their frequency. It must be
- * level there or have its corner within 1e-6. */
+ * level there, nowhere higher within 2e-5, or have its corner within 2e-6. */
 typedef struct {
   int    n, n_first, n_on_curve; /* peaks; those that are peaks of the first harmonic too */
   double amplitude, frequency;   /* largest relative difference of the others */

@@ -1,118 +1,105 @@
-/* Corners of several contact pairs. A smooth peak goes over into the corner of one pair, and that
- * into a peak with one slipping pair less. Every peak is that of a sweep. */
-#include <math.h>
-
+/* Corners of contact pairs. A smooth peak goes over into the corner of one pair, and that into a
+ * peak with one slipping pair less. Every peak is that of a sweep. */
 #include "mesh/base/constants.h"
 #include "mhb/contact/law.h"
-#include "mhb/tracking/tracked_response.h"
 #include "tests/support/check.h"
-#include "tests/support/main_curve.h"
+#include "tests/support/peak_scan.h"
 #include "tests/support/random_model.h"
 
 enum { H = 5 };
 
 static const double STICKS = 0.998;
 
-typedef struct {
-  modal_model   model;
-  mhb_settings  settings;
-  mhb_response *tracked;
-} fixture;
-
-static void follow(fixture *f, int n_pairs, unsigned long long seed, double low, double high) {
-  shb_progress quiet = shb_progress_start("mhb", true, false);
-  random_model(n_pairs, WITH_LEFT, seed, &f->model);
-  f->settings              = random_settings(H);
-  f->settings.frequency[0] = 0.85 / SHB_TWO_PI;
-  f->settings.frequency[1] = 1.6 / SHB_TWO_PI;
-  f->settings.tolerance    = 1e-10;
-  f->settings.stability    = MHB_STABILITY_NEVER;
-  f->settings.track        = MHB_TRACK_PEAKS;
-  f->settings.parameter    = MHB_IN_N0;
-  f->settings.range[0]     = low;
-  f->settings.range[1]     = high;
-  assert_ok(mhb_tracked_response(&f->model, &f->settings, NULL, NULL, &quiet, &f->tracked));
+static mhb_settings settings_of(double low, double high) {
+  mhb_settings s = random_settings(H);
+  s.frequency[0] = 0.85 / SHB_TWO_PI;
+  s.frequency[1] = 1.6 / SHB_TWO_PI;
+  s.tolerance    = 1e-10;
+  s.stability    = MHB_STABILITY_NEVER;
+  s.track        = MHB_TRACK_PEAKS;
+  s.parameter    = MHB_IN_N0;
+  s.range[0]     = low;
+  s.range[1]     = high;
+  return s;
 }
 
-static void tear_down(fixture *f) {
-  mhb_response_destroy(f->tracked);
-  modal_model_free(&f->model);
+/* The least and the largest number of pairs that stick at a point of a tracked run. */
+static void stuck_pairs(const mhb_response *r, int n_pairs, int least_most[2]) {
+  least_most[0] = n_pairs;
+  least_most[1] = 0;
+  for (int b = 0; b < r->n_branches; b++)
+    for (int i = 0; i < r->branch[b].n_points; i++) {
+      int n = 0;
+      for (int a = 0; a < n_pairs; a++)
+        n += r->branch[b].state[3 * (i * n_pairs + a) + MHB_STICK] >= STICKS;
+      least_most[0] = n < least_most[0] ? n : least_most[0];
+      least_most[1] = n > least_most[1] ? n : least_most[1];
+    }
 }
 
-static mhb_response *sweep_at(const fixture *f, double n0) {
-  mhb_response *r;
-  mhb_settings  s = f->settings;
-  s.n0[0]         = n0;
-  s.parameter     = MHB_IN_FREQUENCY;
-  s.track         = MHB_TRACK_NOTHING;
-  assert_ok(main_curve(&f->model, &s, H, NULL, &r));
-  return r;
-}
-
-/* Relative differences of a tracked point from the nearest marked peak of a sweep. */
-static void compare(const fixture *f, const mhb_branch *t, int point, double *amplitude,
-                    double *frequency) {
-  mhb_response     *r = sweep_at(f, t->value[point]);
-  const mhb_branch *b = &r->branch[0];
-  *frequency          = INFINITY;
-  for (int i = 0; i < b->n_points; i++) {
-    const double away = fabs(b->frequency[i] / t->frequency[point] - 1);
-    if (b->special[i] != MHB_PEAK || away >= *frequency) continue;
-    *frequency = away;
-    *amplitude = fabs(mhb_response_output(f->tracked, t, point) / mhb_response_output(r, b, i) - 1);
-  }
+/* Follow the peaks of a random model with some pairs, and compare them with sweeps.
+ *   least     in  branches and peaks, at least
+ *   on_curve  in  peaks that a sweep resolves by its curve alone, at most */
+static void chain(int n_pairs, unsigned long long seed, const mhb_settings *s, const int least[2],
+                  int on_curve) {
+  modal_model model;
+  int         stuck[2];
+  random_model(n_pairs, WITH_LEFT, seed, &model);
+  const peak_scan scan   = {&model, s};
+  mhb_response   *r      = peak_scan_follow(&scan);
+  peak_agreement  agrees = peak_scan_compare(&scan, r);
+  stuck_pairs(r, n_pairs, stuck);
+  print_message("%d branches; %d to %d of %d pairs stick\n", r->n_branches, stuck[0], stuck[1],
+                n_pairs);
+  assert_true(r->n_branches >= least[0] && agrees.n >= least[1]);
+  assert_true(agrees.n_on_curve <= on_curve);
+  assert_true(stuck[0] < n_pairs && stuck[1] == n_pairs);
+  assert_below(agrees.amplitude, 1e-6);
+  assert_below(agrees.frequency, 1e-6);
   mhb_response_destroy(r);
+  modal_model_free(&model);
 }
 
-/* How many pairs stick at a point. */
-static int stuck_at(const mhb_branch *t, int n_pairs, int point) {
-  int n = 0;
-  for (int a = 0; a < n_pairs; a++) n += t->state[3 * (point * n_pairs + a) + MHB_STICK] >= STICKS;
-  return n;
-}
-
-/* Whether two peaks meet near a point: an end of the branch is near. */
-static bool is_near_end(const mhb_branch *t, int point) {
-  const double value = t->value[point], ends[2] = {t->value[0], t->value[t->n_points - 1]};
-  return fmin(fabs(value - ends[0]), fabs(value - ends[1])) < 1e-3 * value;
-}
-
-/* Four points of every branch against sweeps. */
 static void the_chain_of_two_pairs_is_that_of_sweeps(void **state) {
   (void)state;
-  enum { PAIRS = 2 };
-  fixture f;
-  double  worst = 0, worst_f = 0;
-  int     points = 0, least = PAIRS, most = 0;
-  follow(&f, PAIRS, 2, 0.3, 1.2);
-  for (int b = 0; b < f.tracked->n_branches; b++) {
-    const mhb_branch *t    = &f.tracked->branch[b];
-    const int         step = t->n_points > 8 ? t->n_points / 4 : 2;
-    for (int i = step / 2; i < t->n_points; i += step) {
-      if (is_near_end(t, i)) continue;
-      double    a = INFINITY, away;
-      const int n = stuck_at(t, PAIRS, i);
-      compare(&f, t, i, &a, &away);
-      print_message("n0 %.6f, %.6f Hz, %d stick: amplitude %.1e, frequency %.1e\n", t->value[i],
-                    t->frequency[i], n, a, away);
-      points++;
-      worst   = fmax(worst, a);
-      worst_f = fmax(worst_f, away);
-      least   = n < least ? n : least;
-      most    = n > most ? n : most;
-    }
-    print_message("%d points, n0 %.6f to %.6f: %s\n", t->n_points, t->value[0],
-                  t->value[t->n_points - 1], t->reason);
-  }
-  print_message("%d points: amplitude %.1e, frequency %.1e\n", points, worst, worst_f);
-  assert_true(f.tracked->n_branches >= 3 && points >= 8);
-  assert_true(least == 1 && most == PAIRS);
-  assert_below(worst, 1e-6);
-  assert_below(worst_f, 1e-6);
-  tear_down(&f);
+  const mhb_settings s = settings_of(0.3, 1.2);
+  chain(2, 2, &s, (int[]){4, 40}, 8);
+}
+
+static void the_chain_of_three_pairs_is_that_of_sweeps(void **state) {
+  (void)state;
+  const mhb_settings s = settings_of(0.3, 1.2);
+  chain(3, 2, &s, (int[]){4, 30}, 8);
+}
+
+static void the_chain_of_four_pairs_is_that_of_sweeps(void **state) {
+  (void)state;
+  const mhb_settings s = settings_of(0.3, 1.2);
+  chain(4, 1, &s, (int[]){5, 50}, 10);
+}
+
+/* The peak to peak has corners at the same frequencies. */
+static void corners_of_the_peak_to_peak_are_those_of_sweeps(void **state) {
+  (void)state;
+  mhb_settings s    = settings_of(0.3, 1.2);
+  s.output_quantity = MHB_OUTPUT_PEAK_TO_PEAK;
+  chain(2, 2, &s, (int[]){4, 40}, 8);
+}
+
+static void corners_of_a_contact_are_those_of_sweeps(void **state) {
+  (void)state;
+  mhb_settings s    = settings_of(0.3, 1.2);
+  s.output_quantity = MHB_OUTPUT_PEAK_TO_PEAK;
+  snprintf(s.output, sizeof s.output, "contact");
+  chain(2, 2, &s, (int[]){4, 40}, 8);
 }
 
 int main(void) {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(the_chain_of_two_pairs_is_that_of_sweeps)};
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(the_chain_of_two_pairs_is_that_of_sweeps),
+      cmocka_unit_test(the_chain_of_three_pairs_is_that_of_sweeps),
+      cmocka_unit_test(the_chain_of_four_pairs_is_that_of_sweeps),
+      cmocka_unit_test(corners_of_the_peak_to_peak_are_those_of_sweeps),
+      cmocka_unit_test(corners_of_a_contact_are_those_of_sweeps)};
   return cmocka_run_group_tests(tests, NULL, NULL);
 }
