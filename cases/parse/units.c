@@ -55,12 +55,12 @@ typedef struct {
 /* Finds the unit and prefix that make up exactly n bytes of text. */
 static bool find_unit(const char *text, size_t n, const named_unit **unit, int *power) {
   for (int u = 0; u < COUNT(units); u++) {
+    size_t tail = strlen(units[u].name);
+    if (tail > n || memcmp(text + n - tail, units[u].name, tail) != 0) continue;
     for (int p = 0; p < COUNT(prefixes); p++) {
-      size_t head = strlen(prefixes[p].text), tail = strlen(units[u].name);
+      size_t head = strlen(prefixes[p].text);
+      if (head + tail != n || memcmp(text, prefixes[p].text, head) != 0) continue;
       if (p > 0 && !strchr(units[u].prefixes, prefixes[p].letter)) continue;
-      if (head + tail != n || strncmp(text, prefixes[p].text, head) != 0 ||
-          strncmp(text + head, units[u].name, tail) != 0)
-        continue;
       *unit  = &units[u];
       *power = prefixes[p].power;
       return true;
@@ -162,7 +162,6 @@ static bool convert(const char *text, size_t mantissa, size_t length, int power,
 bool case_quantity(const char *text, const char *unit, double *value, char why[CASE_WHY]) {
   size_t mantissa = 0, length = strlen(text) <= LONGEST ? measure(text, &mantissa) : 0;
   scale  expected, given;
-  read_unit(unit, &expected);
   if (length == 0) {
     not_a_number(text, unit, why);
     return false;
@@ -178,6 +177,7 @@ bool case_quantity(const char *text, const char *unit, double *value, char why[C
     }
     return false;
   }
+  if (*name) read_unit(unit, &expected);
   if (*name && memcmp(given.dimension, expected.dimension, sizeof given.dimension) != 0) {
     snprintf(why, CASE_WHY, "'%.80s' has unit %.40s, expected %s", text, name,
              *unit ? unit : "a number without a unit");

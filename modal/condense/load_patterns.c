@@ -5,89 +5,13 @@
 
 #include "fem/element/surface.h"
 #include "fem/solver/petsc_error.h"
-#include "modal/hdf5/h5.h"
-
-/* A field file as read. */
-typedef struct {
-  const char     *path;
-  int             nodes, harmonics;
-  int            *node, *harmonic;
-  bool            is_force;
-  double complex *value; /* [harmonics][nodes][3] N, or [harmonics][nodes] Pa */
-  int            *at;    /* [nodes of the mesh] index in node, -1: none */
-} field;
-
-static void field_free(field *f) {
-  free(f->node);
-  free(f->harmonic);
-  free(f->value);
-  free(f->at);
-}
-
-static shb_status read_all(hid_t file, field *f) {
-  h5_shape nodes = {1, {0}}, harmonics = {1, {0}};
-  SHB_TRY(h5_read_int(file, "/node", &nodes, &f->node));
-  SHB_TRY(h5_read_int(file, "/harmonic", &harmonics, &f->harmonic));
-  f->nodes     = (int)nodes.dim[0];
-  f->harmonics = (int)harmonics.dim[0];
-  f->is_force  = h5_exists(file, "/force");
-  SHB_CHECK(f->is_force != h5_exists(file, "/pressure"), SHB_ERR_INPUT,
-            "%s: expected one of /force and /pressure", f->path);
-  h5_shape force    = {3, {harmonics.dim[0], nodes.dim[0], 3}},
-           pressure = {2, {harmonics.dim[0], nodes.dim[0]}};
-  return f->is_force ? h5_read_complex(file, "/force", &force, &f->value)
-                     : h5_read_complex(file, "/pressure", &pressure, &f->value);
-}
-
-static shb_status check_harmonics(const field *f) {
-  bool given[FEM_MAX_LOAD_HARMONICS + 1] = {false};
-  for (int i = 0; i < f->harmonics; i++) {
-    int k = f->harmonic[i];
-    SHB_CHECK(k >= 0 && k <= FEM_MAX_LOAD_HARMONICS && !given[k], SHB_ERR_INPUT,
-              "%s: /harmonic: value %d (from 0) is %d; expected whole numbers 0 to %d, each once",
-              f->path, i, k, FEM_MAX_LOAD_HARMONICS);
-    given[k] = true;
-  }
-  return SHB_OK;
-}
-
-static int by_tag(const void *a, const void *b) {
-  long p = *(const long *)a, q = *(const long *)b;
-  return (p > q) - (p < q);
-}
-
-/* Find each node of the mesh in the file; node tags ascend. */
-static shb_status locate(const mesh_fe *mesh, field *f) {
-  f->at = malloc((size_t)mesh->n_nodes * sizeof *f->at + 1);
-  SHB_CHECK(f->at, SHB_ERR_IO, "out of memory for the load");
-  for (int i = 0; i < mesh->n_nodes; i++) f->at[i] = -1;
-  for (int i = 0; i < f->nodes; i++) {
-    long        tag   = f->node[i];
-    const long *found = bsearch(&tag, mesh->node_tag, (size_t)mesh->n_nodes, sizeof tag, by_tag);
-    SHB_CHECK(found, SHB_ERR_INPUT, "%s: /node: value %d (from 0): the mesh has no node %ld",
-              f->path, i, tag);
-    int *at = &f->at[found - mesh->node_tag];
-    SHB_CHECK(*at < 0, SHB_ERR_INPUT, "%s: /node: node %ld is given twice", f->path, tag);
-    *at = i;
-  }
-  return SHB_OK;
-}
-
-static shb_status read_field(const mesh_fe *mesh, field *f) {
-  hid_t file;
-  SHB_TRY(h5_open(f->path, &file));
-  shb_status status = read_all(file, f);
-  h5_close(file);
-  SHB_TRY(status);
-  SHB_TRY(check_harmonics(f));
-  return locate(mesh, f);
-}
+#include "modal/condense/load_field.h"
 
 static double part(double complex value, int imaginary) {
   return imaginary ? cimag(value) : creal(value);
 }
 
-static void nodal_force(const mesh_fe *mesh, const field *f, int harmonic, int imaginary,
+static void nodal_force(const mesh_fe *mesh, const modal_load_field *f, int harmonic, int imaginary,
                         double *force) {
   const double complex *value = f->value + 3 * (size_t)f->nodes * (size_t)harmonic;
   for (int i = 0; i < mesh->n_nodes; i++)
@@ -114,8 +38,8 @@ static void face_pressure(const fem_face_rule *rule, const double x[][3], const 
   }
 }
 
-static shb_status pressure_force(const mesh_fe *mesh, const field *f, int harmonic, int imaginary,
-                                 double *force) {
+static shb_status pressure_force(const mesh_fe *mesh, const modal_load_field *f, int harmonic,
+                                 int imaginary, double *force) {
   const mesh_face_set  *set   = &mesh->set[MESH_LOAD];
   const double complex *value = f->value + (size_t)f->nodes * (size_t)harmonic;
   fem_face_rule         rule;
@@ -147,8 +71,8 @@ static bool is_zero(int n, const double *force) {
 }
 
 /* Add a pattern for every part that is not zero; kind[c]: its harmonic, and 1 if imaginary. */
-static shb_status add_patterns(const mesh_fe *mesh, const field *f, double *force, int (*kind)[2],
-                               modal_load *out) {
+static shb_status add_patterns(const mesh_fe *mesh, const modal_load_field *f, double *force,
+                               int (*kind)[2], modal_load *out) {
   const size_t size = 3 * (size_t)mesh->n_nodes;
   for (int i = 0; i < f->harmonics; i++)
     for (int imaginary = 0; imaginary < 2; imaginary++) {
@@ -167,7 +91,8 @@ static shb_status add_patterns(const mesh_fe *mesh, const field *f, double *forc
   return SHB_OK;
 }
 
-static shb_status from_field(const mesh_fe *mesh, const field *f, double *force, modal_load *out) {
+static shb_status from_field(const mesh_fe *mesh, const modal_load_field *f, double *force,
+                             modal_load *out) {
   int kind[2 * (FEM_MAX_LOAD_HARMONICS + 1)][2];
   SHB_TRY(add_patterns(mesh, f, force, kind, out));
   out->weight = calloc((size_t)(out->n_harmonics + 1) * (size_t)out->dofs.n, sizeof *out->weight);
@@ -203,13 +128,13 @@ static shb_status view_of(const mesh_fe *mesh, const fem_load *load, mesh_fe *vi
 
 static shb_status create_one(const mesh_fe *mesh, const fem_load *load, const double *fallback,
                              double *force, modal_load *out) {
-  field   f = {.path = load->field};
-  mesh_fe view;
+  modal_load_field f = {.path = load->field};
+  mesh_fe          view;
   SHB_TRY(view_of(mesh, load, &view));
   if (load->kind != FEM_LOAD_FIELD) return from_case(&view, load, fallback, force, out);
-  shb_status status = read_field(&view, &f);
+  shb_status status = modal_load_field_read(&view, &f);
   if (status == SHB_OK) status = from_field(&view, &f, force, out);
-  field_free(&f);
+  modal_load_field_free(&f);
   return status;
 }
 

@@ -83,6 +83,26 @@ const char *fuzz_text(const char *path, const void *data, size_t size) {
   return path;
 }
 
+/* A file, read once. */
+typedef struct {
+  char   text[FUZZ_MOST];
+  size_t length;
+} whole_file;
+
+static void load(const char *path, whole_file *out) {
+  FILE *file = out->length ? NULL : fopen(path, "rb");
+  if (file) out->length = fread(out->text, 1, sizeof out->text, file);
+  if (file) fclose(file);
+  fuzz_assert(out->length > 0, path);
+}
+
+const char *fuzz_case(const char *path, size_t size) {
+  static whole_file example, brief;
+  whole_file       *chosen = size % 16 == 0 ? &example : &brief;
+  load(chosen == &example ? SHROUDHB_EXAMPLE : SHROUDHB_SHORT, chosen);
+  return fuzz_text(path, chosen->text, chosen->length);
+}
+
 FILE *__real_fopen(const char *path, const char *mode);
 FILE *__wrap_fopen(const char *path, const char *mode);
 FILE *__wrap_fopen(const char *path, const char *mode) {

@@ -1,4 +1,4 @@
-/* Overrides of the example: `--set PATH=VALUE`. Load factors that pass are finite. */
+/* Overrides of a case: `--set PATH=VALUE`. Load factors that pass are finite. */
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -7,20 +7,6 @@
 #include "tests/fuzz/fuzz_file.h"
 
 enum { MOST_OVERRIDES = 16 };
-
-/* The example, from memory. */
-static const char *example(void) {
-  static const char *path;
-  static char        text[FUZZ_MOST];
-  if (path) return path;
-  FILE *file = fopen(SHROUDHB_EXAMPLE, "rb");
-  fuzz_assert(file != NULL, SHROUDHB_EXAMPLE " cannot be opened");
-  size_t length = fread(text, 1, FUZZ_MOST, file);
-  fclose(file);
-  fuzz_assert(length > 0, SHROUDHB_EXAMPLE " is empty");
-  path = fuzz_text("example.yaml", text, length);
-  return path;
-}
 
 static void check_load(const fem_load *load) {
   for (int k = 0; k <= load->n_harmonics; k++)
@@ -40,8 +26,9 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size) {
   text[size] = '\0';
   for (char *line; n < MOST_OVERRIDES && (line = strtok_r(rest, "\n", &rest));) word[n++] = line;
   case_overrides overrides = {.n = n, .text = word};
+  const char    *path      = fuzz_case("case.yaml", size);
   shb_status     status =
-      case_read_with(example(), &overrides, CASE_MODAL | CASE_MHB, fuzz_messages(), &file);
+      case_read_with(path, &overrides, CASE_MODAL | CASE_MHB, fuzz_messages(), &file);
   fuzz_messages_end(status != SHB_OK);
   if (status == SHB_OK) check_load(&file.load);
   case_free(&file);

@@ -18,7 +18,7 @@ ninja -C "$build" fuzzers >>"$build.log" 2>&1 || { tail -30 "$build.log"; exit 1
 # inputs are files: in memory where that is there
 [ -w /dev/shm ] && export TMPDIR=/dev/shm
 failed=0
-for target in units case override motion study inp stamp table; do
+for target in units case override motion study inp msh stamp harmonic table; do
   mkdir -p "$build/corpus/$target" "$build/found/$target"
   seeds="$source/tests/fuzz/seeds/$target"
   [ -d "$source/tests/fuzz/regressions/$target" ] &&
@@ -31,7 +31,7 @@ for target in units case override motion study inp stamp table; do
   done
   # shellcheck disable=SC2086
   if ! "$build/tests/bin/fuzz_$target" -max_total_time="$seconds" -timeout=10 -rss_limit_mb=1024 \
-    -max_len=8192 -dict="$source/tests/fuzz/yaml.dict" -artifact_prefix="$build/found/$target/" \
+    -max_len=8192 -dict="$source/tests/fuzz/words.dict" -artifact_prefix="$build/found/$target/" \
     "$build/corpus/$target" $seeds >"$build/$target.log" 2>&1; then
     echo "FAILED: fuzz_$target"
     tail -40 "$build/$target.log"

@@ -7,7 +7,8 @@ function(shb_fuzz noun)
   target_link_libraries(fuzz_${noun} PRIVATE ${ARGN} shb_base)
   target_link_options(fuzz_${noun} PRIVATE -Wl,--wrap=fopen)
   target_compile_definitions(fuzz_${noun} PRIVATE
-    SHROUDHB_EXAMPLE="${PROJECT_SOURCE_DIR}/cases/z_notch_blade/case.yaml")
+    SHROUDHB_EXAMPLE="${PROJECT_SOURCE_DIR}/cases/z_notch_blade/case.yaml"
+    SHROUDHB_SHORT="${FUZZ}/short.yaml")
   add_dependencies(fuzzers fuzz_${noun})
   if(SHROUDHB_FUZZ)
     target_link_options(fuzz_${noun} PRIVATE -fsanitize=fuzzer)
@@ -27,10 +28,14 @@ shb_fuzz(override shb_case m)
 shb_fuzz(motion shb_case m)
 shb_fuzz(study shb_cases_designs m)
 shb_fuzz(inp shb_mesh_io m)
+shb_fuzz(msh shb_mesh_io)
 shb_fuzz(stamp shb_modal_hdf5 m)
 shb_fuzz(table shb_cases_designs shb_mhb_mistuning shb_postproc_draw m)
 # without the programs of its room
 target_sources(fuzz_table PRIVATE ${PROJECT_SOURCE_DIR}/cases/study/dakota_files.c)
+# without PETSc, which its room needs
+shb_fuzz(harmonic shb_modal_hdf5)
+target_sources(fuzz_harmonic PRIVATE ${PROJECT_SOURCE_DIR}/modal/condense/load_field.c)
 
 add_test(NAME fuzz.libfuzzer
   COMMAND sh ${FUZZ}/run.sh ${PROJECT_SOURCE_DIR} ${CMAKE_CURRENT_BINARY_DIR}/fuzz_clang 8)
