@@ -26,7 +26,7 @@ set(INTEGRATION_TESTS cases.study.study cases.study.samples cases.study.eval
   mhb.floquet.mistuned_stability
   cases.study.ring_samples
   mhb.integration.integrator
-  mhb.integration.integration_sweep mhb.integration.mistuned_ring
+  mhb.integration.integration_sweep mhb.integration.integration_memory mhb.integration.mistuned_ring
   mhb.amplification.ring_response bench.mistuning mhb.ring.lasting mhb.ring.mistuned_lasting
   mhb.branches.lasting_motion
   mhb.continuation.arclength mhb.continuation.linear_resonances

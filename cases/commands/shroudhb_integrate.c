@@ -12,6 +12,7 @@
 #include "cases/schema/case_paths.h"
 #include "mesh/base/progress.h"
 #include "mesh/base/publish.h"
+#include "mhb/integration/integration_memory.h"
 #include "mhb/integration/integration_sweep.h"
 #include "mhb/mistuning/dense_ring.h"
 #include "mhb/structure/dense_disc.h"
@@ -85,6 +86,25 @@ static void warn_of_ring(const case_file *file, const modal_model *model) {
       file->mhb.blades, model->n_modes, file->integrate.max_periods);
 }
 
+/* A structure of all blades is refused before it is made. */
+static shb_status check_memory(const case_file *file, const case_model *model,
+                               const mhb_response *balance) {
+  const mhb_settings  *s    = &model->settings;
+  mhb_integration_size size = mhb_integration_size_of(
+      &model->model, s, mhb_integration_harmonics(&model->model, s, &file->integrate, balance),
+      file->integrate.n_frequencies * s->n_preloads);
+  int threads;
+  size.dense = true;
+  if (model->ring) {
+    size.pairs    = model->ring->n_pairs;
+    size.modes    = model->ring->n_modes;
+    size.probes   = model->ring->n_probes;
+    size.residual = model->tuned.residual_flexibility != NULL;
+    size.inertia  = model->tuned.residual_inertia != NULL;
+  }
+  return mhb_integration_threads(&size, &threads);
+}
+
 /* A ring of different blades and a disc are integrated as one model. */
 static shb_status integrate(const case_file *file, case_model *model, const mhb_response *balance,
                             const char *output, const shb_provenance *provenance,
@@ -98,6 +118,7 @@ static shb_status integrate(const case_file *file, case_model *model, const mhb_
   SHB_CHECK(!model->disc_run_up, SHB_ERR_INPUT,
             "mhb.run_up: the sectors of a disc are integrated at one speed; leave it out, and give "
             "a case for each rotor.speed");
+  SHB_TRY(check_memory(file, model, balance));
   if (model->disc) {
     status = mhb_dense_disc(&model->settings, &dense);
     mhb_dense_disc_settings(&model->settings, &settings);

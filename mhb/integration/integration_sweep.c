@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "mesh/base/constants.h"
+#include "mhb/integration/integration_memory.h"
 #include "mhb/integration/spectrum.h"
 #include "mhb/integration/steady_state.h"
 #include "mhb/problem/interfaces.h"
@@ -422,10 +423,13 @@ static void run_sequence(sweep *s, worker *k, int sequence) {
 }
 
 static shb_status run_all(sweep *s) {
-  int most = s->harmonics;
+  int most = s->harmonics, threads;
   for (int i = 0; i < s->n; i++)
     if (s->points[i].m > most) most = s->points[i].m;
-#pragma omp parallel if (s->n_sequences > 1)
+  mhb_integration_size size = mhb_integration_size_of(s->model, s->settings, most, s->n);
+  SHB_TRY(mhb_integration_threads(&size, &threads));
+  if (s->n_sequences < threads) threads = s->n_sequences;
+#pragma omp parallel if (threads > 1) num_threads(threads > 1 ? threads : 1)
   {
     worker     k;
     shb_status status = worker_create(s, most, &k);
@@ -457,8 +461,9 @@ static shb_status check_outcome(const sweep *s) {
   return SHB_OK;
 }
 
-static int harmonics_of(const modal_model *model, const mhb_settings *settings,
-                        const mhb_integration_settings *request, const mhb_response *balance) {
+int mhb_integration_harmonics(const modal_model *model, const mhb_settings *settings,
+                              const mhb_integration_settings *request,
+                              const mhb_response             *balance) {
   int m = request->harmonics, load = settings->subharmonics * model->n_load;
   if (m == 0) m = balance ? balance->n_harmonics : settings->harmonics ? settings->harmonics : 31;
   return m > load ? m : load;
@@ -473,7 +478,7 @@ shb_status mhb_integration_sweep(const modal_model *model, const mhb_settings *s
              .settings  = settings,
              .request   = request,
              .balance   = request->start == MHB_START_FROM_BALANCE ? balance : NULL,
-             .harmonics = harmonics_of(model, settings, request, balance),
+             .harmonics = mhb_integration_harmonics(model, settings, request, balance),
              .progress  = progress};
   *out    = NULL;
   SHB_CHECK(!settings->nodal_diameters, SHB_ERR_INPUT,

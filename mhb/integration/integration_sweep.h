@@ -15,6 +15,11 @@
 #include "mhb/response/response.h"
 #include "modal/model/model.h"
 
+/* Harmonics of a point: those asked for, or of the balance (NULL: none). */
+int mhb_integration_harmonics(const modal_model *model, const mhb_settings *settings,
+                              const mhb_integration_settings *integration,
+                              const mhb_response             *balance);
+
 /* One branch (kind integration) for each preload and direction; points by ascending frequency,
  * descending for down.
  *   balance     in   its response, for start balance; else NULL

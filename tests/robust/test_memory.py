@@ -1,4 +1,4 @@
-"""robust.memory: a balance larger than the memory is refused at once, with what would fit.
+"""robust.memory: what is larger than the memory is refused at once, with what would fit.
 
 Usage: test_memory.py FOLDER_OF_PROGRAMS CASE_FOLDER. Exit code 77: no h5py.
 """
@@ -64,12 +64,30 @@ def is_begun(harmonics):
     return 'GB are left' not in said
 
 
+def refused_integration():
+    """Points of the time integration that fit, of ten thousand."""
+    case_of(200)
+    preloads = ', '.join(f'{0.3 + 0.01 * i:.2f} N' for i in range(10))
+    text = re.sub(r'n0: .*', f'n0: [{preloads}]', open('one.yaml').read())
+    text += '\nintegrate: {frequencies: 1000, harmonics: 200, start: rest}\n'
+    done = subprocess.run([os.path.join(BIN, 'shroudhb-integrate'), '--quiet',
+                           write('one.yaml', text)], env=ENVIRONMENT, capture_output=True,
+                          text=True, timeout=60, preexec_fn=lambda: resource.setrlimit(
+                              resource.RLIMIT_AS, (LIMIT, LIMIT)))
+    assert done.returncode == 2 and len(done.stderr.splitlines()) == 1, done
+    found = re.search(r'the time integration of 1 contact point, 200 harmonics and 10000 points '
+                      r'needs about .* or points: (\d+) fits$', done.stderr.strip())
+    assert found, done.stderr
+    return int(found[1])
+
+
 with bring_your_own(SCENE):
     run(sys.executable, 'write_modal.py')
     needed, left, fits = refused(200)
     assert needed > left and 100 < fits < 200, (needed, left, fits)
     assert is_begun(fits)
     refused(fits + 3) # what is left varies by some pages
+    assert 10 < refused_integration() < 10000
     grown = peak(200) - peak(1)
     print(f'200 harmonics: told {needed} GB, measured {grown:.3f} GB')
     assert 0.8 < needed / grown < 1.8
