@@ -94,8 +94,8 @@ static void swap_rows(int n, double *restrict x, double *restrict y) {
   }
 }
 
-/* Gaussian elimination of the first n columns of A[n][width], with row exchanges: the factors, and
- * the columns behind as the lower factor leaves them. The sign of the determinant; 0: singular. */
+/* Gaussian elimination of the first n columns of A[n][width], with row exchanges in all columns. The
+ * sign of the determinant; 0: singular. */
 MHB_HOT static int eliminate_rows(int n, int width, double *A, int *pivot) {
   int sign = 1;
   for (int p = 0; p < n; p++) {
@@ -114,20 +114,10 @@ MHB_HOT static int eliminate_rows(int n, int width, double *A, int *pivot) {
     for (int i = p + 1; i < n; i++) {
       double *to = A + i * width;
       to[p] *= inverse;
-      subtract(width - p - 1, to[p], row + p + 1, to + p + 1);
+      subtract(n - p - 1, to[p], row + p + 1, to + p + 1);
     }
   }
   return sign;
-}
-
-/* `columns` columns of A[n][width] from `first` on <- upper factor^-1 times them. */
-MHB_HOT static void substitute_rows(int n, int width, int first, int columns, double *A) {
-  for (int p = n - 1; p >= 0; p--) {
-    double      *row     = A + p * width + first;
-    const double inverse = 1 / A[p * width + p];
-    for (int j = 0; j < columns; j++) row[j] *= inverse;
-    for (int i = 0; i < p; i++) subtract(columns, A[i * width + p], row, A + i * width + first);
-  }
 }
 
 MHB_INLINE double dot(int n, const double *a, const double *b) {
@@ -147,6 +137,71 @@ MHB_HOT static void solve_rows(int n, int width, const double *A, const int *piv
   for (int i = n - 1; i >= 0; i--) {
     const double *row = A + i * width;
     x[i]              = (x[i] - dot(n - i - 1, row + i + 1, x + i + 1)) / row[i];
+  }
+}
+
+/* sum[rows][a tile] -= A[rows][from..to) X, both with rows of width */
+MHB_INLINE void subtract_tile(int rows, int from, int to, int width, const double *A,
+                              const double *X, mhb_half_lanes sum[TILE_ROWS][TILE_VECTORS]) {
+  for (int l = from; l < to; l++)
+    for (int i = 0; i < rows; i++)
+      for (int j = 0; j < TILE_VECTORS; j++)
+        sum[i][j] -= A[i * width + l] * half_lanes_load(X + l * width + j * MHB_HALF_LANES);
+}
+
+MHB_INLINE void load_tile(int rows, int width, const double *X,
+                          mhb_half_lanes sum[TILE_ROWS][TILE_VECTORS]) {
+  for (int i = 0; i < rows; i++)
+    for (int j = 0; j < TILE_VECTORS; j++)
+      sum[i][j] = half_lanes_load(X + i * width + j * MHB_HALF_LANES);
+}
+
+MHB_INLINE void store_tile(int rows, int width, double *X,
+                           mhb_half_lanes sum[TILE_ROWS][TILE_VECTORS]) {
+  for (int i = 0; i < rows; i++)
+    for (int j = 0; j < TILE_VECTORS; j++)
+      half_lanes_store(X + i * width + j * MHB_HALF_LANES, sum[i][j]);
+}
+
+/* Rows `at` on of a tile of X <- those of lower factor^-1 X; the rows before are solved. */
+MHB_INLINE void lower_tile(int rows, int at, int width, const double *A, double *X) {
+  mhb_half_lanes sum[TILE_ROWS][TILE_VECTORS] = {{{0}}};
+  A += at * width;
+  load_tile(rows, width, X + at * width, sum);
+  subtract_tile(rows, 0, at, width, A, X, sum);
+  for (int i = 1; i < rows; i++)
+    for (int l = 0; l < i; l++)
+      for (int j = 0; j < TILE_VECTORS; j++) sum[i][j] -= A[i * width + at + l] * sum[l][j];
+  store_tile(rows, width, X + at * width, sum);
+}
+
+/* The same of the upper factor of n rows; the rows behind are solved. */
+MHB_INLINE void upper_tile(int rows, int at, int n, int width, const double *A,
+                           const double *inverse, double *X) {
+  mhb_half_lanes sum[TILE_ROWS][TILE_VECTORS] = {{{0}}};
+  A += at * width;
+  load_tile(rows, width, X + at * width, sum);
+  subtract_tile(rows, at + rows, n, width, A, X, sum);
+  for (int i = rows - 1; i >= 0; i--) {
+    for (int l = i + 1; l < rows; l++)
+      for (int j = 0; j < TILE_VECTORS; j++) sum[i][j] -= A[i * width + at + l] * sum[l][j];
+    for (int j = 0; j < TILE_VECTORS; j++) sum[i][j] *= inverse[at + i];
+  }
+  store_tile(rows, width, X + at * width, sum);
+}
+
+/* `columns` columns of A[n][width] from `first` on, in whole tiles, <- the solution with the factors
+ * in its first n columns. */
+MHB_HOT static void substitute_rows(int n, int width, int first, int columns, double *A) {
+  const int whole = n / TILE_ROWS * TILE_ROWS;
+  double    inverse[n];
+  for (int i = 0; i < n; i++) inverse[i] = 1 / A[i * (width + 1)];
+  for (double *X = A + first; X < A + first + columns; X += TILE) {
+    for (int i = 0; i < whole; i += TILE_ROWS) lower_tile(TILE_ROWS, i, width, A, X);
+    for (int i = whole; i < n; i++) lower_tile(1, i, width, A, X);
+    for (int i = n - 1; i >= whole; i--) upper_tile(1, i, n, width, A, inverse, X);
+    for (int i = whole - TILE_ROWS; i >= 0; i -= TILE_ROWS)
+      upper_tile(TILE_ROWS, i, n, width, A, inverse, X);
   }
 }
 
@@ -179,24 +234,32 @@ MHB_HOT static void multiply(int rows, int columns, int s, int width, const doub
 
 /* ---- factors ---- */
 
-/* to[rows][..] = from[rows][s], or += it */
-static void put_block(int s, const double *from, int width, double *to) {
+/* to[s][..] <- from[s][s], then zeros up to `columns` */
+static void set_block(int s, const double *from, int columns, int width, double *to) {
+  for (int i = 0; i < s; i++, from += s, to += width) {
+    memcpy(to, from, sizeof(double) * (size_t)s);
+    memset(to + s, 0, sizeof(double) * (size_t)(columns - s));
+  }
+}
+
+/* to[s][..] += from[s][s] */
+static void add_block(int s, const double *from, int width, double *to) {
   for (int i = 0; i < s; i++)
     for (int j = 0; j < s; j++) to[i * width + j] += from[i * s + j];
 }
 
-/* Rows and common columns of block i before elimination. */
+/* Rows and common columns of block i before elimination. The block after is the next one, or the
+ * last. */
 static void set_coupling(mhb_block_cyclic *f, int i) {
   const int s = f->size, end = f->blocks - 1, next = n_next(f, i), all = n_common(f, i);
   double   *rows = rows_of(f, i), *below = below_of(f, i), *common = rows + f->first;
-  memset(rows, 0, sizeof(double) * (size_t)(s * f->width));
-  memset(below, 0, sizeof(double) * (size_t)(s * all));
-  put_block(s, mhb_block_cyclic_at(f, f->own, i), f->width, rows);
-  put_block(s, mhb_block_cyclic_at(f, f->after, i), f->width, common); /* next, or last */
-  put_block(s, mhb_block_cyclic_at(f, f->before, i + 1), s, below);
+  set_block(s, mhb_block_cyclic_at(f, f->own, i), f->first, f->width, rows);
+  set_block(s, mhb_block_cyclic_at(f, f->after, i), f->width - f->first, f->width, common);
+  memcpy(below, mhb_block_cyclic_at(f, f->before, i + 1), sizeof(double) * (size_t)(s * s));
+  memset(below + s * s, 0, sizeof(double) * (size_t)(s * (all - s)));
   if (i == 0) { /* round the ring */
-    put_block(s, f->before, f->width, common + next);
-    put_block(s, mhb_block_cyclic_at(f, f->after, end), s, below + next * s);
+    add_block(s, f->before, f->width, common + next);
+    add_block(s, mhb_block_cyclic_at(f, f->after, end), s, below + next * s);
   }
   for (int j = 0; j < s && f->borders; j++) {
     common[j * f->width + next + s] = f->column[i * s + j];

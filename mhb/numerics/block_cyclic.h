@@ -5,8 +5,8 @@
  * i modulo the number of blocks N. LU by blocks eliminates x_0 .. x_{N-2}. The last block, the
  * coupling round the ring and the border are one dense system of size s + 1. With its pivots the
  * system may be singular without its border, as at a fold. Rows are exchanged inside blocks only.
- * Small blocks are no work for BLAS: rows are eliminated by whole vectors, with all columns that
- * meet them. Cost 12.7 N s^3 operations, memory 8 N s^2 numbers. */
+ * Small blocks are no work for BLAS: the columns that meet a block are solved for and multiplied in
+ * tiles that registers hold. Cost 12.7 N s^3 operations, memory 8 N s^2 numbers. */
 #ifndef MHB_NUMERICS_BLOCK_CYCLIC_H
 #define MHB_NUMERICS_BLOCK_CYCLIC_H
 
