@@ -94,8 +94,8 @@ static void swap_rows(int n, double *restrict x, double *restrict y) {
   }
 }
 
-/* Gaussian elimination of the first n columns of A[n][width], with row exchanges in all columns. The
- * sign of the determinant; 0: singular. */
+/* Gaussian elimination of the first n columns of A[n][width], with row exchanges in all columns.
+ * The sign of the determinant; 0: singular. */
 MHB_HOT static int eliminate_rows(int n, int width, double *A, int *pivot) {
   int sign = 1;
   for (int p = 0; p < n; p++) {

@@ -1,16 +1,19 @@
 /* Cost of a curve of a mistuned ring by the number of its blades.
  *
- *   bench_mistuning FILE      a modal file: contact and excitation of cases/z_notch_blade
+ *   bench_mistuning FILE [N]  a modal file: contact and excitation of cases/z_notch_blade
  *   bench_mistuning           a blade of 20 random modes
- *   bench_mistuning --quick   the same, small rings
+ *   bench_mistuning --quick   the same, small rings, one preload
  *
- * Every row is one curve of a ring of N blades with 7 harmonics at one preload. Deviations are 1 %.
- * Engine order N/8 keeps the inter-blade phase. The columns: points; ms of processor time a point;
- * the same a blade, and over that of the first row. Then points a minute and core; the wave's time.
- * Then come the residual, two errors and the memory of a curve, MiB. The first error is the
- * distance of the ring without deviations from the travelling wave, relative. The second is what
- * rounding of the motion alone moves the wave's own residual by. One thread computes, since waiting
- * threads count as processor time.
+ * Every row is five curves of a ring of N blades with 7 harmonics, at preloads of 0.5 to 1.5.
+ * Deviations are 1 %. Engine order N/8 keeps the inter-blade phase. The columns:
+ *   points, ms of processor time a point, those of the cheapest and the dearest curve
+ *   the same a blade, and over that of the first row; points a minute and core
+ *   factors a point and ms a factor: of the ring, and of that with twice the harmonics
+ *   tangents a point and ms of each, with its factor
+ *   the wave's time; the residual; two errors; MiB of a curve; curves not traced to the end
+ * The first error is the distance of the ring without deviations from the travelling wave,
+ * relative. The second is what rounding of the motion alone moves the wave's own residual by. One
+ * thread computes, since waiting threads count as processor time.
  * Baseline: the wave. Goals: 20 ms a point at 40 blades; a cost linear in N; 500 points a minute
  * and core; error below 1e-10. The exit code depends on the error alone. */
 #include <cblas.h>
@@ -20,11 +23,14 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <time.h>
 
 #include "mesh/base/constants.h"
+#include "mhb/balance/ring_system.h"
 #include "mhb/balance/truncation_error.h"
 #include "mhb/branches/record.h"
 #include "mhb/continuation/balance_curve.h"
+#include "mhb/continuation/corrector.h"
 #include "mhb/mistuning/deviations.h"
 #include "mhb/mistuning/mistuned_ring.h"
 #include "mhb/numerics/random.h"
@@ -33,6 +39,7 @@
 #include "tests/support/random_model.h"
 
 static const double GOAL = 1e-10;
+enum { HARMONICS = 7 };
 
 /* 20 modes in place of the random model's six. */
 static void random_blade(modal_model *model) {
@@ -59,7 +66,7 @@ static void random_blade(modal_model *model) {
 }
 
 static mhb_settings of_random_blade(void) {
-  mhb_settings s = random_settings(7);
+  mhb_settings s = random_settings(HARMONICS);
   s.frequency[0] = 0.6 / SHB_TWO_PI;
   s.frequency[1] = 1.4 / SHB_TWO_PI;
   s.mu           = 0.3;
@@ -76,7 +83,7 @@ static mhb_settings of_file(void) {
   s.n_preloads       = 1;
   s.frequency[0]     = 180;
   s.frequency[1]     = 260;
-  s.harmonics        = 7;
+  s.harmonics        = HARMONICS;
   s.tolerance        = 1e-8;
   s.motion_tolerance = 0;
   s.stability        = MHB_STABILITY_NEVER;
@@ -172,37 +179,125 @@ static double memory_of(const mhb_mistuned_ring *ring, const mhb_settings *s) {
   return taken;
 }
 
-static shb_status row(const modal_model *blade, const mhb_settings *asked, int N, double *first,
-                      bool *good) {
-  mhb_settings       s = *asked;
-  double             deviation[N], zero[N], seconds, of_wave, residual = 0;
+/* ---- what a ring's time goes into ---- */
+
+/* Calls and processor time of a function. The linker leads its calls to __wrap_NAME, which counts
+ * and goes on to __real_NAME (tests.cmake). */
+typedef struct {
+  int    calls;
+  double ms;
+} counter;
+
+/* Factors of the balance and of that with twice the harmonics; tangents, each with its factor. */
+static struct { counter factor, doubled, tangent; } of_curves;
+
+static double now(void) {
+  struct timespec t;
+  clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &t);
+  return 1e3 * (double)t.tv_sec + 1e-6 * (double)t.tv_nsec;
+}
+
+static int count(counter *c, double started, int result) {
+  c->calls++;
+  c->ms += now() - started;
+  return result;
+}
+
+int __real_mhb_ring_system_factor(mhb_ring_system *s, const double *column, const double *row);
+int __wrap_mhb_ring_system_factor(mhb_ring_system *s, const double *column, const double *row);
+int __real_mhb_arclength_set_tangent(mhb_arclength *c, const double *along, mhb_curve_point *p);
+int __wrap_mhb_arclength_set_tangent(mhb_arclength *c, const double *along, mhb_curve_point *p);
+
+int __wrap_mhb_ring_system_factor(mhb_ring_system *s, const double *column, const double *row) {
+  const double started = now();
+  counter     *c       = s->balance->m > HARMONICS ? &of_curves.doubled : &of_curves.factor;
+  return count(c, started, __real_mhb_ring_system_factor(s, column, row));
+}
+
+int __wrap_mhb_arclength_set_tangent(mhb_arclength *c, const double *along, mhb_curve_point *p) {
+  const double started = now();
+  const int    done    = __real_mhb_arclength_set_tangent(c, along, p);
+  return c->system->costly ? count(&of_curves.tangent, started, done) : done; /* of a ring */
+}
+
+/* ---- rows ---- */
+
+/* Preloads of a row, relative to the settings': the steps at the onset of slip change by rounding,
+ * so one curve tells a time to a third only. */
+static const double PRELOAD[] = {0.5, 0.75, 1, 1.25, 1.5};
+enum { PRELOADS = sizeof PRELOAD / sizeof *PRELOAD };
+
+/* Sums over the preloads of a row; the errors are the largest. */
+typedef struct {
+  int    points, of_wave;
+  double ms, ms_of_wave; /* of processor time */
+  double least, most;    /* ms a point of a preload */
+  double residual, away, rounding, memory;
+  int    unfinished; /* curves */
+} sums;
+
+/* One preload of a ring and its wave. */
+static shb_status add_curves(const modal_model *blade, mhb_settings s, sums *all) {
+  double             deviation[s.blades], zero[s.blades], seconds, of_wave;
   mhb_mistuned_ring *ring;
   mhb_response      *curve, *wave;
-  s.blades       = N;
-  s.engine_order = N / 8 > 0 ? N / 8 : 1;
   memset(zero, 0, sizeof zero);
-  SHB_TRY(mhb_deviations_random(0.01, 7, 0, N, deviation));
+  SHB_TRY(mhb_deviations_random(0.01, 7, 0, s.blades, deviation));
   SHB_TRY(main_curve(blade, &s, s.harmonics, &of_wave, &wave));
   SHB_TRY(mhb_mistuned_ring_create(blade, &s, deviation, 1, &ring));
   s.ring = ring;
   SHB_TRY(main_curve(&ring->whole, &s, s.harmonics, &seconds, &curve));
   const mhb_branch *branch = &curve->branch[0];
-  const int         points = branch->n_points;
-  for (int p = 0; p < points; p++) residual = fmax(residual, branch->error_newton[p]);
+  const double      ms     = 1e3 * seconds / branch->n_points;
+  all->least               = all->points ? fmin(all->least, ms) : ms;
+  all->most                = fmax(all->most, ms);
+  all->points += branch->n_points;
+  all->ms += 1e3 * seconds;
+  all->of_wave += wave->branch[0].n_points;
+  all->ms_of_wave += 1e3 * of_wave;
+  all->unfinished += branch->reason && strcmp(branch->reason, "end of range") != 0;
+  for (int p = 0; p < branch->n_points; p++)
+    all->residual = fmax(all->residual, branch->error_newton[p]);
   mhb_mistuned_ring_destroy(ring);
   s.ring = NULL;
   SHB_TRY(mhb_mistuned_ring_create(blade, &s, zero, 1, &ring));
-  s.ring            = ring;
-  const double away = distance_from_wave(wave, &s, ring), memory = memory_of(ring, &s);
-  const double ms = 1e3 * seconds / points;
-  if (*first <= 0) *first = ms / N;
-  printf("%5d %7d %9.2f %12.3f %9.2f %9.0f %12.3f %10.1e %10.1e %11.1e %7.1f  %s\n", N, points, ms,
-         ms / N, ms / N / *first, 6e4 / ms, 1e3 * of_wave / wave->branch[0].n_points, residual,
-         away, wave_by_rounding(blade, wave, &s), memory, branch->reason ? branch->reason : "");
-  *good = *good && away < GOAL;
+  s.ring        = ring;
+  all->away     = fmax(all->away, distance_from_wave(wave, &s, ring));
+  all->rounding = fmax(all->rounding, wave_by_rounding(blade, wave, &s));
+  all->memory   = memory_of(ring, &s);
   mhb_mistuned_ring_destroy(ring);
   mhb_response_destroy(curve);
   mhb_response_destroy(wave);
+  return SHB_OK;
+}
+
+static void print_row(int N, const sums *a, double *first) {
+  const double  ms = a->ms / a->points;
+  const counter f = of_curves.factor, d = of_curves.doubled, t = of_curves.tangent;
+  if (*first <= 0) *first = ms / N;
+  printf("%5d %7d %9.2f %5.1f-%-5.1f %7.3f %8.2f %8.0f %7.2f %6.2f %7.2f %6.2f %7.2f %6.2f %8.3f",
+         N, a->points, ms, a->least, a->most, ms / N, ms / N / *first, 6e4 / ms,
+         (double)f.calls / a->points, f.ms / f.calls, (double)d.calls / a->points,
+         d.calls ? d.ms / d.calls : 0, (double)t.calls / a->points, t.ms / t.calls,
+         a->ms_of_wave / a->of_wave);
+  printf(" %9.1e %9.1e %11.1e %6.1f  %d\n", a->residual, a->away, a->rounding, a->memory,
+         a->unfinished);
+}
+
+static shb_status row(const modal_model *blade, const mhb_settings *asked, int N, bool quick,
+                      double *first, bool *good) {
+  mhb_settings s   = *asked;
+  sums         all = {0};
+  s.blades         = N;
+  s.engine_order   = N / 8 > 0 ? N / 8 : 1;
+  memset(&of_curves, 0, sizeof of_curves);
+  for (int i = 0; i < PRELOADS; i++) {
+    s.n0[0] = asked->n0[0] * PRELOAD[i];
+    if (quick && PRELOAD[i] != 1) continue;
+    SHB_TRY(add_curves(blade, s, &all));
+  }
+  print_row(N, &all, first);
+  *good = *good && all.away < GOAL;
   return SHB_OK;
 }
 
@@ -222,10 +317,10 @@ int main(int argc, char **argv) {
   if (!file) random_blade(&blade);
   setvbuf(stdout, NULL, _IOLBF, 0);
   puts(
-      "    N  points  ms/point  ms/point/N  to first  a minute  wave ms/point  residual  from "
-      "wave  by rounding     MiB");
+      "    N  points  ms/point  least-most /blade to first a minute factors     ms doubled     ms "
+      "tangent     ms  wave ms  residual from wave by rounding    MiB  unfinished");
   for (int i = 0; i < n; i++)
-    if (row(&blade, &s, blades[i], &first, &good) != SHB_OK) {
+    if (row(&blade, &s, blades[i], quick, &first, &good) != SHB_OK) {
       fprintf(stderr, "%s\n", shb_message());
       good = false;
     }

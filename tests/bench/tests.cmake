@@ -22,6 +22,9 @@ shb_bench(study z_notch_settings.c)
 target_link_libraries(bench_study PRIVATE shb_cases_study tests_models OpenMP::OpenMP_C)
 shb_bench(mistuning z_notch_settings.c)
 target_link_libraries(bench_mistuning PRIVATE tests_models)
+# it counts their calls
+target_link_options(bench_mistuning PRIVATE LINKER:--wrap=mhb_ring_system_factor
+  LINKER:--wrap=mhb_arclength_set_tangent)
 shb_bench(tracking z_notch_settings.c)
 target_link_libraries(bench_tracking PRIVATE tests_models OpenMP::OpenMP_C)
 shb_bench(optimisers)
