@@ -4,7 +4,7 @@
  *   bench_mistuning           a blade of 20 random modes
  *   bench_mistuning --quick   the same, small rings, one preload
  *
- * Every row is five curves of a ring of N blades with 7 harmonics, at preloads of 0.5 to 1.5.
+ * Every row is five curves of a ring of N blades with 7 harmonics, at preloads of 0.8 to 1.2.
  * Deviations are 1 %. Engine order N/8 keeps the inter-blade phase. The columns:
  *   points, ms of processor time a point, those of the cheapest and the dearest curve
  *   the same a blade, and over that of the first row; points a minute and core
@@ -224,7 +224,7 @@ int __wrap_mhb_arclength_set_tangent(mhb_arclength *c, const double *along, mhb_
 
 /* Preloads of a row, relative to the settings': the steps at the onset of slip change by rounding,
  * so one curve tells a time to a third only. */
-static const double PRELOAD[] = {0.5, 0.75, 1, 1.25, 1.5};
+static const double PRELOAD[] = {0.8, 0.9, 1, 1.1, 1.2};
 enum { PRELOADS = sizeof PRELOAD / sizeof *PRELOAD };
 
 /* Sums over the preloads of a row; the errors are the largest. */
