@@ -168,8 +168,6 @@ static void check_followed(case_reader *r) {
   if (tracked && r->file->points < 0)
     case_reader_issue(r, "mhb.track",
                       "does not go with contact.points: auto; give the number of points");
-  if (tracked && r->file->n_interfaces > 1)
-    case_reader_issue(r, "mhb.track", "does not go with several contact interfaces");
   if (given > 0 && !single && !tracked)
     case_reader_issue(r, "mhb.frequency",
                       "must be one number, because curves follow mhb.vary.%s instead",

@@ -123,18 +123,18 @@ static void seed_values(const mhb_tracking *tracking, double value[N_SWEEPS]) {
   }
 }
 
-/* The settings at a value of the parameter. */
-static mhb_settings settings_at(const mhb_settings *settings, mhb_parameter parameter,
-                                double value) {
+mhb_settings mhb_tracked_settings(const mhb_settings *settings, double value) {
   mhb_settings        s  = *settings;
   mhb_operating_point at = mhb_operating_point_of(&s);
-  mhb_parameter_set(&at, parameter, value);
+  mhb_parameter_set(&at, s.parameter, value);
   s.scale      = at.scale;
   s.mu         = at.mu;
   s.kv         = at.kv;
   s.n_preloads = 1;
   s.n0[0]      = at.n0;
   memcpy(s.ku, at.ku, sizeof s.ku);
+  s.parameter = MHB_IN_FREQUENCY;
+  s.track     = MHB_TRACK_NOTHING;
   for (int i = 0; i < s.n_interfaces; i++) {
     const mhb_operating_point own = mhb_interface_operating_point(&at, settings, i);
     mhb_interface            *to  = &s.interface[i];
@@ -152,9 +152,7 @@ static mhb_settings settings_at(const mhb_settings *settings, mhb_parameter para
  *   outline  in  its curves in outline */
 static shb_status sweep_at(const tracking_run *run, double value, bool outline,
                            mhb_response **response) {
-  mhb_settings s = settings_at(run->asked, run->tracking.parameter, value);
-  s.parameter    = MHB_IN_FREQUENCY;
-  s.track        = MHB_TRACK_NOTHING;
+  mhb_settings s = mhb_tracked_settings(run->asked, value);
   if (!mhb_track_by_multiplier(mhb_track_word(run->asked->track)))
     s.stability = MHB_STABILITY_NEVER;
   s.lasting       = MHB_LASTING_NEVER;

@@ -16,6 +16,9 @@
  * probe; the message lists those it has. */
 shb_status mhb_output_named(const modal_model *model, const char *name, int *output);
 
+/* Settings of a frequency sweep at a value of the parameter that a tracked run follows. */
+mhb_settings mhb_tracked_settings(const mhb_settings *settings, double value);
+
 /* Follow, and publish to path unless it is NULL. Branches are of kind tracked, in the order in
  * which they were found.
  *   response  out  the caller destroys it (NULL on error)

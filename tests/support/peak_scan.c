@@ -3,7 +3,6 @@
 #include <complex.h>
 #include <math.h>
 
-#include "mhb/problem/parameter.h"
 #include "mhb/tracking/tracked_response.h"
 #include "tests/support/check.h"
 #include "tests/support/main_curve.h"
@@ -30,17 +29,8 @@ mhb_response *peak_scan_follow(const peak_scan *scan) {
 }
 
 mhb_response *peak_scan_sweep(const peak_scan *scan, double value) {
-  mhb_response       *r;
-  mhb_settings        s  = *scan->settings;
-  mhb_operating_point at = mhb_operating_point_of(&s);
-  mhb_parameter_set(&at, s.parameter, value);
-  s.n0[0]     = at.n0;
-  s.mu        = at.mu;
-  s.ku[0]     = at.ku[0];
-  s.ku[1]     = at.ku[1];
-  s.ku[2]     = at.ku[2];
-  s.parameter = MHB_IN_FREQUENCY;
-  s.track     = MHB_TRACK_NOTHING;
+  mhb_response      *r;
+  const mhb_settings s = mhb_tracked_settings(scan->settings, value);
   assert_ok(main_curve(scan->model, &s, s.harmonics, NULL, &r));
   r->output_harmonic = s.output_harmonic;
   r->peak_to_peak    = s.output_quantity == MHB_OUTPUT_PEAK_TO_PEAK;
