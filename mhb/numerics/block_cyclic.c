@@ -190,8 +190,8 @@ MHB_INLINE void upper_tile(int rows, int at, int n, int width, const double *A,
   store_tile(rows, width, X + at * width, sum);
 }
 
-/* `columns` columns of A[n][width] from `first` on, in whole tiles, <- the solution with the factors
- * in its first n columns. */
+/* `columns` columns of A[n][width] from `first` on, in whole tiles, <- the solution with the
+ * factors in its first n columns. */
 MHB_HOT static void substitute_rows(int n, int width, int first, int columns, double *A) {
   const int whole = n / TILE_ROWS * TILE_ROWS;
   double    inverse[n];

@@ -3,21 +3,7 @@
 #ifndef MODAL_CONDENSE_CONDENSE_H
 #define MODAL_CONDENSE_CONDENSE_H
 
-#include "fem/element/load.h"
-#include "modal/condense/dofs.h"
-#include "modal/condense/load_patterns.h"
-#include "modal/eigen/eigen.h"
-#include "modal/model/damping.h"
-#include "modal/model/model.h"
-
-/* Dofs to condense to. contact: (side * n_pairs + pair) * 3 + axis; probe: 3 for each probe. */
-typedef struct {
-  int           n_pairs;
-  bool          has_left;
-  modal_dofs    contact, probe;
-  modal_load    load;
-  modal_damping damping;
-} modal_condensation;
+#include "modal/condense/residual_terms.h"
 
 /* Fill the model, zeroed first, except probe names, interfaces, normals and areas.
  *

@@ -7,9 +7,7 @@
 
 #include "fem/solver/petsc_error.h"
 #include "mesh/base/constants.h"
-#include "modal/condense/residual_chain.h"
 #include "modal/condense/residual_modes.h"
-#include "modal/condense/residual_terms.h"
 
 /* MOST_NUMBERS: numbers in the vectors of all columns, at most. */
 enum { BLOCKS = MODAL_RESIDUAL_BLOCKS, MOST_NUMBERS = 1 << 27 };

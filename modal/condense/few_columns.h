@@ -3,7 +3,7 @@
 #ifndef MODAL_CONDENSE_FEW_COLUMNS_H
 #define MODAL_CONDENSE_FEW_COLUMNS_H
 
-#include "modal/condense/condense.h"
+#include "modal/condense/residual_terms.h"
 
 enum { MODAL_FEW_COLUMNS = 96 }; /* contact dofs and load patterns, at most */
 

@@ -7,8 +7,6 @@
 #include <string.h>
 
 #include "fem/solver/petsc_error.h"
-#include "modal/condense/residual_chain.h"
-#include "modal/condense/residual_terms.h"
 
 /* BATCH: columns of a solution. BATCH_NUMBERS: numbers in a matrix of them, more save no time but
  * need memory. CHOSEN: dofs of S, at most. HELD_OUT: those at which the error is measured. */

@@ -18,7 +18,7 @@
 #ifndef MODAL_CONDENSE_MANY_COLUMNS_H
 #define MODAL_CONDENSE_MANY_COLUMNS_H
 
-#include "modal/condense/condense.h"
+#include "modal/condense/residual_terms.h"
 
 /* Fill the residual terms and tails of the model. Collective.
  *   left_out  out  of R3, as above

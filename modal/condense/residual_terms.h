@@ -1,9 +1,21 @@
-/* Residual terms of a model from sampled vectors: R from V_0, R2 from V_1, R3 from V_2. */
+/* Dofs to which the body is condensed, and the residual terms of a model there. They come from
+ * sampled vectors: R from V_0, R2 from V_1, R3 from V_2. */
 #ifndef MODAL_CONDENSE_RESIDUAL_TERMS_H
 #define MODAL_CONDENSE_RESIDUAL_TERMS_H
 
-#include "modal/condense/condense.h"
+#include "modal/condense/load_patterns.h"
 #include "modal/condense/residual_chain.h"
+#include "modal/model/damping.h"
+#include "modal/model/model.h"
+
+/* Dofs to condense to. contact: (side * n_pairs + pair) * 3 + axis; probe: 3 for each probe. */
+typedef struct {
+  int           n_pairs;
+  bool          has_left;
+  modal_dofs    contact, probe;
+  modal_load    load;
+  modal_damping damping;
+} modal_condensation;
 
 /* Store term (0, 1, 2: R, R2, R3) of contact dofs first .. first + count - 1, which are the first
  * columns of the chain. Its samples begin with all contact dofs. */

@@ -222,8 +222,8 @@ int __wrap_mhb_arclength_set_tangent(mhb_arclength *c, const double *along, mhb_
 
 /* ---- rows ---- */
 
-/* Preloads of a row, relative to the settings': the steps at the onset of slip change by rounding,
- * so one curve tells a time to a third only. */
+/* Preloads of a row, relative to that of the settings. Steps at the onset of slip change by
+ * rounding, so one curve tells a time to a third only. */
 static const double PRELOAD[] = {0.8, 0.9, 1, 1.1, 1.2};
 enum { PRELOADS = sizeof PRELOAD / sizeof *PRELOAD };
 
