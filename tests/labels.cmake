@@ -38,7 +38,8 @@ set(INTEGRATION_TESTS cases.study.study cases.study.samples cases.study.eval
   cases.scenes.paper_fig8_direct cases.scenes.lost_curves cases.scenes.snubber_blade
   hard.three_degree hard.jumps hard.ends hard.friction hard.resonance hard.balance hard.pairs
   hard.peaks hard.isolas hard.parameters bench.stability bench.modal bench.contact
-  bench.integrate bench.lasting bench.study bench.study_rates mhb.floquet.friction_limit
+  bench.integrate bench.lasting bench.residuals bench.study bench.study_rates
+  mhb.floquet.friction_limit
   docs.first_case
   mhb.ring.ring_step mhb.ring.neimark_sacker cases.install.install
   mhb.tracking.corner mhb.tracking.tracked_curve
@@ -51,7 +52,7 @@ if(SHROUDHB_CHROMIUM AND SHROUDHB_PYTHON)
   list(APPEND INTEGRATION_TESTS postproc.study.page_script postproc.report.page_script)
 endif()
 set(SLOW_TESTS
-  cases.scenes.mistuned_ring cases.scenes.bladed_disc
+  cases.scenes.mistuned_ring cases.scenes.bladed_disc cases.scenes.disc_vary
   mesh.blade.blade mhb.floquet.monodromy mhb.branches.verdicts cases.converge.converge hard.gaps
   hard.oblique
   bench.elements cases.scenes.optimum_preload cases.scenes.tracked_peaks
@@ -59,7 +60,7 @@ set(SLOW_TESTS
   fuzz.libfuzzer mhb.tracking.tracked_response
   robust.fail_nth robust.kills robust.damaged)
 
-set(NIGHTLY_TESTS robust.fail_nth_all robust.kills_many robust.damaged_many)
+set(NIGHTLY_TESTS robust.fail_nth_all robust.kills_many robust.damaged_many robust.sanitizers)
 
 if(TARGET repeated_sweep)
   list(APPEND INTEGRATION_TESTS robust.repeated)

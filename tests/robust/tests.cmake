@@ -40,6 +40,10 @@ if(SHROUDHB_PYTHON)
     set_tests_properties(robust.repeated robust.repeated_many PROPERTIES SKIP_RETURN_CODE 77)
   endif()
   set_tests_properties(robust.damaged robust.damaged_many PROPERTIES SKIP_RETURN_CODE 77)
+  if(NOT SHROUDHB_SANITIZE AND NOT SHROUDHB_FUZZ AND NOT SHROUDHB_TSAN)
+    add_test(NAME robust.sanitizers CONFIGURATIONS nightly COMMAND sh ${ROBUST}/sanitizers.sh
+      ${PROJECT_SOURCE_DIR} ${PROJECT_BINARY_DIR}/sanitizers)
+  endif()
   if(SHROUDHB_TSAN) # the target thread_test builds what the test needs
     add_executable(race robust/race.c)
     target_link_libraries(race PRIVATE OpenMP::OpenMP_C)
