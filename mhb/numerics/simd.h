@@ -9,6 +9,7 @@
 #ifndef MHB_NUMERICS_SIMD_H
 #define MHB_NUMERICS_SIMD_H
 
+#include <limits.h>
 #include <math.h>
 #include <string.h>
 
@@ -101,7 +102,7 @@ MHB_INLINE mhb_lanes lanes_max(mhb_lanes a, mhb_lanes b) {
 }
 
 MHB_INLINE mhb_lanes lanes_abs(mhb_lanes x) {
-  return (mhb_lanes)((mhb_lanes_bits)x & ~(1LL << 63));
+  return (mhb_lanes)((mhb_lanes_bits)x & LLONG_MAX); /* all but the sign */
 }
 
 /* Largest and smallest lane; NaN lanes may be ignored. */

@@ -9,5 +9,10 @@ cmake -S "$source" -B "$build" -G Ninja -Wno-dev -DCMAKE_BUILD_TYPE=Debug -DSHRO
   >"$build.log" 2>&1 && cmake --build "$build" >>"$build.log" 2>&1 ||
   { tail -30 "$build.log"; exit 1; }
 cd "$build"
-LSAN_OPTIONS="suppressions=$source/tests/support/library_leaks.txt:print_suppressions=0" \
-  ctest -j "$(nproc)" --output-on-failure "$@"
+export LSAN_OPTIONS="suppressions=$source/tests/support/library_leaks.txt:print_suppressions=0"
+code=0
+ctest -j "$(nproc)" --output-on-failure "$@" -E '^(fem|modal)\.' || code=$?
+# MPI leaks from plugins that it unloads, whose names are lost then
+export ASAN_OPTIONS=detect_leaks=0
+ctest -j "$(nproc)" --output-on-failure "$@" -R '^(fem|modal)\.' || code=$?
+exit $code
