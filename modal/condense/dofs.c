@@ -49,14 +49,17 @@ shb_status modal_dofs_add_forces(modal_dofs *dofs, int n_nodes, const double *fo
   return SHB_OK;
 }
 
+shb_status modal_dofs_append_one(modal_dofs *dofs, const modal_dofs *more, int c) {
+  const int first = dofs->n_entries, from = more->start[c], n = more->start[c + 1] - from;
+  SHB_TRY(append_dof(dofs, n));
+  memcpy(dofs->node + first, more->node + from, (size_t)n * sizeof *dofs->node);
+  memcpy(dofs->weight + 3 * (size_t)first, more->weight + 3 * (size_t)from,
+         3 * (size_t)n * sizeof *dofs->weight);
+  return SHB_OK;
+}
+
 shb_status modal_dofs_append(modal_dofs *dofs, const modal_dofs *more) {
-  for (int c = 0; c < more->n; c++) {
-    const int first = dofs->n_entries, from = more->start[c], n = more->start[c + 1] - from;
-    SHB_TRY(append_dof(dofs, n));
-    memcpy(dofs->node + first, more->node + from, (size_t)n * sizeof *dofs->node);
-    memcpy(dofs->weight + 3 * (size_t)first, more->weight + 3 * (size_t)from,
-           3 * (size_t)n * sizeof *dofs->weight);
-  }
+  for (int c = 0; c < more->n; c++) SHB_TRY(modal_dofs_append_one(dofs, more, c));
   return SHB_OK;
 }
 

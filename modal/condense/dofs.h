@@ -22,7 +22,8 @@ shb_status modal_dofs_add(modal_dofs *dofs, int n_entries, const int *node, cons
 /* Append the dof that is the work of nodal forces [n_nodes][3]; zero entries are omitted. */
 shb_status modal_dofs_add_forces(modal_dofs *dofs, int n_nodes, const double *force);
 
-/* Append all dofs of another. */
+/* Append dof c of another; all dofs of another. */
+shb_status modal_dofs_append_one(modal_dofs *dofs, const modal_dofs *more, int c);
 shb_status modal_dofs_append(modal_dofs *dofs, const modal_dofs *more);
 
 /* B[:, c] = b_(first + c) for c < count; the other columns of the dense matrix B are zeroed. */

@@ -46,7 +46,6 @@ static int batch_size(const workspace *w) {
 
 static shb_status allocate(workspace *w) {
   const size_t n = (size_t)w->n, patterns = (size_t)w->to->load.dofs.n;
-  w->n      = w->to->contact.n;
   w->node   = calloc((size_t)(w->system->last - w->system->first) + 1, sizeof *w->node);
   w->dof    = malloc((n + 1) * sizeof *w->dof);
   w->L      = malloc(CHOSEN * CHOSEN * sizeof *w->L);
@@ -103,16 +102,8 @@ static shb_status choose(workspace *w) {
   free(R2);
   SHB_CHECK(info >= 0, SHB_ERR_IO, "LAPACK's pivoted Cholesky factor failed (%d)", info);
   w->chosen = rank < CHOSEN ? rank : CHOSEN;
-  for (int i = 0; i < w->chosen; i++) {
-    const modal_dofs *all = &w->to->contact;
-    const int         c = --w->dof[i], first = all->start[c];
-    const modal_dofs  one = {.n         = 1,
-                             .n_entries = all->start[c + 1] - first,
-                             .start     = (int[]){0, all->start[c + 1] - first},
-                             .node      = all->node + first,
-                             .weight    = all->weight + 3 * (size_t)first};
-    SHB_TRY(modal_dofs_append(&w->subset, &one));
-  }
+  for (int i = 0; i < w->chosen; i++)
+    SHB_TRY(modal_dofs_append_one(&w->subset, &w->to->contact, --w->dof[i]));
   return SHB_OK;
 }
 
@@ -189,8 +180,10 @@ static shb_status compress_third_term(workspace *w, double *left_out) {
   FEM_PETSC(modal_residual_chain_compute(&w->chain, &w->subset, 0, columns, BLOCKS));
   SHB_TRY(factorise(w));
   *left_out = measure(w, columns);
-  combine(w, columns);
-  combine_tails(w, columns);
+  if (*left_out <= MOST_LEFT_OUT) {
+    combine(w, columns);
+    combine_tails(w, columns);
+  }
   FEM_PETSC(modal_residual_chain_destroy(&w->chain));
   return SHB_OK;
 }
