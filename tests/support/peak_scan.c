@@ -3,6 +3,7 @@
 #include <complex.h>
 #include <math.h>
 
+#include "mhb/problem/parameter.h"
 #include "mhb/tracking/tracked_response.h"
 #include "tests/support/check.h"
 #include "tests/support/main_curve.h"
@@ -214,4 +215,18 @@ peak_agreement peak_scan_compare(const peak_scan *scan, const mhb_response *trac
   print_message("%d points, amplitude to %.1e, frequency to %.1e; %d of the first too\n", out.n,
                 out.amplitude, out.frequency, out.n_first);
   return out;
+}
+
+void peak_scan_check_optimum(const peak_scan *scan, const mhb_response *tracked) {
+  const mhb_optimum *o = &tracked->optimum;
+  print_message("%s: %.9g (kind %d, error %.1e), amplitude %.9g\n",
+                mhb_parameter_name(scan->settings->parameter), o->value, (int)o->kind, o->error,
+                o->amplitude);
+  double by_scan = peak_scan_lowest(scan, 8, o->kind == MHB_OPTIMUM_EXCHANGE ? 1e-6 : 1e-3);
+  double least   = peak_scan_highest(scan, o->value);
+  print_message("scan of sweeps: %.9g, relative %.1e; amplitude %.1e\n", by_scan,
+                o->value / by_scan - 1, o->amplitude / least - 1);
+  assert_true(o->verified);
+  assert_small(o->value / by_scan - 1, 1e-5);
+  assert_small(o->amplitude / least - 1, 1e-7);
 }

@@ -29,6 +29,10 @@ double peak_scan_highest(const peak_scan *scan, double value);
  * of the distance. Fails the test where the lowest of the n + 1 values is an end of the range. */
 double peak_scan_lowest(const peak_scan *scan, int n, double distance);
 
+/* Check that the optimum of a tracked response is verified. Its place must be that of a scan with
+ * nine values to 1e-5, its amplitude that of the sweep there to 1e-7. */
+void peak_scan_check_optimum(const peak_scan *scan, const mhb_response *tracked);
+
 /* Amplitude of the output at a maximum of a sweep, a point no lower than those beside it. Of
  * several, the nearest to a frequency. The sweep is of its neighbourhood; where that begins on
  * another motion, sweeps of narrower and wider ones follow. NAN: there is none.

@@ -15,6 +15,7 @@
 #include "mhb/mistuning/deviations.h"
 #include "mhb/mistuning/mistuned_ring.h"
 #include "tests/support/check.h"
+#include "tests/support/little_memory.h"
 #include "tests/support/random_disc.h"
 #include "tests/support/random_model.h"
 
@@ -179,30 +180,16 @@ static void more_takes_more(void **state) {
   }
 }
 
-/* The number behind a key of the message. */
-static int number_after(const char *key) {
-  const char *found = strstr(shb_message(), key);
-  assert_non_null(found);
-  return (int)strtol(found + strlen(key), NULL, 10);
-}
-
 /* In a process with little address space: what does not fit is refused, with the largest that
  * does. */
 static void too_large_is_refused(void) {
   static const scene ring = {"", 4, 20, 50, true, false, false, false};
   sweep              s;
-  struct rlimit      limit;
   int                threads;
   make(&ring, &s);
   assert_int_equal(mhb_sweep_threads(s.whole, &s.settings, &threads), SHB_OK);
   assert_true(threads >= 1);
-  getrlimit(RLIMIT_AS, &limit);
-  double left; /* the system of the whole ring takes some GB */
-  for (limit.rlim_cur = 300 << 20;; limit.rlim_cur += 16 << 20) {
-    assert_int_equal(setrlimit(RLIMIT_AS, &limit), 0);
-    left = shb_memory_available();
-    if (left >= 1.5e9) break;
-  }
+  double left = little_memory_limit(1.5e9); /* the system of the whole ring takes some GB */
   assert_int_equal(mhb_sweep_threads(s.whole, &s.settings, &threads), SHB_ERR_INPUT);
   puts(shb_message());
   assert_null(strchr(shb_message(), '\n'));
@@ -211,7 +198,7 @@ static void too_large_is_refused(void) {
     static const char *const key[] = {"mhb.harmonics: ", "contact.points: ", "rotor.blades: "};
     mhb_sweep_size           size  = mhb_sweep_size_of(s.whole, &s.settings);
     int *member                    = i == 0 ? &size.harmonics : i == 1 ? &size.pairs : &size.blades;
-    *member                        = number_after(key[i]);
+    *member                        = little_memory_number(key[i]);
     assert_true(mhb_sweep_bytes(&size) <= left + 2e6);
     (*member)++;
     assert_true(mhb_sweep_bytes(&size) > left - 2e6);
@@ -228,7 +215,7 @@ static void too_large_is_refused(void) {
   s.settings.harmonics = size.harmonics;
   assert_int_equal(mhb_sweep_threads(s.whole, &s.settings, &threads), SHB_ERR_INPUT);
   puts(shb_message());
-  assert_int_equal(number_after("processes: "), 3);
+  assert_int_equal(little_memory_number("processes: "), 3);
   s.settings.sharing = 3;
   assert_int_equal(mhb_sweep_threads(s.whole, &s.settings, &threads), SHB_OK);
   assert_int_equal(threads, 1);
@@ -237,15 +224,7 @@ static void too_large_is_refused(void) {
 
 static void what_does_not_fit_is_refused(void **state) {
   (void)state;
-  int         status;
-  const pid_t child = fork();
-  if (child == 0) {
-    too_large_is_refused();
-    fflush(stdout);
-    _exit(0);
-  }
-  assert_int_equal(waitpid(child, &status, 0), child);
-  assert_int_equal(status, 0);
+  little_memory_run(too_large_is_refused);
 }
 
 int main(void) {

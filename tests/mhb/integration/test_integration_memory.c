@@ -19,6 +19,7 @@
 #include "mesh/base/memory.h"
 #include "mhb/integration/integration_sweep.h"
 #include "tests/support/check.h"
+#include "tests/support/little_memory.h"
 #include "tests/support/random_model.h"
 
 enum { LEAST_MB = 8 };
@@ -117,13 +118,6 @@ static void more_takes_more(void **state) {
   }
 }
 
-/* The number behind a key of the message. */
-static int number_after(const char *key) {
-  const char *found = strstr(shb_message(), key);
-  assert_non_null(found);
-  return (int)strtol(found + strlen(key), NULL, 10);
-}
-
 /* In a process with little address space: what does not fit is refused, with the largest that does;
  * no more threads run than fit. */
 static void too_large_is_refused(void) {
@@ -131,17 +125,10 @@ static void too_large_is_refused(void) {
       "contact.points: ", "integrate.harmonics: ", "rotor.blades: ", " or points: "};
   const scene          ring = {"", 60, 50, 60, 9000, true};
   modal_model          model;
-  struct rlimit        limit;
   int                  threads;
   const mhb_settings   s    = make(&ring, &model);
   mhb_integration_size size = mhb_integration_size_of(&model, &s, 60, 9000);
-  getrlimit(RLIMIT_AS, &limit);
-  double left;
-  for (limit.rlim_cur = 300 << 20;; limit.rlim_cur += 16 << 20) {
-    assert_int_equal(setrlimit(RLIMIT_AS, &limit), 0);
-    left = shb_memory_available();
-    if (left >= 0.5e9) break;
-  }
+  double               left = little_memory_limit(0.5e9);
   assert_int_equal(mhb_integration_threads(&size, &threads), SHB_ERR_INPUT);
   puts(shb_message());
   assert_null(strchr(shb_message(), '\n'));
@@ -156,7 +143,7 @@ static void too_large_is_refused(void) {
       assert_true(mhb_integration_bytes(&less) > left - 2e6);
       continue;
     }
-    *members[i] = number_after(key[i]);
+    *members[i] = little_memory_number(key[i]);
     assert_true(mhb_integration_bytes(&less) <= left + 2e6);
     ++*members[i];
     assert_true(mhb_integration_bytes(&less) > left - 2e6);
@@ -172,15 +159,7 @@ static void too_large_is_refused(void) {
 
 static void what_does_not_fit_is_refused(void **state) {
   (void)state;
-  int         status;
-  const pid_t child = fork();
-  if (child == 0) {
-    too_large_is_refused();
-    fflush(stdout);
-    _exit(0);
-  }
-  assert_int_equal(waitpid(child, &status, 0), child);
-  assert_int_equal(status, 0);
+  little_memory_run(too_large_is_refused);
 }
 
 int main(void) {

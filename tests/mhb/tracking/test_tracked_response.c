@@ -41,18 +41,9 @@ static mhb_settings settings_of(mhb_track track, mhb_parameter parameter, double
 }
 
 static void optimum_of_settings(const mhb_settings *s) {
-  const peak_scan    scan = {&model, s};
-  mhb_response      *r    = peak_scan_follow(&scan);
-  const mhb_optimum *o    = &r->optimum;
-  print_message("%s: %.9f (kind %d, error %.1e), amplitude %.9f\n",
-                mhb_parameter_name(s->parameter), o->value, (int)o->kind, o->error, o->amplitude);
-  double by_scan = peak_scan_lowest(&scan, 8, o->kind == MHB_OPTIMUM_EXCHANGE ? 1e-6 : 1e-3);
-  double least   = peak_scan_highest(&scan, o->value);
-  print_message("scan of sweeps: %.9f, relative %.1e; amplitude %.1e\n", by_scan,
-                o->value / by_scan - 1, o->amplitude / least - 1);
-  assert_true(o->verified);
-  assert_small(o->value / by_scan - 1, 1e-5);
-  assert_small(o->amplitude / least - 1, 1e-7);
+  const peak_scan scan = {&model, s};
+  mhb_response   *r    = peak_scan_follow(&scan);
+  peak_scan_check_optimum(&scan, r);
   mhb_response_destroy(r);
 }
 
