@@ -209,16 +209,15 @@ static void check_speeds(case_reader *r) {
       }
 }
 
-/* Coriolis terms belong to one speed. */
+/* Coriolis terms need a rotor that turns. */
 static void check_coriolis(case_reader *r, int stages) {
   static const char path[] = "rotor.coriolis";
   const case_file  *file   = r->file;
   if (file->coriolis == FEM_TURNS_UNSAID || !case_reader_good(r, path)) return;
-  if (file->n_speeds > 1)
-    case_reader_issue(r, path, "takes one rotor.speed, not %d; give a case for each",
-                      file->n_speeds);
-  else if (case_reader_good(r, "rotor.speed") && file->speed[0] == 0)
-    case_reader_issue(r, path, "needs rotor.speed; at rest there are no Coriolis forces");
+  bool turns = file->n_speeds > 0;
+  for (int i = 0; i < file->n_speeds; i++) turns = turns && file->speed[i] > 0;
+  if (case_reader_good(r, "rotor.speed") && !turns)
+    case_reader_issue(r, path, "needs rotor.speed above 0; at rest there are no Coriolis forces");
   if (stages & CASE_MHB && file->mistuning.kind != CASE_TUNED)
     case_reader_issue(r, path, "does not go with rotor.mistuning; leave one of them out");
 }

@@ -51,7 +51,8 @@ static mhb_resonance free_one(const mhb_receptance *r, int k, int i) {
   const modal_model *model = mhb_receptance_model(r, k);
   double             omega = SHB_TWO_PI * model->frequency[i], turns = (double)r->nu / k;
   if (r->part && r->part->gyroscopic) { /* no single mode: always significant */
-    const mhb_gyroscopic *g = &r->part->gyroscopic[k];
+    const mhb_gyroscopic *g = mhb_modal_part_gyroscopic(r->part, k);
+    if (!g) return (mhb_resonance){.k = k, .mode = -1}; /* nowhere */
     return (mhb_resonance){turns * g->omega[g->n + i], turns * g->decay[g->n + i], k, -1, false};
   }
   return (mhb_resonance){turns * omega, turns * omega * model->damping_ratio[i], k, i, false};

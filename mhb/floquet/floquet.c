@@ -82,7 +82,8 @@ static bool is_condensed(const mhb_modal_structure *s) {
 static shb_status fill(mhb_floquet *s, const mhb_receptance *receptance,
                        const mhb_settings *settings, int substeps) {
   SHB_TRY(mhb_modal_structure_create(receptance, settings, receptance->n_modes,
-                                     settings->ring != NULL, &s->structure));
+                                     settings->ring ? MHB_STRUCTURE_WHOLE : MHB_STRUCTURE_LEAN,
+                                     &s->structure));
   const mhb_modal_structure *all_modes = &s->structure;
   int                        m         = settings->harmonics,
       all = 2 * (all_modes->modes * all_modes->blades + all_modes->contacts);
@@ -90,7 +91,8 @@ static shb_status fill(mhb_floquet *s, const mhb_receptance *receptance,
                                          all_modes->mistuned, &s->schedule));
   SHB_TRY(mhb_contact_evaluator_create(m, m, settings->tolerance, &s->contact));
   if (modes_of(s) > 0) {
-    SHB_TRY(mhb_modal_structure_create(receptance, settings, modes_of(s), true, &s->reduced));
+    SHB_TRY(mhb_modal_structure_create(receptance, settings, modes_of(s), MHB_STRUCTURE_WHOLE,
+                                       &s->reduced));
     SHB_TRY(mhb_monodromy_create(&s->reduced, &s->schedule, s->contact, m, (substeps + 1) / 2,
                                  FINEST, is_condensed(&s->reduced), &s->monodromy));
     int cells  = mhb_floquet_cells(s),

@@ -78,6 +78,16 @@ static double *widen(const double *x, size_t rows, int m, int kept) {
   return out;
 }
 
+/* Coriolis terms do not couple the new modes. */
+static int widen_coriolis(const modal_model *model, int kept, modal_model *out) {
+  const size_t m = (size_t)model->n_modes, wide = m + (size_t)kept;
+  if (!model->coriolis) return 1;
+  out->coriolis = calloc(wide * wide, sizeof *out->coriolis);
+  for (size_t r = 0; out->coriolis && r < m; r++)
+    memcpy(out->coriolis + r * wide, model->coriolis + r * m, m * sizeof *out->coriolis);
+  return out->coriolis != NULL;
+}
+
 static int widen_all(const modal_model *model, int kept, modal_model *out) {
   int    m    = model->n_modes;
   size_t rows = 3 * (size_t)model->n_pairs, loads = (size_t)model->n_load + 1;
@@ -91,6 +101,7 @@ static int widen_all(const modal_model *model, int kept, modal_model *out) {
   out->eigen_residual       = NULL;
   out->residual_inertia     = NULL;
   out->residual_fourth      = NULL;
+  out->coriolis             = NULL;
   out->n_residual           = 0;
   size_t square             = rows * rows * (model->has_left ? 4 : 1);
   out->residual_flexibility = malloc(sizeof(double) * square);
@@ -101,7 +112,7 @@ static int widen_all(const modal_model *model, int kept, modal_model *out) {
     memcpy(out->modal_force + k * (size_t)(m + kept), model->modal_force + k * (size_t)m,
            sizeof *out->modal_force * (size_t)m);
   memcpy(out->residual_flexibility, model->residual_flexibility, sizeof(double) * square);
-  return 1;
+  return widen_coriolis(model, kept, out);
 }
 
 /* The new modes; their part is subtracted from the flexibility. */
@@ -176,5 +187,6 @@ void mhb_inertia_free(modal_model *out) {
   free(out->probe);
   free(out->modal_force);
   free(out->residual_flexibility);
+  free(out->coriolis);
   *out = (modal_model){0};
 }

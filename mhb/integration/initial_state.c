@@ -16,36 +16,53 @@ static void clear_state(mhb_integrator *g) {
   g->count = (mhb_integrator_count){0};
 }
 
-/* z, z' at phase 0 += sign times harmonic k of a mode, amplitude a. */
-static void add_harmonic(mhb_integrator *g, int k, int blade, int mode, double sign,
-                         double complex a) {
-  double complex rate = I * (k * SHB_TWO_PI / g->period);
-  g->z[blade * g->modes + mode] += sign * creal(a);
-  g->z[(g->blades + blade) * g->modes + mode] += sign * creal(rate * a);
+/* q, q' [2][modes] += harmonic k at phase 0 of all modes of a blade, amplitudes a. */
+static void add_harmonic(const mhb_integrator *g, int k, const double complex *a, double *q) {
+  const double complex rate = I * (k * SHB_TWO_PI / g->period);
+  for (int i = 0; i < g->modes; i++) {
+    q[i] += creal(a[i]);
+    q[g->modes + i] += creal(rate * a[i]);
+  }
+}
+
+/* The state of a blade += sign times that of q, q' [2][modes]. */
+static void add_state(mhb_integrator *g, int blade, double sign, double *q) {
+  const int m = g->modes;
+  if (g->ring.amplitudes) mhb_amplitudes_take(g->ring.amplitudes, q, q + m);
+  for (int i = 0; i < 2 * m; i++) g->z[(i / m * g->blades + blade) * m + i % m] += sign * q[i];
 }
 
 /* z, z' += sign times the steady response without contact forces. */
 static void add_free_response(mhb_integrator *g, double sign) {
   const mhb_receptance *r = g->receptance;
-  for (int k = 0; k <= g->n_load; k += r->nu)
-    for (int b = 0; b < g->blades; b++) {
-      double complex phase = cexp(-I * k * mhb_integrator_lag(g, b));
-      for (int i = 0; i < g->modes; i++)
-        add_harmonic(g, k, b, i, sign,
-                     r->lambda[k * g->modes + i] * r->F[k * g->modes + i] * phase);
+  const int             m = g->modes;
+  double complex        a[m];
+  double                q[2 * m];
+  for (int b = 0; b < g->blades; b++) {
+    memset(q, 0, sizeof q);
+    for (int k = 0; k <= g->n_load; k += r->nu) {
+      const double complex load = r->scale * cexp(-I * k * mhb_integrator_lag(g, b));
+      for (int i = 0; i < m; i++) a[i] = load * r->F[k * m + i];
+      mhb_receptance_respond(r, k, a);
+      add_harmonic(g, k, a, q);
     }
+    add_state(g, b, sign, q);
+  }
 }
 
 /* w[3 contacts] <- motion at z without contact forces. */
 static void set_unloaded_motion(const mhb_integrator *g, double *w) {
-  int n3 = 3 * g->pairs, m = g->modes;
+  int n3 = 3 * g->pairs, m = g->modes, lines = g->ring.lines;
   memset(w, 0, sizeof(double) * 3 * (size_t)g->contacts);
   for (int b = 0; b < g->blades; b++) {
     mhb_integrator_free(g, b, 0, w + b * n3);
     for (int side = 0; side < g->ring.s.sides; side++) {
-      const double *shape = g->ring.shape + side * n3 * m;
-      double       *at    = w + 3 * mhb_modal_structure_contact(&g->ring.s, b, side);
-      for (int k = 0; k < n3 * m; k++) at[k / m] += shape[k] * g->z[b * m + k % m];
+      const double *motion = g->ring.motion + side * n3 * lines;
+      double       *at     = w + 3 * mhb_modal_structure_contact(&g->ring.s, b, side);
+      for (int k = 0; k < n3 * lines; k++) {
+        const int i = k % lines;
+        at[k / lines] += motion[k] * g->z[(i / m * g->blades + b) * m + i % m];
+      }
     }
   }
 }
@@ -134,22 +151,34 @@ void mhb_integrator_rest(mhb_integrator *g) {
   settle_contacts(g);
 }
 
-void mhb_integrator_balance(mhb_integrator *g, int n_harmonics, const double complex *force) {
+/* a[modes] <- response of a wave to contact forces p at harmonic k. */
+static void respond_to(const mhb_integrator *g, int k, const double complex *p, double complex *a) {
   const mhb_receptance *r = g->receptance;
+  for (int i = 0; i < g->modes; i++) {
+    a[i] = 0;
+    for (int row = 0; row < r->n; row++)
+      a[i] -= conj(r->B[(k * r->n + row) * g->modes + i]) * p[row];
+  }
+  mhb_receptance_respond(r, k, a);
+}
+
+void mhb_integrator_balance(mhb_integrator *g, int n_harmonics, const double complex *force) {
+  const int      n = g->receptance->n, m = g->modes, last = n_harmonics;
+  double complex a[m], turned[m];
+  double         q[2 * m];
   clear_state(g);
-  for (int k = 0; k <= n_harmonics && k <= g->n_harmonics; k++) {
-    const double complex *p = force + (size_t)(k * r->n);
-    for (int b = 0; b < g->blades; b++) {
-      double complex phase = cexp(-I * k * mhb_integrator_lag(g, b));
-      for (int i = 0; i < g->modes; i++) {
-        double complex a = 0;
-        for (int row = 0; row < r->n; row++)
-          a -= conj(r->B[(k * r->n + row) * g->modes + i]) * p[row];
-        add_harmonic(g, k, b, i, 1, a * (r->lambda[k * g->modes + i] * phase));
-      }
-      for (int row = 0; row < r->n; row++)
+  for (int b = 0; b < g->blades; b++) {
+    memset(q, 0, sizeof q);
+    for (int k = 0; k <= last && k <= g->n_harmonics; k++) {
+      const double complex *p    = force + (size_t)(k * n),
+                           phase = cexp(-I * k * mhb_integrator_lag(g, b));
+      respond_to(g, k, p, a);
+      for (int i = 0; i < m; i++) turned[i] = phase * a[i];
+      add_harmonic(g, k, turned, q);
+      for (int row = 0; row < n; row++)
         g->point[b * g->pairs + row / 3].p[row % 3] += creal(p[row] * phase);
     }
+    add_state(g, b, 1, q);
   }
   settle_contacts(g);
 }

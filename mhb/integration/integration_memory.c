@@ -22,6 +22,7 @@ mhb_integration_size mhb_integration_size_of(const modal_model *model, const mhb
                                 .both      = !s->to_ground,
                                 .residual  = model->residual_flexibility != NULL,
                                 .inertia   = model->residual_inertia != NULL,
+                                .coriolis  = model->coriolis != NULL,
                                 .modes     = model->n_modes,
                                 .probes    = model->n_probes,
                                 .harmonics = harmonics,
@@ -67,6 +68,15 @@ static double of_structure(const mhb_integration_size *z, const structure *s) {
          real * (SHAPES * s->rows * s->modes + squares * s->rows * s->rows);
 }
 
+/* With Coriolis terms: matrix and factor of each harmonic, gyroscopic modes, motion and force of
+ * the amplitudes. The matrix of joined blades is small beside these. */
+static double of_coriolis(const mhb_integration_size *z, const structure *s) {
+  enum { SQUARES = 2, OF_MODES = 6, AMPLITUDES = 4 };
+  if (!z->coriolis) return 0;
+  return complex_number * s->modes * s->modes * (SQUARES * s->harmonics + OF_MODES) +
+         real * AMPLITUDES * s->rows * s->modes;
+}
+
 /* States of the last periods, and harmonics of the last one. */
 static double of_steady_state(const structure *s) {
   enum { HISTORY = 2 * MHB_STEADY_STATE_MULTIPLE + 1 };
@@ -78,7 +88,7 @@ static double of_steady_state(const structure *s) {
 
 static double of_a_thread(const mhb_integration_size *z) {
   const structure s = structure_of(z);
-  return of_steps(&s) + of_structure(z, &s) + of_steady_state(&s) + A_THREAD;
+  return of_steps(&s) + of_structure(z, &s) + of_coriolis(z, &s) + of_steady_state(&s) + A_THREAD;
 }
 
 /* Motion and force of a point, once where it is found and once as it is written; its start. */

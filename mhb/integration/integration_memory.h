@@ -17,6 +17,7 @@ typedef struct {
   bool both;      /* contacts on both sides of a blade */
   bool residual;  /* residual terms of the contacts, held for each harmonic */
   bool inertia;   /* residual inertia becomes modes */
+  bool coriolis;  /* the modes of a blade are coupled */
   int  modes;     /* of a blade */
   int  probes;    /* of a blade */
   int  harmonics; /* of a point, and of its start */

@@ -483,9 +483,6 @@ shb_status mhb_integration_sweep(const modal_model *model, const mhb_settings *s
   *out    = NULL;
   SHB_CHECK(!settings->nodal_diameters, SHB_ERR_INPUT,
             "time integration takes a disc as one structure (mhb/structure/dense_disc.h)");
-  SHB_CHECK(!model->coriolis, SHB_ERR_INPUT,
-            "time integration knows no Coriolis terms (/modes/coriolis of the modal file); give "
-            "rotor.coriolis: no");
   SHB_CHECK(!settings->run_up || request->start != MHB_START_FROM_STATE, SHB_ERR_INPUT,
             "integrate.start: state takes the state of one structure to the next, but in a run-up "
             "(mhb.run_up) each frequency has its own; set it to balance or rest");

@@ -45,6 +45,18 @@ MHB_HOT static void set_stage_modes(int m, const double *coefficient, const doub
   }
 }
 
+MHB_HOT static void set_stage_amplitudes(int m, const double *coefficient, const double *re,
+                                         const double *im, double *stage) {
+  for (int k = 0; k < S; k++) {
+    const double *a = coefficient + (MHB_STAGE_Z + k) * m, *b = coefficient + (MHB_STAGE_V + k) * m;
+    double       *x = stage + 2 * k * m, *y = x + m;
+    for (int i = 0; i < m; i++) {
+      x[i] = a[i] * re[i] - b[i] * im[i];
+      y[i] = a[i] * im[i] + b[i] * re[i];
+    }
+  }
+}
+
 MHB_HOT static void add_stage_motion(int n3, int m, const double *shape, const double *stage,
                                      double *y) {
   for (int r = 0; r < n3; r++)
@@ -58,12 +70,13 @@ MHB_HOT static void add_stage_motion(int n3, int m, const double *shape, const d
 
 /* y: motion of all contacts at the stages without contact forces of the step. */
 static void set_motion(mhb_integrator *g, const mhb_modal_step *modal) {
-  int m = g->modes, n3 = 3 * g->pairs;
+  int m = g->modes, lines = g->ring.lines, n3 = 3 * g->pairs;
   memset(g->y, 0, sizeof(double) * F * (size_t)g->contacts);
   for (int b = 0; b < g->blades; b++) {
-    set_stage_modes(m, modal->mode, g->z + b * m, g->z + (g->blades + b) * m, g->stage);
+    (g->ring.amplitudes ? set_stage_amplitudes : set_stage_modes)(
+        m, modal->mode, g->z + b * m, g->z + (g->blades + b) * m, g->stage);
     for (int side = 0; side < g->ring.s.sides; side++)
-      add_stage_motion(n3, m, g->ring.shape + side * n3 * m, g->stage,
+      add_stage_motion(n3, lines, g->ring.motion + side * n3 * lines, g->stage,
                        g->y + mhb_modal_structure_contact(&g->ring.s, b, side) * F);
     for (int k = 0; k < S; k++) {
       double u[n3];
@@ -147,15 +160,32 @@ MHB_HOT static void end_modes(int m, const double *a, const double *force, doubl
   }
 }
 
+MHB_HOT static void end_amplitudes(int m, const double *a, const double *force, double *re,
+                                   double *im) {
+  for (int i = 0; i < m; i++) {
+    const double er = a[MHB_END_Z * m + i], ei = a[MHB_END_V * m + i];
+    double       x = er * re[i] - ei * im[i], y = er * im[i] + ei * re[i];
+    for (int k = 0; k < S; k++) {
+      const double  fr = a[(MHB_END_F + k) * m + i], fi = a[(MHB_RATE_F + k) * m + i];
+      const double *f = force + 2 * k * m + i;
+      x += fr * f[0] - fi * f[m];
+      y += fr * f[m] + fi * f[0];
+    }
+    re[i] = x;
+    im[i] = y;
+  }
+}
+
 static void accept(mhb_integrator *g, const mhb_modal_step *modal) {
-  int m = g->modes, n3 = 3 * g->pairs;
+  int m = g->modes, lines = g->ring.lines, n3 = 3 * g->pairs;
   if (g->watch) g->watch(g->context, g, g->t, modal->h);
   for (int b = 0; b < g->blades; b++) {
-    memset(g->stage, 0, sizeof(double) * S * (size_t)m);
+    memset(g->stage, 0, sizeof(double) * S * (size_t)lines);
     for (int side = 0; side < g->ring.s.sides; side++)
-      add_modal_force(n3, m, g->ring.shape + side * n3 * m,
+      add_modal_force(n3, lines, g->ring.force + side * n3 * lines,
                       g->step + mhb_modal_structure_contact(&g->ring.s, b, side), g->stage);
-    end_modes(m, modal->mode, g->stage, g->z + b * m, g->z + (g->blades + b) * m);
+    (g->ring.amplitudes ? end_amplitudes : end_modes)(m, modal->mode, g->stage, g->z + b * m,
+                                                      g->z + (g->blades + b) * m);
   }
   int progress = modal->h > NO_PROGRESS * g->nominal.h;
   for (int j = 0; j < g->contacts; j++) {
@@ -326,7 +356,7 @@ static int allocate(mhb_integrator *g) {
   g->n_stalled  = shb_arena_take(&g->arena, contacts, sizeof(int));
   g->suppressed = shb_arena_take(&g->arena, contacts, sizeof(int));
   g->y          = shb_arena_take(&g->arena, contacts * F, sizeof(double));
-  g->stage      = shb_arena_take(&g->arena, S * (size_t)g->modes, sizeof(double));
+  g->stage      = shb_arena_take(&g->arena, S * (size_t)g->ring.lines, sizeof(double));
   return !g->arena.failed;
 }
 

@@ -35,18 +35,18 @@ struct mhb_integrator {
   mhb_ring_step   ring;
   int             n_harmonics, n_load; /* of outputs and starts; highest one of the free motion */
   int             blades, modes, pairs, contacts;
-  mhb_law        *law;             /* [pair] */
-  double          n0;              /* N, total */
-  double          omega, period;   /* rad/s of the excitation; s of the fundamental */
-  int             steps;           /* a period */
-  double          t;               /* s, in [0, period] */
-  double         *z;               /* [2 (z, z')][blade][mode] */
+  mhb_law        *law;           /* [pair] */
+  double          n0;            /* N, total */
+  double          omega, period; /* rad/s of the excitation; s of the fundamental */
+  int             steps;         /* a period */
+  double          t;             /* s, in [0, period] */
+  double         *z; /* [2 (z, z')][blade][mode]; with Coriolis terms [2 (re, im)] of amplitudes */
   mhb_contact_point   *point;      /* [contact] */
   mhb_contact_step    *step;       /* [contact] of the last step */
   int                 *n_stalled;  /* [contact] changes of state without progress in time */
   int                 *suppressed; /* [contact] 1: its events are ignored in the coming step */
   double              *y; /* [contact][9] motion at the stages without contact forces of the step */
-  double              *stage; /* [6][modes] */
+  double              *stage; /* [stage][lines] */
   mhb_modal_step       nominal, cut;
   double               scale; /* N, largest force so far */
   mhb_integrator_count count;

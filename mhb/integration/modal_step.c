@@ -131,6 +131,40 @@ static void set_mode(const mhb_ring_step *ring, double h, int i, mhb_modal_step 
   for (int k = 0; k < MOMENTS; k++) row[(MHB_MOMENT + k) * m] = h * h * G[k + 2];
 }
 
+/* ---- amplitudes ----
+ *
+ * In tau an amplitude obeys a' = x a + h in . f, x = pole h. With phi_k the responses of
+ * amplitudes.h, that to tau^m/m! is phi_m+1, and int (1 - tau)^l/l! of its rate phi_l+m+1. The free
+ * motion is e^(x tau), of its rate x phi_l+1. The motion of the contact is of second order in h.
+ * What is of first order adds up to nothing over the amplitudes, and h (phi_k - 1/k!) = h x phi_k+1
+ * is summed in the place of h phi_k. */
+
+static void set_amplitude(const mhb_ring_step *ring, double h, int i, mhb_modal_step *step) {
+  const mhb_radau *r   = &ring->rule;
+  const int        m   = ring->s.modes;
+  double          *row = step->mode + i;
+  double complex   phi[MHB_POWERS], x = ring->amplitudes->pole[i] * h;
+  mhb_amplitudes_responses(x, phi);
+  for (int k = 0; k < S; k++) {
+    double complex stage = 1, end = 0;
+    for (int l = 0; l < S; l++) {
+      stage += x * r->kernel[k][l] * phi[l + 1];
+      end += h * r->basis[k][l] * phi[l + 1];
+    }
+    row[(MHB_STAGE_Z + k) * m] = creal(stage);
+    row[(MHB_STAGE_V + k) * m] = cimag(stage);
+    row[(MHB_END_F + k) * m]   = creal(end);
+    row[(MHB_RATE_F + k) * m]  = cimag(end);
+  }
+  row[MHB_END_Z * m] = creal(phi[0]);
+  row[MHB_END_V * m] = cimag(phi[0]);
+  for (int k = 0; k < MOMENTS; k++) {
+    const double complex moment         = h * x * phi[k + 2];
+    row[(MHB_MOMENT + k) * m]           = creal(moment);
+    row[(MHB_MOMENT_IMAGINARY + k) * m] = cimag(moment);
+  }
+}
+
 /* ---- compliance of the contacts ---- */
 
 /* sum[5] += sum over modes of to by G_1..5 */
@@ -144,6 +178,20 @@ MHB_HOT static void add_moments(int m, const double *to, const double *by, const
   }
 }
 
+/* The same of amplitudes: rows of motion and of force. */
+MHB_HOT static void add_amplitude_moments(int m, const double *to, const double *by,
+                                          const double *moments, double *sum) {
+  for (int k = 0; k < MOMENTS; k++) {
+    const double *re = moments + k * m, *im = moments + (MOMENTS + k) * m;
+    double        x = 0;
+#pragma omp simd reduction(+ : x)
+    for (int i = 0; i < m; i++)
+      x += to[i] * (re[i] * by[i] - im[i] * by[m + i]) +
+           to[m + i] * (re[i] * by[m + i] + im[i] * by[i]);
+    sum[k] += x;
+  }
+}
+
 /* Neighbour whose contacts are on side `by` of a blade, seen from the contacts on side `to`. */
 static int neighbour_of(const mhb_ring_step *c, int to, int by) {
   if (to == by) return 0;
@@ -151,15 +199,16 @@ static int neighbour_of(const mhb_ring_step *c, int to, int by) {
 }
 
 static void set_moments(const mhb_ring_step *c, const mhb_modal_step *step) {
-  int n3 = 3 * c->s.pairs, m = c->s.modes, sides = c->s.sides;
+  int n3 = 3 * c->s.pairs, m = c->s.modes, lines = c->lines, sides = c->s.sides;
   memset(c->moment, 0, sizeof(double) * (size_t)(c->n_neighbours * n3 * n3 * MOMENTS));
   for (int k = 0; k < sides * sides; k++) {
     int to = k / sides, by = k % sides, neighbour = neighbour_of(c, to, by);
     for (int row = 0; row < n3; row++)
       for (int column = 0; column < n3; column++)
-        add_moments(m, c->shape + (to * n3 + row) * m, c->shape + (by * n3 + column) * m,
-                    step->mode + MHB_MOMENT * m,
-                    c->moment + ((neighbour * n3 + row) * n3 + column) * MOMENTS);
+        (c->amplitudes ? add_amplitude_moments : add_moments)(
+            m, c->motion + (to * n3 + row) * lines, c->force + (by * n3 + column) * lines,
+            step->mode + MHB_MOMENT * m,
+            c->moment + ((neighbour * n3 + row) * n3 + column) * MOMENTS);
   }
 }
 
@@ -197,7 +246,8 @@ static void set_compliance(const mhb_ring_step *c, mhb_modal_step *step) {
 
 void mhb_modal_step_length(const mhb_ring_step *ring, double h, mhb_modal_step *step) {
   step->h = h;
-  for (int i = 0; i < ring->s.modes; i++) set_mode(ring, h, i, step);
+  for (int i = 0; i < ring->s.modes; i++)
+    (ring->amplitudes ? set_amplitude : set_mode)(ring, h, i, step);
   set_moments(ring, step);
   set_compliance(ring, step);
   for (int a = 0; a < ring->s.pairs; a++) step->stuck[a].pivot[0] = -1;
@@ -209,7 +259,8 @@ shb_status mhb_ring_step_create(const mhb_receptance *receptance, const mhb_sett
                                 mhb_ring_step *ring) {
   *ring = (mhb_ring_step){.n_neighbours = 1};
   mhb_radau_create(&ring->rule);
-  SHB_TRY(mhb_modal_structure_create(receptance, settings, receptance->n_modes, true, &ring->s));
+  SHB_TRY(mhb_modal_structure_create(receptance, settings, receptance->n_modes,
+                                     MHB_STRUCTURE_BLADES, &ring->s));
   const mhb_modal_structure *s  = &ring->s;
   int                        n3 = 3 * s->pairs, m = s->modes;
   if (s->sides == 2) ring->n_neighbours = s->blades < 3 ? s->blades : 3;
@@ -223,10 +274,22 @@ shb_status mhb_ring_step_create(const mhb_receptance *receptance, const mhb_sett
   }
   for (int k = 0; k < s->sides * n3 * m; k++)
     ring->shape[k] = s->shape[(k / (n3 * m) * m + k % m) * n3 + k / m % n3];
+  ring->lines  = m;
+  ring->motion = ring->force = ring->shape;
+  if (!receptance->model->coriolis) return SHB_OK;
+  shb_status status = mhb_amplitudes_create(receptance->model, s, ring->shape, &ring->amplitudes);
+  if (status != SHB_OK) {
+    mhb_ring_step_destroy(ring);
+    return status;
+  }
+  ring->lines  = 2 * m;
+  ring->motion = ring->amplitudes->motion;
+  ring->force  = ring->amplitudes->force;
   return SHB_OK;
 }
 
 void mhb_ring_step_destroy(mhb_ring_step *ring) {
+  mhb_amplitudes_destroy(ring->amplitudes);
   mhb_modal_structure_destroy(&ring->s);
   shb_arena_free(&ring->arena);
   *ring = (mhb_ring_step){0};

@@ -9,11 +9,13 @@
  *   int f . w' dt = sum_i b_i f_i . w_i'   (Radau's weights, exact to degree four):
  * a spring takes at least the energy it stores, and friction at least what it dissipates. No step
  * length makes a passive contact active. The error at the ends of the steps is of order five.
+ * With Coriolis terms amplitudes a' = pole a + in . f take the place of the modes (amplitudes.h).
  * Derivation: docs/theory/time_integration.md. */
 #ifndef MHB_INTEGRATION_MODAL_STEP_H
 #define MHB_INTEGRATION_MODAL_STEP_H
 
 #include "mesh/base/arena.h"
+#include "mhb/integration/amplitudes.h"
 #include "mhb/structure/modal_structure.h"
 
 enum { MHB_STAGES = 3, MHB_STAGE_FORCES = 3 * MHB_STAGES };
@@ -30,7 +32,8 @@ typedef struct {
 
 void mhb_radau_create(mhb_radau *radau);
 
-/* Coefficients of the modes for one step, rows of [modes]. */
+/* Coefficients of the modes for one step, rows of [modes]. Of amplitudes those by z and by f for z
+ * are real parts, those by z' and by f for z' imaginary parts. */
 typedef enum {
   MHB_STAGE_Z, /* [stage] w_i by z and by z' */
   MHB_STAGE_V = MHB_STAGE_Z + MHB_STAGES,
@@ -40,18 +43,22 @@ typedef enum {
   MHB_RATE_Z = MHB_END_F + MHB_STAGES, /* z' at the end */
   MHB_RATE_V,
   MHB_RATE_F,
-  MHB_MOMENT          = MHB_RATE_F + MHB_STAGES, /* [5] h^2 G_1..5, see modal_step.c */
-  MHB_MODAL_STEP_ROWS = MHB_MOMENT + 5
+  MHB_MOMENT           = MHB_RATE_F + MHB_STAGES, /* [5] h^2 G_1..5, see modal_step.c */
+  MHB_MOMENT_IMAGINARY = MHB_MOMENT + 5,          /* of amplitudes */
+  MHB_MODAL_STEP_ROWS  = MHB_MOMENT_IMAGINARY + 5
 } mhb_modal_step_row;
 
 /* The structure in the layout of the steps. */
 typedef struct {
   mhb_radau           rule;
   mhb_modal_structure s;
-  double             *shape; /* [side][3 pairs][modes] */
-  int       n_neighbours;    /* sectors coupled to a sector: itself, previous, next. A sector is the
+  double             *shape;      /* [side][3 pairs][modes] */
+  mhb_amplitudes     *amplitudes; /* with Coriolis terms, else NULL */
+  int                 lines;      /* numbers of a blade that move its contacts: modes, or twice */
+  const double *motion, *force;   /* [side][3 pairs][lines] contact motion by them, force on them */
+  int       n_neighbours; /* sectors coupled to a sector: itself, previous, next. A sector is the
  contacts on the right side of a blade */
-  double   *moment;          /* [neighbour][3 pairs][3 pairs][5] scratch */
+  double   *moment;       /* [neighbour][3 pairs][3 pairs][5] scratch */
   shb_arena arena;
 } mhb_ring_step;
 

@@ -27,23 +27,34 @@ struct mhb_steady_state {
 /* Mean square of the modes' motion without contact forces. */
 static double free_size(const mhb_integrator *g) {
   const mhb_receptance *r    = g->receptance;
+  const int             m    = g->modes;
   double                size = 0;
-  for (int k = 0; k < (g->n_load + 1) * g->modes; k++) {
-    double part = cabs(r->lambda[k] * r->F[k]);
-    size += g->blades * part * part;
+  double complex        a[m];
+  for (int k = 0; k <= g->n_load; k++) {
+    for (int i = 0; i < m; i++) a[i] = r->scale * r->F[k * m + i];
+    mhb_receptance_respond(r, k, a);
+    for (int i = 0; i < m; i++) size += g->blades * creal(a[i] * conj(a[i]));
   }
   return size;
 }
 
+/* Weight of a number of the state that gives it the unit of z. Each amplitude of (w z, z') stands
+ * for a conjugate pair. */
+static double weight_of(const mhb_integrator *g, int k) {
+  const int i = k % g->modes;
+  if (g->ring.amplitudes) return sqrt(2.) / cabs(g->ring.amplitudes->pole[i]);
+  return k < g->blades * g->modes ? 1 : 1 / g->ring.s.omega[i];
+}
+
 double mhb_steady_state_distance(const mhb_integrator *g, const double *a, const double *b) {
-  int    n     = g->blades * g->modes;
+  int    n     = 2 * g->blades * g->modes;
   double apart = 0, size = free_size(g), friction = 0, force = 0;
   for (int k = 0; k < n; k++) {
-    double w = g->ring.s.omega[k % g->modes], dz = a[k] - b[k], dv = (a[n + k] - b[n + k]) / w;
-    apart += dz * dz + dv * dv;
-    size += b[k] * b[k] + b[n + k] * b[n + k] / (w * w);
+    const double weight = weight_of(g, k), d = weight * (a[k] - b[k]), z = weight * b[k];
+    apart += d * d;
+    size += z * z;
   }
-  for (int k = 2 * n; k < 2 * n + 2 * g->contacts; k++) {
+  for (int k = n; k < n + 2 * g->contacts; k++) {
     friction = fmax(friction, fabs(a[k] - b[k]));
     force    = fmax(force, fabs(b[k]));
   }
@@ -94,23 +105,39 @@ static void record(void *context, const mhb_integrator *g, double t0, double h) 
   }
 }
 
-/* Harmonic k of a mode of a blade, by the equation of motion integrated with exp(-jkwt): exact even
- * if the end differs from the start. */
-static double complex mode_harmonic(const mhb_steady_state *o, int k, int blade, int i,
-                                    const double *z0) {
+/* Change of q and q' [modes] of a blade since z0. */
+static void rise_of(const mhb_integrator *g, int blade, const double *z0, double *q, double *rate) {
+  const int at = blade * g->modes, modal = g->blades * g->modes;
+  for (int i = 0; i < g->modes; i++) {
+    q[i]    = g->z[at + i] - z0[at + i];
+    rate[i] = g->z[modal + at + i] - z0[modal + at + i];
+  }
+  if (g->ring.amplitudes) mhb_amplitudes_give(g->ring.amplitudes, q, rate);
+}
+
+/* z[modes] <- harmonic k of the modes of a blade. The equation of motion is integrated with
+ * exp(-jkwt), which is exact even if the end differs from the start. */
+static void mode_harmonics(const mhb_steady_state *o, int k, int blade, const double *z0,
+                           double complex *z) {
   const mhb_integrator      *g = o->g;
   const mhb_modal_structure *s = &g->ring.s;
-  int            m = g->modes, n3 = 3 * g->pairs, at = blade * m + i, modal = g->blades * m;
-  double         w    = SHB_TWO_PI * k / g->period;
-  double complex rise = (g->z[modal + at] - z0[modal + at]) +
-                        CMPLX(2 * s->zeta[i] * s->omega[i], w) * (g->z[at] - z0[at]);
-  double complex force = -(k ? 2 : 1) / g->period * rise;
+  const double              *G = g->receptance->model->coriolis;
+  const int                  m = g->modes, n3 = 3 * g->pairs;
+  const double               w = SHB_TWO_PI * k / g->period;
+  double                     q[m], rate[m];
+  rise_of(g, blade, z0, q, rate);
+  for (int i = 0; i < m; i++) {
+    double complex rise = rate[i] + CMPLX(2 * s->zeta[i] * s->omega[i], w) * q[i];
+    for (int j = 0; G && j < m; j++) rise += G[(size_t)i * (size_t)m + (size_t)j] * q[j];
+    z[i] = -(k ? 2 : 1) / g->period * rise;
+  }
   for (int side = 0; side < s->sides; side++) {
     const double complex *p =
         o->force + k * 3 * g->contacts + 3 * mhb_modal_structure_contact(s, blade, side);
-    for (int r = 0; r < n3; r++) force -= g->ring.shape[(side * n3 + r) * m + i] * p[r];
+    for (int r = 0; r < n3; r++)
+      for (int i = 0; i < m; i++) z[i] -= g->ring.shape[(side * n3 + r) * m + i] * p[r];
   }
-  return g->receptance->lambda[k * m + i] * force;
+  mhb_receptance_respond(g->receptance, k, z);
 }
 
 /* Motion of the contacts of blade 0's right side. */
@@ -118,6 +145,7 @@ static void set_motion(mhb_steady_state *o, int k, const double *z0) {
   const mhb_integrator *g = o->g;
   const mhb_receptance *r = g->receptance;
   int m = g->modes, n3 = 3 * g->pairs, n = 3 * g->contacts, K = o->result.n_harmonics + 1;
+  double complex z[m];
   for (int row = 0; row < n3; row++) {
     double complex u = r->free[k * n3 + row];
     for (int c = 0; g->ring.s.flexibility && c < n; c++)
@@ -125,13 +153,13 @@ static void set_motion(mhb_steady_state *o, int k, const double *z0) {
     o->result.motion[row * K + k] = u;
     o->result.force[row * K + k]  = o->force[k * n + row];
   }
-  for (int i = 0; i < m; i++)
-    for (int side = 0; side < g->ring.s.sides; side++) {
-      /* blade 1 to the right, its left side; one blade meets itself */
-      double complex z = mode_harmonic(o, k, side % g->blades, i, z0);
-      for (int row = 0; row < n3; row++)
-        o->result.motion[row * K + k] += g->ring.shape[(side * n3 + row) * m + i] * z;
-    }
+  for (int side = 0; side < g->ring.s.sides; side++) {
+    /* blade 1 to the right, its left side; one blade meets itself */
+    mode_harmonics(o, k, side % g->blades, z0, z);
+    for (int row = 0; row < n3; row++)
+      for (int i = 0; i < m; i++)
+        o->result.motion[row * K + k] += g->ring.shape[(side * n3 + row) * m + i] * z[i];
+  }
 }
 
 /* Probes of blade 0: those of the wave with these forces, and the modes' difference from it. */
@@ -139,14 +167,15 @@ static void set_probes(mhb_steady_state *o, int k, const double *z0) {
   const mhb_integrator *g = o->g;
   const mhb_receptance *r = g->receptance;
   int                   m = g->modes, q = 3 * r->model->n_probes, K = o->result.n_harmonics + 1;
-  double complex       *p = o->force + k * 3 * g->contacts, motion[q + 1];
+  double complex       *p = o->force + k * 3 * g->contacts, motion[q + 1], z[m], wave[m];
   mhb_receptance_probe(r, k, p, motion);
-  for (int i = 0; i < m; i++) {
-    double complex difference = mode_harmonic(o, k, 0, i, z0), wave = 0;
-    for (int row = 0; row < r->n; row++) wave -= conj(r->B[(k * r->n + row) * m + i]) * p[row];
-    difference -= r->lambda[k * m + i] * wave;
-    for (int s = 0; s < q; s++) motion[s] += r->model->probe[s * m + i] * difference;
-  }
+  mode_harmonics(o, k, 0, z0, z);
+  memset(wave, 0, sizeof wave);
+  for (int row = 0; row < r->n; row++)
+    for (int i = 0; i < m; i++) wave[i] -= conj(r->B[(k * r->n + row) * m + i]) * p[row];
+  mhb_receptance_respond(r, k, wave);
+  for (int s = 0; s < q; s++)
+    for (int i = 0; i < m; i++) motion[s] += r->model->probe[s * m + i] * (z[i] - wave[i]);
   for (int s = 0; s < q; s++) o->result.probe[s * K + k] = motion[s];
 }
 

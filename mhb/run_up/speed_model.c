@@ -97,6 +97,11 @@ shb_status mhb_speed_model_create(const mhb_speed_table *table, mhb_speed_model 
   const mhb_speed_parts at = models(a), by = slopes(a);
   make_models(a, a->coefficients, a->rotated_shapes, &at);
   make_models(a, a->d_coefficients, a->d_rotated_shapes, &by);
+  if (table->squares == 3) {
+    a->coriolis       = shb_arena_take(&a->arena, square, real);
+    a->model.coriolis = shb_arena_take(&a->arena, m * m, real);
+    if (width == 2) a->imaginary.coriolis = shb_arena_take(&a->arena, m * m, real);
+  }
   if (a->arena.failed) {
     mhb_speed_model_destroy(a);
     SHB_FAIL(SHB_ERR_IO, "out of memory for %zu modes", m);
@@ -147,13 +152,25 @@ static void rotate(const mhb_speed_model *a, const double *coefficients, double 
                    const mhb_speed_parts *parts) {
   const int width = a->table->width, m = a->table->n_modes, rows = a->table->rows;
   const int K = parts->model->n_load + 1;
-  mhb_unitary_rows(width, m, rows, a->U, coefficients + 2 * width * m * m, rotated);
+  mhb_unitary_rows(width, m, rows, a->U, coefficients + a->table->squares * width * m * m, rotated);
   if (width == 2) {
     set_wave(a, rotated, parts);
     return;
   }
   const double *re = rotated + (rows - 2 * K) * m, *im = re + K * m;
   for (int i = 0; i < K * m; i++) parts->model->modal_force[i] = CMPLX(re[i], im[i]);
+}
+
+/* The models' Coriolis matrix, G = Omega U^H C U. */
+static void set_coriolis(mhb_speed_model *a, double speed) {
+  const int width = a->table->width, m = a->table->n_modes;
+  mhb_unitary_congruent(width, m, a->U, a->coefficients + 2 * width * m * m, a->work, a->coriolis);
+  for (int k = 0; k < m * m; k++) {
+    const double complex G = speed * mhb_speed_model_coriolis(a, k / m, k % m);
+    a->model.coriolis[k]   = creal(G);
+    if (width == 2) a->imaginary.coriolis[k] = cimag(G);
+  }
+  a->slope_omega = NAN; /* coriolis is not the derivative */
 }
 
 void mhb_speed_model_set(mhb_speed_model *a, double omega) {
@@ -174,6 +191,7 @@ void mhb_speed_model_set(mhb_speed_model *a, double omega) {
     a->model.damping_ratio[i] = fmax(0, creal(mhb_unitary_at(width, Z, i * (m + 1))));
   const mhb_speed_parts parts = models(a);
   rotate(a, a->coefficients, a->rotated_shapes, &parts);
+  if (a->coriolis) set_coriolis(a, speed);
   a->omega = omega;
 }
 
@@ -183,6 +201,21 @@ double complex mhb_speed_model_stiffness(const mhb_speed_model *a, int i, int j)
 
 double complex mhb_speed_model_damping(const mhb_speed_model *a, int i, int j) {
   return mhb_unitary_at(a->table->width, a->damping, i * a->table->n_modes + j);
+}
+
+double complex mhb_speed_model_coriolis(const mhb_speed_model *a, int i, int j) {
+  return mhb_unitary_at(a->table->width, a->coriolis, j * a->table->n_modes + i);
+}
+
+/* coriolis <- dG. rate: of the speed by omega. */
+static void differentiate_coriolis(mhb_speed_model *a, double rate) {
+  const mhb_speed_table *r     = a->table;
+  const int              count = r->width * r->n_modes * r->n_modes;
+  const double           speed = mhb_speed_table_speed(r, a->omega);
+  double                *C = a->work + count, *both = C + count;
+  for (int i = 0; i < count; i++)
+    both[i] = rate * a->coefficients[2 * count + i] + speed * a->d_coefficients[2 * count + i];
+  mhb_unitary_congruent(r->width, r->n_modes, a->U, both, a->work, a->coriolis);
 }
 
 /* damping <- dN, from dK, Z in the modes, and U^H Z' U. */
@@ -221,6 +254,7 @@ void mhb_speed_model_differentiate(mhb_speed_model *a) {
   mhb_unitary_congruent(r->width, m, a->U, a->coefficients + count, work, Z);
   mhb_unitary_congruent(r->width, m, a->U, a->d_coefficients + count, work, dZ);
   differentiate_damping(a, Z, dZ);
+  if (a->coriolis) differentiate_coriolis(a, inside ? 1. / r->engine_order : 0);
   const mhb_speed_parts parts = slopes(a);
   rotate(a, a->d_coefficients, a->d_rotated_shapes, &parts);
   a->slope_omega = a->omega;

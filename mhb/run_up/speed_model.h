@@ -6,6 +6,7 @@
  *   dN_ij = dK_ij (N_i - N_j)/(w_i^2 - w_j^2),
  *   dN_ii = 2 zeta_i' w_i + zeta_i dK_ii/w_i,
  *   zeta_i' = (U^H Z' U)_ii + 2 Re sum_j (U^H Z U)_ij dK_ji/(w_i^2 - w_j^2).
+ * With Coriolis terms, G = Omega U^H C U, A has j w G too. Then dG = U^H (Omega' C + Omega C') U.
  * A^-1 is differentiated, not the modes: equal frequencies do no harm, unless their dampings
  * differ. */
 #ifndef MHB_RUN_UP_SPEED_MODEL_H
@@ -25,6 +26,7 @@ typedef struct {
   modal_model imaginary, backward, slope_imaginary, slope_backward;
   double     *stiffness;      /* [m][m] dK, by columns; width doubles each */
   double     *damping;        /* [m][m] dN, by rows */
+  double     *coriolis;       /* [m][m] dG, by columns; NULL: without Coriolis terms */
   double     *coefficients;   /* [size] an entry of the table, interpolated */
   double     *d_coefficients; /* its derivative */
   double     *rotated_shapes; /* [rows][m] the entry's rows times U */
@@ -46,9 +48,10 @@ void mhb_speed_model_set(mhb_speed_model *speed_model, double omega);
 /* slope, stiffness, damping <- at the frequency of the model. */
 void mhb_speed_model_differentiate(mhb_speed_model *speed_model);
 
-/* Entries of dK and dN. */
+/* Entries of dK, dN and dG. */
 double complex mhb_speed_model_stiffness(const mhb_speed_model *speed_model, int i, int j);
 double complex mhb_speed_model_damping(const mhb_speed_model *speed_model, int i, int j);
+double complex mhb_speed_model_coriolis(const mhb_speed_model *speed_model, int i, int j);
 
 /* The stiffness stays positive definite between the speeds of the table.
  * SHB_ERR_INPUT: it does not; path of the modal file, for the message. SHB_ERR_IO: no memory. */

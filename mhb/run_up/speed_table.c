@@ -96,8 +96,9 @@ static void lay_out(mhb_speed_table *r, const mhb_speed_parts *common) {
   const modal_model *m = common->model;
   const void        *unused[MHB_SPEED_TABLE_ALL];
   const size_t       modes = (size_t)r->n_modes, width = (size_t)r->width;
-  r->rows = modal_model_contact_dofs(m) + 3 * m->n_probes + 2 * (m->n_load + 1);
-  r->size = width * (2 * modes + (size_t)r->rows) * modes;
+  r->rows    = modal_model_contact_dofs(m) + 3 * m->n_probes + 2 * (m->n_load + 1);
+  r->squares = m->coriolis ? 3 : 2;
+  r->size    = width * ((size_t)r->squares * modes + (size_t)r->rows) * modes;
   r->size += r->size % 2; /* complex numbers follow */
   unrotated(common, unused, r->count);
   for (int i = 0; i < MHB_SPEED_TABLE_ALL; i++) {
@@ -135,8 +136,8 @@ static void rotate_load(const mhb_speed_table *r, const mhb_speed_parts *p, cons
 }
 
 /* An entry from a speed's model and V[mode][place]; row, square: scratch [m]. */
-static void fill_entry(const mhb_speed_table *r, const mhb_speed_parts *p, const double *V,
-                       double *out, double complex *row, double *square) {
+static void fill_entry(const mhb_speed_table *r, const mhb_speed_parts *p, double speed,
+                       const double *V, double *out, double complex *row, double *square) {
   const modal_model *model = p->model, *im = p->imaginary;
   const int          m = r->n_modes, side = 3 * model->n_pairs, probes = 3 * model->n_probes;
   const void        *data[MHB_SPEED_TABLE_ALL];
@@ -144,7 +145,10 @@ static void fill_entry(const mhb_speed_table *r, const mhb_speed_parts *p, const
   for (int i = 0; i < m; i++) square[i] = pow(SHB_TWO_PI * model->frequency[i], 2);
   mhb_unitary_diagonal(r->width, m, V, square, out);
   mhb_unitary_diagonal(r->width, m, V, model->damping_ratio, out + r->width * m * m);
-  double *at = out + 2 * r->width * m * m;
+  if (r->squares == 3)
+    mhb_unitary_form(r->width, m, V, model->coriolis, im ? im->coriolis : NULL, 1 / speed,
+                     out + 2 * r->width * m * m);
+  double *at = out + r->squares * r->width * m * m;
   at         = rotate_rows(r, V, model->right, im ? im->right : NULL, side, row, at);
   if (model->has_left) at = rotate_rows(r, V, model->left, im ? im->left : NULL, side, row, at);
   at = rotate_rows(r, V, model->probe, im ? im->probe : NULL, probes, row, at);
@@ -287,7 +291,8 @@ static shb_status fill(mhb_speed_table *r, int from, double *work) {
     const mhb_speed_parts parts = parts_of(&r->speeds, from + i);
     square[i]                   = pow(r->speeds.speed[from + i], 2);
     basis(r, from + i, work, V);
-    fill_entry(r, &parts, V, r->entries + (size_t)i * r->size, row, V + (size_t)r->width * m * m);
+    fill_entry(r, &parts, r->speeds.speed[from + i], V, r->entries + (size_t)i * r->size, row,
+               V + (size_t)r->width * m * m);
   }
   if (status == SHB_OK) {
     memcpy(r->first_entry, r->entries, r->size * sizeof *r->first_entry);
@@ -340,10 +345,14 @@ static shb_status choose_speeds(const mhb_speed_table *r, family *f) {
             "where the "
             "modal stage makes the file, /speeds in a file of your own",
             f->path);
-  SHB_CHECK(!s->model[0].coriolis, SHB_ERR_INPUT,
-            "mhb.run_up: %s has Coriolis terms (/modes/coriolis), which are not interpolated over "
-            "the speed; leave them out",
-            f->path);
+  for (int i = 0; i < s->n; i++)
+    SHB_CHECK(
+        !s->model[i].coriolis == !s->model[0].coriolis &&
+            (s->speed[i] > 0 || !s->model[i].coriolis),
+        SHB_ERR_INPUT,
+        "mhb.run_up: %s: modes/coriolis at %.6g rpm: Coriolis terms are needed at every speed "
+        "or at none, and no speed may be 0",
+        f->path, rpm(s->speed[i]));
   SHB_TRY(check_range(r, f->path));
   int from = 0, to = s->n - 1;
   while (from + 1 < s->n && s->speed[from + 1] <= r->band[0] / r->engine_order) from++;

@@ -6,8 +6,8 @@
  * Farhat 2008). In that basis everything is a smooth function of Omega^2:
  *   C = Phi_0^H M Phi of the first speed's modes with this one's (/speeds/overlap) = A Sigma B^H,
  *   Q = Phi V,  V = B A^H unitary,  Phi_0^H M Q Hermitian,
- *   K = V^H diag(w_i^2) V,  Z = V^H diag(zeta_i) V.
- * K, Z, Q at contact and probes, Q^H f and the residual terms are interpolated by cubic splines.
+ *   K = V^H diag(w_i^2) V,  Z = V^H diag(zeta_i) V,  C = V^H G V/Omega with Coriolis terms.
+ * K, Z, C, Q at contact and probes, Q^H f and the residual terms are interpolated by cubic splines.
  * The model at a speed is K = U diag(w_i^2) U^H, Phi = Q U, zeta_i = u_i^H Z u_i. All is real but
  * for the travelling waves of a disc. Rows of the load hold conj(Q^H f), and Q^T f of the backward
  * wave: both turn as shapes do.
@@ -31,14 +31,15 @@ typedef struct {
   modal_model *model, *imaginary, *backward;
 } mhb_speed_parts;
 
-/* An entry: K [m][m], Z [m][m], rows [rows][m], of width doubles each (unitary.h); unrotated
- * arrays. Threads may share a table. */
+/* An entry: K, Z and, with Coriolis terms, C [m][m], rows [rows][m], of width doubles each
+ * (unitary.h); unrotated arrays. Threads may share a table. */
 typedef struct mhb_speed_table {
   int                width;                    /* 1: real; 2: complex */
   int                n, n_modes, engine_order; /* n: speeds used */
   int                n_dropped;                /* modes of the file that answer statically */
   double             low, high;                /* rad/s, speeds covered */
   double             band[2];                  /* rad/s of the excitation, asked for */
+  int                squares;                  /* matrices: 2, with Coriolis terms 3 */
   int                rows;        /* right, left, probe, then load: re, im or forward, backward */
   size_t             size;        /* of an entry, doubles */
   modal_speeds       speeds;      /* its models, in part */
@@ -54,8 +55,8 @@ typedef struct mhb_speed_table {
  *   path  in   of the modal file, for messages
  *   frequency  in  Hz, range of the excitation (both equal: one frequency)
  * Errors: SHB_ERR_INPUT engine order below 1; one speed only; speeds outside those of the file are
- * needed; modes that cannot be followed. SHB_ERR_IO no memory. Whether the blade is stable between
- * the speeds: mhb_speed_model_check. */
+ * needed; modes that cannot be followed. Coriolis terms at rest are refused too. SHB_ERR_IO no
+ * memory. Whether the blade is stable between the speeds: mhb_speed_model_check. */
 shb_status mhb_speed_table_create(modal_speeds *speeds, const char *path, int engine_order,
                                   const double frequency[2], mhb_speed_table **table);
 

@@ -55,6 +55,24 @@ void mhb_unitary_diagonal(int width, int m, const double *V, const double *value
     }
 }
 
+void mhb_unitary_form(int width, int m, const double *V, const double *re, const double *im,
+                      double scale, double *out) {
+  double complex column[m];
+  for (int t = 0; t < m; t++) {
+    for (int i = 0; i < m; i++) {
+      column[i] = 0;
+      for (int j = 0; j < m; j++)
+        column[i] +=
+            CMPLX(re[i * m + j], im ? im[i * m + j] : 0) * mhb_unitary_at(width, V, j * m + t);
+    }
+    for (int u = 0; u < m; u++) {
+      double complex sum = 0;
+      for (int i = 0; i < m; i++) sum += conj(mhb_unitary_at(width, V, i * m + u)) * column[i];
+      put(width, out, t * m + u, scale * sum);
+    }
+  }
+}
+
 void mhb_unitary_row(int width, int m, const double *V, const double complex *row, double *out) {
   for (int t = 0; t < m; t++) {
     double complex sum = 0;

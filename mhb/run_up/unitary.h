@@ -23,10 +23,15 @@ double mhb_unitary_align(int width, int m, int all, const double *re, const doub
 /* out[m][m] = V^H diag(value) V */
 void mhb_unitary_diagonal(int width, int m, const double *V, const double *value, double *out);
 
+/* out[m][m] = scale V^H X V, by columns.
+ *   re, im  in  [m][m] X by rows; im NULL: real */
+void mhb_unitary_form(int width, int m, const double *V, const double *re, const double *im,
+                      double scale, double *out);
+
 /* out[m] = row[m] V; a real row where width is 1. */
 void mhb_unitary_row(int width, int m, const double *V, const double complex *row, double *out);
 
-/* out[m][m] = U^H X U, X Hermitian, eigenvector i of U in row i; work: width m^2. */
+/* out[m][m] = U^H X U, X by columns, eigenvector i of U in row i; work: width m^2. */
 void mhb_unitary_congruent(int width, int m, const double *U, const double *X, double *work,
                            double *out);
 

@@ -118,6 +118,23 @@ static void set_mode(work *w, int k, int part, size_t i) {
   for (size_t h = 0; h < w->K; h++) to->modal_force[h * all + at] = force_on(w, k, part, h, i);
 }
 
+/* Of a pair of standing waves q0, q1 the sum q0 + j q1 is a complex coordinate of the nodal
+ * diameter: the real matrix is [Re G, -Im G; Im G, Re G]. */
+static void make_coriolis(work *w) {
+  const size_t all = (size_t)w->N * w->m;
+  w->to->coriolis  = take(w, all * all, sizeof(double));
+  for (int k = 0; k < w->from->n && !w->failed; k++)
+    for (int part = 0; part < waves(w, k) * waves(w, k); part++) {
+      const int to = part / waves(w, k), by = part % waves(w, k);
+      for (size_t i = 0; i < w->m * w->m; i++) {
+        const double complex G  = value(w, k, AT(coriolis), i);
+        const size_t         at = column_of(w, k, to, i / w->m) * all;
+        w->to->coriolis[at + column_of(w, k, by, i % w->m)] =
+            to == by ? creal(G) : (to ? 1 : -1) * cimag(G);
+      }
+    }
+}
+
 static void make_modes(work *w) {
   modal_model *to  = w->to;
   const size_t all = (size_t)w->N * w->m, side = (size_t)w->N * w->n * all;
@@ -131,6 +148,7 @@ static void make_modes(work *w) {
   for (int k = 0; k < w->from->n && !w->failed; k++)
     for (int part = 0; part < waves(w, k); part++)
       for (size_t i = 0; i < w->m; i++) set_mode(w, k, part, i);
+  if (w->first->coriolis && !w->failed) make_coriolis(w);
 }
 
 /* ---- residual terms ---- */
@@ -244,9 +262,6 @@ shb_status mhb_dense_disc(const mhb_settings *s, modal_model *model) {
             "time integration of a disc needs all nodal diameters, 0 to %d; the modal file has %d "
             "of %d; add them by modal.nodal_diameters: all",
             d->blades / 2, d->n, d->blades / 2 + 1);
-  SHB_CHECK(!one->coriolis, SHB_ERR_INPUT,
-            "time integration knows no Coriolis terms (/modes/coriolis of the modal file); give "
-            "rotor.coriolis: no");
   *model = (modal_model){.n_modes      = d->blades * one->n_modes,
                          .n_pairs      = d->blades * one->n_pairs,
                          .n_probes     = one->n_probes,

@@ -1,6 +1,5 @@
 #include "mhb/structure/disc_modes.h"
 
-#include <lapacke.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -45,62 +44,17 @@ static void set_modes(mhb_disc_modes *d, const mhb_modal_part *part, int diamete
 
 /* ---- Coriolis terms ---- */
 
-/* Eigenvalues, eigenvectors V and V^-1 of (W z, z')' = [0, W; -W, -(D + G)] (W z, z'), W =
- * diag(w_i). The matrix is skew-Hermitian but for D, so that V is well conditioned. */
-typedef struct {
-  size_t          m;
-  double complex *pole, *V, *inverse; /* [2 m], [2 m][2 m] by columns */
-  size_t         *place;              /* [2 m] eigenvalue of each amplitude */
-} coupling;
-
-static shb_status decompose(const mhb_disc_modes *d, int diameter, coupling *c) {
-  const size_t          m = c->m, all = 2 * m;
-  const double complex *G = d->coupled->G + (size_t)diameter * m * m;
-  lapack_int            pivot[all];
-  double complex       *A = calloc(all * all, sizeof *A);
-  SHB_CHECK(A, SHB_ERR_IO, "out of memory for the Coriolis terms of %zu modes", m);
-  for (size_t j = 0; j < m; j++) {
-    const double w       = d->omega[(size_t)diameter * m + j];
-    A[j * all + m + j]   = -w;
-    A[(m + j) * all + j] = w;
-    for (size_t i = 0; i < m; i++) A[(m + j) * all + m + i] = -G[i * m + j];
-    A[(m + j) * all + m + j] -= 2 * d->zeta[(size_t)diameter * m + j] * w;
-  }
-  const lapack_int n = (lapack_int)all;
-  bool ok = LAPACKE_zgeev(LAPACK_COL_MAJOR, 'N', 'V', n, A, n, c->pole, NULL, 1, c->V, n) == 0;
-  memcpy(c->inverse, c->V, all * all * sizeof *c->V);
-  ok = ok && LAPACKE_zgetrf(LAPACK_COL_MAJOR, n, n, c->inverse, n, pivot) == 0 &&
-       LAPACKE_zgetri(LAPACK_COL_MAJOR, n, c->inverse, n, pivot) == 0;
-  free(A);
-  SHB_CHECK(ok, SHB_ERR_INPUT, "the gyroscopic modes of nodal diameter %d are not found", diameter);
-  size_t above = 0, below = 0;
-  for (size_t i = 0; i < all; i++) {
-    const bool up = cimag(c->pole[i]) > 0;
-    if ((up ? above : below) < m) c->place[up ? above : m + below] = i;
-    *(up ? &above : &below) += 1;
-  }
-  SHB_CHECK(above == m, SHB_ERR_INPUT,
-            "%zu of %zu gyroscopic modes of nodal diameter %d oscillate; the damping is too high",
-            above, m, diameter);
-  return SHB_OK;
-}
-
-/* Amplitudes of one nodal diameter from its coupling. */
-static void set_amplitudes(mhb_disc_modes *d, int diameter, const coupling *c) {
-  const size_t       m = c->m, all = 2 * m, n = (size_t)d->n, k = (size_t)diameter;
+/* Amplitudes of one nodal diameter. With real shapes the other of a conjugate pair counts too. */
+static void set_amplitudes(mhb_disc_modes *d, int diameter, const mhb_damped_modes *from) {
+  const size_t       m = (size_t)d->modes, all = 2 * m, n = (size_t)d->n, k = (size_t)diameter;
   mhb_coupled_modes *to = d->coupled;
-  const double      *w  = d->omega + k * m;
   int                count;
   mhb_disc_modes_first(d, diameter, &count);
-  const double twice = count == 1 ? 2 : 1; /* the other of a conjugate pair */
-  for (size_t a = 0; a < all; a++) {
-    const double complex *v = c->V + c->place[a] * all;
-    to->pole[k * all + a]   = c->pole[c->place[a]];
-    for (size_t j = 0; j < all; j++) {
-      const double scale                        = j < m ? w[j] : 1;
-      to->to_state[(k * all + j) * all + a]     = twice * v[j] / scale;
-      to->to_amplitude[(k * all + a) * all + j] = scale * c->inverse[j * all + c->place[a]];
-    }
+  memcpy(to->pole + k * all, from->pole, all * sizeof *to->pole);
+  memcpy(to->to_amplitude + k * all * all, from->to_amplitude, all * all * sizeof *to->pole);
+  for (size_t i = 0; i < all * all; i++)
+    to->to_state[k * all * all + i] = (count == 1 ? 2 : 1) * from->to_state[i];
+  for (size_t a = 0; a < all; a++)
     for (size_t r = 0; r < n; r++) {
       double complex out = 0, in = 0;
       for (size_t j = 0; j < m; j++) {
@@ -111,24 +65,20 @@ static void set_amplitudes(mhb_disc_modes *d, int diameter, const coupling *c) {
       to->shape[(k * all + a) * n + r] = out;
       to->force[(k * all + a) * n + r] = in;
     }
-  }
 }
 
 static shb_status couple_one(mhb_disc_modes *d, const mhb_modal_part *part, int diameter) {
-  const size_t    m = (size_t)d->modes, all = 2 * m, square = all * all;
-  const size_t    stride = (size_t)d->all, k = (size_t)diameter;
-  double complex *memory = malloc((all + 2 * square) * sizeof *memory);
-  coupling   c = {m, memory, memory + all, memory + all + square, malloc(all * sizeof *c.place)};
-  shb_status status = SHB_OK;
-  for (size_t i = 0; i < m; i++)
-    for (size_t j = 0; j < m; j++)
-      d->coupled->G[k * m * m + i * m + j] = part->G[(k * stride + i) * stride + j];
-  if (!memory || !c.place)
-    status = shb_fail(SHB_ERR_IO, __FILE__, __LINE__, "out of memory for the Coriolis terms");
-  if (status == SHB_OK) status = decompose(d, diameter, &c);
-  if (status == SHB_OK) set_amplitudes(d, diameter, &c);
-  free(memory);
-  free(c.place);
+  const size_t     m = (size_t)d->modes, stride = (size_t)d->all, k = (size_t)diameter;
+  double complex  *G = d->coupled->G + k * m * m;
+  double           loss[m];
+  mhb_damped_modes modes;
+  for (size_t i = 0; i < m; i++) {
+    loss[i] = 2 * d->zeta[k * m + i] * d->omega[k * m + i];
+    for (size_t j = 0; j < m; j++) G[i * m + j] = part->G[(k * stride + i) * stride + j];
+  }
+  shb_status status = mhb_damped_modes_solve((int)m, d->omega + k * m, loss, G, &modes);
+  if (status == SHB_OK) set_amplitudes(d, diameter, &modes);
+  mhb_damped_modes_free(&modes);
   return status;
 }
 
@@ -170,8 +120,8 @@ static shb_status fill(mhb_disc_modes *d, const mhb_receptance *r, const mhb_set
                                    .nodal_diameters = true};
   SHB_TRY(mhb_modal_part_create(r->model, relative, &harmonics, &d->part));
   for (int n = 0; n < d->diameters; n++) set_modes(d, d->part, n);
-  if (r->disc) return SHB_OK;
   shb_status status = d->part->G ? couple(d, d->part) : SHB_OK;
+  if (r->at) return status;
   mhb_modal_part_destroy(d->part);
   d->part = NULL;
   return status;
@@ -179,9 +129,14 @@ static shb_status fill(mhb_disc_modes *d, const mhb_receptance *r, const mhb_set
 
 void mhb_disc_modes_set(const mhb_receptance *r, mhb_disc_modes *d) {
   if (!d->part) return;
-  mhb_disc_speeds_set_all(r->disc);
+  if (r->disc) mhb_disc_speeds_set_all(r->disc);
   mhb_modal_part_update(d->part);
-  for (int n = 0; n < d->diameters; n++) set_modes(d, d->part, n);
+  for (int n = 0; n < d->diameters; n++) {
+    set_modes(d, d->part, n);
+    if (!d->coupled || couple_one(d, d->part, n) == SHB_OK) continue;
+    const size_t all = 2 * (size_t)d->modes; /* no multiplier is finite */
+    for (size_t a = 0; a < all; a++) d->coupled->pole[(size_t)n * all + a] = NAN;
+  }
 }
 
 shb_status mhb_disc_modes_create(const mhb_receptance *r, const mhb_settings *s, int blades,

@@ -106,3 +106,98 @@ void mhb_gyroscopic_free(mhb_gyroscopic *of) {
   free(of->shape);
   *of = (mhb_gyroscopic){0};
 }
+
+/* ---- with damping ---- */
+
+/* Eigenvalues, eigenvectors V and V^-1, by columns. */
+typedef struct {
+  lapack_int      n; /* twice the coordinates */
+  double complex *A, *value, *V, *inverse;
+  int            *place;     /* eigenvalue of each amplitude */
+  lapack_int     *exchanges; /* of rows */
+} eigenvectors;
+
+static bool take_room(size_t all, eigenvectors *e) {
+  e->A         = calloc(all * (3 * all + 1) + 1, sizeof *e->A);
+  e->place     = malloc((all + 1) * sizeof *e->place);
+  e->exchanges = malloc((all + 1) * sizeof *e->exchanges);
+  if (!e->A || !e->place || !e->exchanges) return false;
+  e->V       = e->A + all * all;
+  e->inverse = e->V + all * all;
+  e->value   = e->inverse + all * all;
+  return true;
+}
+
+static void free_room(eigenvectors *e) {
+  free(e->A);
+  free(e->place);
+  free(e->exchanges);
+}
+
+static bool find(int n, const double *omega, const double *loss, const double complex *G,
+                 eigenvectors *e) {
+  const size_t m = (size_t)n, all = 2 * m;
+  for (size_t j = 0; j < m; j++) {
+    e->A[j * all + m + j]   = -omega[j];
+    e->A[(m + j) * all + j] = omega[j];
+    for (size_t i = 0; i < m; i++) e->A[(m + j) * all + m + i] = -G[i * m + j];
+    e->A[(m + j) * all + m + j] -= loss[j];
+  }
+  if (LAPACKE_zgeev(LAPACK_COL_MAJOR, 'N', 'V', e->n, e->A, e->n, e->value, NULL, 1, e->V, e->n))
+    return false;
+  memcpy(e->inverse, e->V, all * all * sizeof *e->V);
+  return LAPACKE_zgetrf(LAPACK_COL_MAJOR, e->n, e->n, e->inverse, e->n, e->exchanges) == 0 &&
+         LAPACKE_zgetri(LAPACK_COL_MAJOR, e->n, e->inverse, e->n, e->exchanges) == 0;
+}
+
+/* The eigenvalues above the real axis come first. */
+static shb_status part(int n, eigenvectors *e) {
+  int above = 0, below = 0;
+  for (int i = 0; i < 2 * n; i++) {
+    const bool up = cimag(e->value[i]) > 0;
+    if ((up ? above : below) < n) e->place[up ? above : n + below] = i;
+    *(up ? &above : &below) += 1;
+  }
+  SHB_CHECK(above == n, SHB_ERR_INPUT,
+            "%d of %d modes oscillate with Coriolis terms; the damping is too high", above, n);
+  return SHB_OK;
+}
+
+static void take_amplitudes(const double *omega, const eigenvectors *e, mhb_damped_modes *out) {
+  const size_t m = (size_t)out->n, all = 2 * m;
+  for (size_t a = 0; a < all; a++) {
+    const size_t at = (size_t)e->place[a];
+    out->pole[a]    = e->value[at];
+    for (size_t j = 0; j < all; j++) {
+      const double scale             = j < m ? omega[j] : 1;
+      out->to_state[j * all + a]     = e->V[at * all + j] / scale;
+      out->to_amplitude[a * all + j] = scale * e->inverse[j * all + at];
+    }
+  }
+}
+
+shb_status mhb_damped_modes_solve(int n, const double *omega, const double *loss,
+                                  const double complex *G, mhb_damped_modes *out) {
+  const size_t all    = 2 * (size_t)n;
+  *out                = (mhb_damped_modes){.n = n};
+  out->pole           = malloc((all + 1) * sizeof *out->pole);
+  out->to_state       = malloc((all * all + 1) * sizeof *out->to_state);
+  out->to_amplitude   = malloc((all * all + 1) * sizeof *out->to_amplitude);
+  eigenvectors e      = {.n = (lapack_int)all};
+  shb_status   status = SHB_OK;
+  if (!take_room(all, &e) || !out->pole || !out->to_state || !out->to_amplitude)
+    status = shb_fail(SHB_ERR_IO, __FILE__, __LINE__, "out of memory for %d gyroscopic modes", n);
+  else if (!find(n, omega, loss, G, &e))
+    status = shb_fail(SHB_ERR_INPUT, __FILE__, __LINE__, "no gyroscopic modes were found");
+  if (status == SHB_OK) status = part(n, &e);
+  if (status == SHB_OK) take_amplitudes(omega, &e, out);
+  free_room(&e);
+  return status;
+}
+
+void mhb_damped_modes_free(mhb_damped_modes *of) {
+  free(of->pole);
+  free(of->to_state);
+  free(of->to_amplitude);
+  *of = (mhb_damped_modes){0};
+}

@@ -36,4 +36,25 @@ double complex mhb_gyroscopic_element(const modal_wave *wave, int i, int j);
 
 void mhb_gyroscopic_free(mhb_gyroscopic *of); /* also on a zeroed struct */
 
+/* Free motion with damping. With W = diag(w_i), K = W^2, the state (W q, q') obeys
+ *   (W q, q')' = [0, W; -W, -(D + G)] (W q, q') = V diag(pole) V^-1 (W q, q').
+ * The matrix is skew-Hermitian but for D, so that V is well conditioned. With real G the poles are
+ * conjugate pairs. */
+typedef struct {
+  int             n;            /* coordinates */
+  double complex *pole;         /* [2n] 1/s: n above the real axis, then n below */
+  double complex *to_state;     /* [2n][2n] (q, q') by the amplitudes */
+  double complex *to_amplitude; /* [2n][2n] back */
+} mhb_damped_modes;
+
+/* Solve it.
+ *   omega  in  [n] rad/s, W
+ *   loss   in  [n] 1/s, the diagonal matrix D
+ *   G      in  [n][n] 1/s
+ *   out    out freed by the caller in any case
+ * Errors: SHB_ERR_IO no memory; SHB_ERR_INPUT a mode does not oscillate, or no solution. */
+shb_status mhb_damped_modes_solve(int n, const double *omega, const double *loss,
+                                  const double complex *G, mhb_damped_modes *out);
+void       mhb_damped_modes_free(mhb_damped_modes *of); /* also on a zeroed struct */
+
 #endif

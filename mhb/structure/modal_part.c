@@ -42,11 +42,28 @@ static void set_load(mhb_modal_part *b, int k) {
   }
 }
 
-static shb_status set_coriolis(mhb_modal_part *b, int k) {
+/* The first harmonic with the same wave. */
+static int first_alike(const mhb_modal_part *b, int k) {
+  const modal_wave *of = &b->wave[k];
+  int               j  = 0;
+  while (b->wave[j].model != of->model || b->wave[j].imaginary != of->imaginary ||
+         b->wave[j].sign != of->sign)
+    j++;
+  return j;
+}
+
+static void set_coriolis(mhb_modal_part *b, int k) {
   const int       m = b->n_modes;
   double complex *G = b->G + (size_t)k * (size_t)m * (size_t)m;
   for (int i = 0; i < m * m; i++) G[i] = mhb_gyroscopic_element(&b->wave[k], i / m, i % m);
-  return mhb_gyroscopic_of_wave(&b->wave[k], &b->gyroscopic[k]);
+  mhb_gyroscopic_free(&b->gyroscopic[k]); /* of another speed */
+}
+
+const mhb_gyroscopic *mhb_modal_part_gyroscopic(mhb_modal_part *b, int k) {
+  const int       first = first_alike(b, k);
+  mhb_gyroscopic *of    = &b->gyroscopic[first];
+  if (of->n == 0 && mhb_gyroscopic_of_wave(&b->wave[first], of) != SHB_OK) mhb_gyroscopic_free(of);
+  return of->n > 0 ? of : NULL;
 }
 
 static void set_split(mhb_modal_part *b, int k) {
@@ -65,6 +82,7 @@ static void set(mhb_modal_part *b) {
     set_shapes(b, k);
     set_load(b, k);
     set_split(b, k);
+    if (b->G) set_coriolis(b, k);
   }
 }
 
@@ -87,7 +105,6 @@ static shb_status make(mhb_modal_part *b, const mhb_harmonics *harmonics) {
   if (b->arena.failed) return SHB_ERR_IO;
   for (size_t k = 0; k < K; k++)
     b->wave[k] = harmonics->wave ? harmonics->wave[k] : modal_wave_real(b->model);
-  for (int k = 0; b->G && k <= b->n_harmonics; k++) SHB_TRY(set_coriolis(b, k));
   mhb_harmonics own = *harmonics;
   own.wave          = b->wave;
   return mhb_residual_terms_create(b->model, b->relative, &own, &b->residual_terms);

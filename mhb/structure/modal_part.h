@@ -27,7 +27,7 @@ typedef struct {
   double complex       *B;                           /* [k][n][modes] */
   double complex       *F;                           /* [k][modes] */
   double complex       *G; /* [k][modes][modes]; NULL: without Coriolis terms, as the next */
-  mhb_gyroscopic       *gyroscopic; /* [k] the modes that G couples */
+  mhb_gyroscopic       *gyroscopic; /* [k] the modes that G couples, once they are asked for */
   double             *split; /* [k][2 (re, im)][n + 1][modes] B, then F: for the loops over modes */
   int                *driven; /* [k] whether the load has this harmonic */
   mhb_residual_terms *residual_terms;
@@ -42,6 +42,9 @@ void       mhb_modal_part_destroy(mhb_modal_part *part);
 
 /* Anew from the model, whose arrays have other values. */
 void mhb_modal_part_update(mhb_modal_part *part);
+
+/* The modes that G couples at harmonic k; NULL: not found. Not for two threads at once. */
+const mhb_gyroscopic *mhb_modal_part_gyroscopic(mhb_modal_part *part, int k);
 
 /* Real or imaginary part of B_k and F_k: [n + 1][modes]. */
 static inline const double *mhb_modal_part_split(const mhb_modal_part *part, int k, int imaginary) {

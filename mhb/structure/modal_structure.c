@@ -121,7 +121,8 @@ static void take_arrays(const mhb_receptance *r, bool whole, mhb_modal_structure
 }
 
 shb_status mhb_modal_structure_create(const mhb_receptance *r, const mhb_settings *settings,
-                                      int modes, bool whole, mhb_modal_structure *s) {
+                                      int modes, mhb_structure_extent extent,
+                                      mhb_modal_structure *s) {
   const modal_nodal_diameters *of        = settings->nodal_diameters;
   const int                    own_modes = blade_of(r, 0)->n_modes;
   const int ground = settings->to_ground, blades = of ? of->blades : ground ? 1 : settings->blades;
@@ -132,9 +133,9 @@ shb_status mhb_modal_structure_create(const mhb_receptance *r, const mhb_setting
                                       .wave     = ground && !of ? 0 : wave_of(settings, blades),
                                       .mistuned = r->ring != NULL};
   s->contacts = s->blades * s->pairs;
-  if (of || (!r->ring && r->model->coriolis))
+  if (of || (!r->ring && r->model->coriolis && extent != MHB_STRUCTURE_BLADES))
     SHB_TRY(mhb_disc_modes_create(r, settings, blades, s->modes, &s->disc));
-  take_arrays(r, whole, s);
+  take_arrays(r, extent != MHB_STRUCTURE_LEAN, s);
   if (s->arena.failed) {
     mhb_modal_structure_destroy(s);
     SHB_FAIL(SHB_ERR_IO, "out of memory for the structure of %d contacts", s->contacts);

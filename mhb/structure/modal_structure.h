@@ -30,14 +30,19 @@ typedef struct {
   shb_arena       arena;
 } mhb_modal_structure;
 
-/* whole: with R of all contacts, whose memory grows with the square of their number.
- *
- * The lowest modes stay dynamic. The others answer statically and are added to R, as is residual
+typedef enum {
+  MHB_STRUCTURE_LEAN,  /* without R of all contacts, whose memory grows with their square */
+  MHB_STRUCTURE_WHOLE, /* with it */
+  MHB_STRUCTURE_BLADES /* the same, by the modes of the blades also with Coriolis terms, which are
+                        * left to the caller; no nodal diameters */
+} mhb_structure_extent;
+
+/* The lowest modes stay dynamic. The others answer statically and are added to R, as is residual
  * flexibility. Residual inertia is left out: u = B q - R p + R2 p'' cannot be integrated forward in
  * time. SHB_ERR_IO: no memory; SHB_ERR_INPUT: a nodal diameter of the disc is missing. */
 shb_status mhb_modal_structure_create(const mhb_receptance *receptance,
-                                      const mhb_settings *settings, int modes, bool whole,
-                                      mhb_modal_structure *structure);
+                                      const mhb_settings *settings, int modes,
+                                      mhb_structure_extent extent, mhb_modal_structure *structure);
 /* Anew for the same modes, after the receptance went to another speed of a run-up. */
 void mhb_modal_structure_set(const mhb_receptance *receptance, mhb_modal_structure *structure);
 void mhb_modal_structure_destroy(mhb_modal_structure *structure);

@@ -13,6 +13,9 @@
 
 static const double NUDGE = 1e-8;
 
+/* From this damping ratio on no gyroscopic mode has a resonance as sharp as NUDGE. */
+static const double LEAST_DAMPING = 1e-6;
+
 /* Angles of an interface in the case; 0 if not given. */
 typedef struct {
   bool        has_psi, has_phi;
@@ -357,8 +360,12 @@ void mhb_receptance_dynamic_stiffness(const mhb_receptance *r, int k, double w, 
 /* w, or where a gyroscopic mode without damping has its resonance a frequency beside it, as in
  * set_lambda. */
 static double beside_resonances(const mhb_receptance *r, int k, double w) {
-  const mhb_gyroscopic *modes = &r->part->gyroscopic[k];
-  for (int i = modes->n; i < 2 * modes->n; i++) {
+  const modal_model *model = mhb_receptance_model(r, k);
+  bool               least = false;
+  for (int i = 0; i < r->n_modes; i++) least = least || model->damping_ratio[i] < LEAST_DAMPING;
+  if (!least) return w;
+  const mhb_gyroscopic *modes = mhb_modal_part_gyroscopic(r->part, k);
+  for (int i = modes ? modes->n : 0; modes && i < 2 * modes->n; i++) {
     const double wi = modes->omega[i], a = wi * wi - w * w, b = 2 * modes->decay[i] * w;
     if (hypot(a, b) < NUDGE * wi * wi) return wi * (1 - copysign(0.5 * NUDGE, a));
   }
@@ -384,6 +391,19 @@ void mhb_receptance_coupled(const mhb_receptance *r, int k, double complex *x) {
   else
     for (size_t i = 0; i < m; i++) x[i] = NAN; /* no memory: nothing converges */
   free(own);
+}
+
+static mhb_modal_solver solver_of(const mhb_receptance *r, int k) {
+  const size_t m = (size_t)r->n_modes, at = (size_t)k * m;
+  if (!r->factor) return (mhb_modal_solver){.lambda = r->lambda + at};
+  return (mhb_modal_solver){.factor = r->factor + at * m, .pivot = r->pivot + at};
+}
+
+void mhb_receptance_respond(const mhb_receptance *r, int k, double complex *x) {
+  if (r->factor)
+    mhb_receptance_coupled(r, k, x);
+  else
+    for (int i = 0; i < r->n_modes; i++) x[i] *= r->lambda[k * r->n_modes + i];
 }
 
 static void join(int m, const double *re, const double *im, double complex *x) {
@@ -689,8 +709,8 @@ void mhb_receptance_slope(const mhb_receptance *r, int k, const double complex *
   modal_sums(r, k, yr, yi, slope);
   mhb_residual_terms_slope(r->residual_terms, k, kk * r->omega, dw2, r->scale, p, slope);
   if (r->at)
-    mhb_speed_derivative_slope(r->speed_derivative, k, k * r->omega / r->nu,
-                               r->lambda + k * r->n_modes, r->scale, p, slope);
+    mhb_speed_derivative_slope(r->speed_derivative, k, k * r->omega / r->nu, solver_of(r, k),
+                               r->scale, p, slope);
 }
 
 /* Change of the amplitudes of coupled modes, as mhb_receptance_probe_change. */
@@ -732,7 +752,7 @@ void mhb_receptance_probe_change(const mhb_receptance *r, int k, const double co
     for (int s = 0; s < q; s++) change[s] += mhb_modal_part_probe(r->part, k, s, i, a);
   }
   if (r->at && d_omega != 0)
-    mhb_speed_derivative_probe(r->speed_derivative, k, k * r->omega / r->nu, r->lambda + k * m,
+    mhb_speed_derivative_probe(r->speed_derivative, k, k * r->omega / r->nu, solver_of(r, k),
                                r->scale, p, d_omega, change);
 }
 

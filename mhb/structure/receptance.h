@@ -126,6 +126,9 @@ void mhb_receptance_motion(const mhb_receptance *receptance, int k, const double
 void mhb_receptance_amplitudes(const mhb_receptance *receptance, int k, const double complex *p,
                                double complex *amplitude);
 
+/* x[modes] <- L x of harmonic k, whose lambda or factor is up to date. */
+void mhb_receptance_respond(const mhb_receptance *receptance, int k, double complex *x);
+
 /* x[modes] <- L x and dL/d omega x of modes that Coriolis terms couple. */
 void mhb_receptance_coupled(const mhb_receptance *receptance, int k, double complex *x);
 void mhb_receptance_coupled_slope(const mhb_receptance *receptance, int k, double complex *x);

@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include "mesh/base/constants.h"
+#include "mhb/numerics/lu.h"
 
 static void differentiate(const mhb_speed_derivative *d) {
   if (d->disc)
@@ -47,7 +48,15 @@ static void update(const mhb_speed_derivative *d) {
   mhb_modal_part_update(d->slope);
 }
 
-/* (dK + j w dN) a of mode i. */
+/* x[m] <- L x */
+static void respond(mhb_modal_solver L, int m, double complex *x) {
+  if (L.lambda)
+    for (int i = 0; i < m; i++) x[i] *= L.lambda[i];
+  else
+    mhb_solve_complex(m, L.factor, L.pivot, 1, x);
+}
+
+/* (dK + j w (dN + dG)) a of mode i. */
 static double complex stiffness_change(const mhb_speed_derivative *d, int k, double w, int i,
                                        const double complex *a) {
   const mhb_speed_model *model = d->model[k];
@@ -56,12 +65,15 @@ static double complex stiffness_change(const mhb_speed_derivative *d, int k, dou
   if (model->table->width == 1) {
     const double *dK = model->stiffness + i * m, *dN = model->damping + i * m;
     for (int j = 0; j < m; j++) sum += CMPLX(dK[j], w * dN[j]) * a[j];
+    for (int j = 0; model->coriolis && j < m; j++)
+      sum += I * w * mhb_speed_model_coriolis(model, i, j) * a[j];
     return sum;
   }
   const bool backward = d->part->wave[k].sign < 0;
   for (int j = 0; j < m; j++) {
     double complex dK = mhb_speed_model_stiffness(model, i, j);
     double complex dN = mhb_speed_model_damping(model, i, j);
+    if (model->coriolis) dN += mhb_speed_model_coriolis(model, i, j);
     if (backward) { /* of the conjugate shapes */
       dK = conj(dK);
       dN = conj(dN);
@@ -71,16 +83,16 @@ static double complex stiffness_change(const mhb_speed_derivative *d, int k, dou
   return sum;
 }
 
-/* a = L d and its change with the model, L (dd - (dK + j w dN) a): [modes] each. */
-static void modal_change(const mhb_speed_derivative *d, int k, double w,
-                         const double complex *lambda, double scale, const double complex *p,
-                         double complex *a, double complex *change) {
+/* a = L d and its change with the model, L (dd - dA a): [modes] each. */
+static void modal_change(const mhb_speed_derivative *d, int k, double w, mhb_modal_solver L,
+                         double scale, const double complex *p, double complex *a,
+                         double complex *change) {
   const int m = d->part->n_modes;
-  for (int i = 0; i < m; i++) a[i] = lambda[i] * mhb_modal_part_force(d->part, k, p, i, scale);
-  for (int i = 0; i < m; i++) {
-    change[i] = lambda[i] *
-                (mhb_modal_part_force(d->slope, k, p, i, scale) - stiffness_change(d, k, w, i, a));
-  }
+  for (int i = 0; i < m; i++) a[i] = mhb_modal_part_force(d->part, k, p, i, scale);
+  respond(L, m, a);
+  for (int i = 0; i < m; i++)
+    change[i] = mhb_modal_part_force(d->slope, k, p, i, scale) - stiffness_change(d, k, w, i, a);
+  respond(L, m, change);
 }
 
 /* d/d omega of the weights of the residual terms by w_m, the last mode kept. The weight of term t
@@ -99,9 +111,8 @@ static modal_series weight_slope(const mhb_speed_derivative *d, int k, const mod
   return slope;
 }
 
-void mhb_speed_derivative_slope(const mhb_speed_derivative *d, int k, double w,
-                                const double complex *lambda, double scale, const double complex *p,
-                                double complex *slope) {
+void mhb_speed_derivative_slope(const mhb_speed_derivative *d, int k, double w, mhb_modal_solver L,
+                                double scale, const double complex *p, double complex *slope) {
   const mhb_modal_part *part = d->part;
   const int             m = part->n_modes, n = part->n;
   update(d);
@@ -110,23 +121,23 @@ void mhb_speed_derivative_slope(const mhb_speed_derivative *d, int k, double w,
   const double complex *B  = part->B + (size_t)k * (size_t)n * (size_t)m;
   const double complex *dB = d->slope->B + (size_t)k * (size_t)n * (size_t)m;
   double complex        a[m], change[m];
-  modal_change(d, k, w, lambda, scale, p, a, change);
+  modal_change(d, k, w, L, scale, p, a, change);
   for (int row = 0; row < n; row++, B += m, dB += m)
     for (int i = 0; i < m; i++) slope[row] += dB[i] * a[i] + B[i] * change[i];
   mhb_residual_terms_motion_by(d->slope->residual_terms, k, &s, scale, p, slope);
   mhb_residual_terms_motion_by(part->residual_terms, k, &ds, scale, p, slope);
 }
 
-void mhb_speed_derivative_probe(const mhb_speed_derivative *d, int k, double w,
-                                const double complex *lambda, double scale, const double complex *p,
-                                double d_omega, double complex *change) {
+void mhb_speed_derivative_probe(const mhb_speed_derivative *d, int k, double w, mhb_modal_solver L,
+                                double scale, const double complex *p, double d_omega,
+                                double complex *change) {
   const modal_model *model = d->part->model;
   const int          m = model->n_modes, q = 3 * model->n_probes;
   update(d);
   const modal_series s = modal_series_at(d->part->wave[k].model, w), ds = weight_slope(d, k, &s, w);
   double complex     a[m], da[m], slope[q + 1];
   memset(slope, 0, sizeof slope);
-  modal_change(d, k, w, lambda, scale, p, a, da);
+  modal_change(d, k, w, L, scale, p, a, da);
   mhb_residual_terms_probe_by(d->slope->residual_terms, k, &s, scale, p, slope);
   mhb_residual_terms_probe_by(d->part->residual_terms, k, &ds, scale, p, slope);
   for (int c = 0; c < q; c++) {

@@ -102,8 +102,8 @@ static shb_status solve_with(const work *w, int i, wave_operator *op, wave_modes
                                has_columns(w->first, all->n), &w->out->fields[i]));
   SHB_TRY(wave_condense(op, modes, &w->first->to, &all->model[i], &all->imaginary[i],
                         &all->backward[i]));
-  if (w->tracks) SHB_TRY(modal_sector_tracks_take(w->tracks, i, modes));
   SHB_TRY(add_coriolis(w, modes, &all->model[i], &all->imaginary[i]));
+  if (w->tracks) SHB_TRY(modal_sector_tracks_take(w->tracks, i, modes)); /* takes the shapes */
   return modal_label(w->settings, &w->first->patches, &all->model[i]);
 }
 

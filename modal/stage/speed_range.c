@@ -47,6 +47,8 @@ static PetscErrorCode change_sign(modal_result *r, int mode) {
   negate(model->right, 3 * model->n_pairs, m, mode);
   negate(model->left, 3 * model->n_pairs, m, mode);
   negate(model->probe, 3 * model->n_probes, m, mode);
+  negate(model->coriolis, m, m, mode);
+  for (int j = 0; model->coriolis && j < m; j++) model->coriolis[mode * m + j] *= -1;
   for (int k = 0; k <= model->n_load; k++) model->modal_force[k * m + mode] *= -1;
   for (int d = 0; d < FEM_RIGID; d++) r->participation.gamma[FEM_RIGID * mode + d] *= -1;
   PetscFunctionReturn(0);

@@ -163,6 +163,13 @@ static void note_coriolis(const modal_settings *settings, const modal_result *fi
                     2 * ratio * ratio);
 }
 
+/* The rotor turns at every speed. */
+static bool turns(const modal_settings *settings) {
+  bool all = settings->speed > 0;
+  for (int i = 0; i < settings->n_speeds; i++) all = all && settings->speeds[i] > 0;
+  return all;
+}
+
 static shb_status run(MPI_Comm comm, int rank, const char *out_path, const mesh_fe *mesh,
                       const modal_settings *settings, const shb_provenance *provenance,
                       shb_progress *progress) {
@@ -172,11 +179,8 @@ static shb_status run(MPI_Comm comm, int rank, const char *out_path, const mesh_
   modal_fields of     = {NULL, NULL, NULL};
   shb_status   status;
   if (mesh->image) SHB_TRY(modal_sector_check(comm, settings));
-  SHB_CHECK(settings->coriolis == FEM_TURNS_UNSAID || settings->n_speeds <= 1, SHB_ERR_INPUT,
-            "rotor.coriolis takes one rotor.speed, not %d; give a case for each",
-            settings->n_speeds);
-  SHB_CHECK(settings->coriolis == FEM_TURNS_UNSAID || settings->speed > 0, SHB_ERR_INPUT,
-            "rotor.coriolis needs rotor.speed; at rest there are no Coriolis forces");
+  SHB_CHECK(settings->coriolis == FEM_TURNS_UNSAID || turns(settings), SHB_ERR_INPUT,
+            "rotor.coriolis needs rotor.speed above 0; at rest there are no Coriolis forces");
   if (settings->n_speeds > 1)
     status = modal_speed_range_solve(comm, mesh, settings, progress, &speeds,
                                      mesh->image ? &sector : NULL, &result);

@@ -55,7 +55,7 @@ endforeach()
 shb_counts_allocations(test_mhb_floquet_floquet)
 shb_test(mhb/floquet monodromy tests_models)
 foreach(noun modal_step contact_step spectrum integrator integration_memory integration_sweep
-  mistuned_ring bladed_disc)
+  mistuned_ring bladed_disc amplitudes)
   shb_test(mhb/integration ${noun} tests_models)
 endforeach()
 foreach(noun ring_statistics side_waves slip_flow)

@@ -198,11 +198,12 @@ static void set_load(const lumped_disc *d, const sector_modes *s, int m, bool ba
     }
 }
 
-lumped_disc lumped_disc_spinning(double speed) {
+lumped_disc lumped_disc_spinning(double speed, double coriolis) {
   const double s = speed * speed;
   lumped_disc  d = lumped_disc_of(0.8 + 0.2 * s, 1.7);
   join(d.own, 3, -1, 0.5 * s);
   join(d.own, DISC_RIGHT, -1, 0.3 * s + 0.1 * s * s);
+  d.spin = coriolis * speed;
   return d;
 }
 
@@ -226,6 +227,7 @@ static void set_speed(const lumped_disc *d, int i, int k, sector_modes *first,
   solve_sector(d, SHB_TWO_PI * k / N, &s);
   if (i == 0) *first = s;
   set_modes(&s, to->n_modes, &to->model[i], to->imaginary ? &to->imaginary[i] : NULL, d->damping);
+  set_coriolis(d, &s, to->n_modes, &to->model[i], to->imaginary ? &to->imaginary[i] : NULL);
   set_load(d, &s, to->n_modes, false, &to->model[i]);
   if (to->imaginary) set_load(d, &s, to->n_modes, true, &to->backward[i]);
   set_overlap(d, first, &s, to->n_modes, to->overlap + at,
@@ -233,7 +235,8 @@ static void set_speed(const lumped_disc *d, int i, int k, sector_modes *first,
   for (int t = 0; t < to->n_modes; t++) to->mode[i * to->n_modes + t] = t;
 }
 
-void lumped_disc_speeds(int n, int modes, modal_sector_speeds *out) {
+void lumped_disc_speeds(int n, double lowest, double coriolis, int modes,
+                        modal_sector_speeds *out) {
   static sector_modes first[N / 2 + 1];
   assert_ok(modal_sector_speeds_create(N, N / 2 + 1, out));
   for (int k = 0; k <= N / 2; k++) {
@@ -242,8 +245,8 @@ void lumped_disc_speeds(int n, int modes, modal_sector_speeds *out) {
     out->at[k].overlap = take((size_t)(n * modes * modes));
     if (k > 0 && 2 * k < N) assert_ok(modal_speeds_make_complex(&out->at[k]));
     for (int i = 0; i < n; i++) {
-      out->at[k].speed[i] = i / (n - 1.);
-      const lumped_disc d = lumped_disc_spinning(out->at[k].speed[i]);
+      out->at[k].speed[i] = lowest + (1 - lowest) * i / (n - 1.);
+      const lumped_disc d = lumped_disc_spinning(out->at[k].speed[i], coriolis);
       set_speed(&d, i, k, &first[k], out);
     }
   }

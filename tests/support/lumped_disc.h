@@ -33,11 +33,12 @@ typedef struct {
  *   ground    in  N/m, springs from the disc mass to the axis */
 lumped_disc lumped_disc_of(double coupling, double ground);
 
-/* The same on a rotor: its blades and its coupling are stiffened by the speed, rad/s. */
-lumped_disc lumped_disc_spinning(double speed);
+/* The same on a rotor: its blades and its coupling are stiffened by the speed, rad/s.
+ *   coriolis  in  spin over speed; 0: without Coriolis terms */
+lumped_disc lumped_disc_spinning(double speed, double coriolis);
 
-/* n of them over 0 to 1 rad/s, with the lowest modes and overlaps. */
-void lumped_disc_speeds(int n, int modes, modal_sector_speeds *out);
+/* n of them from `lowest` to 1 rad/s, with the lowest modes and overlaps. */
+void lumped_disc_speeds(int n, double lowest, double coriolis, int modes, modal_sector_speeds *out);
 
 /* Element of the Coriolis matrix of a sector, kg/s. */
 double lumped_disc_coriolis(const lumped_disc *disc, int i, int j);

@@ -240,11 +240,12 @@ static void numbers_and_ranges(void **state) {
       {"2900 rpm", "[0 rpm, 30 rpm, 0 rpm]",
        "c.yaml:12:28: error: rotor.speed: holds 0 rad/s twice", 1},
       {"2900 rpm", "[0 rpm, 90 rpm], coriolis: left",
-       "c.yaml:12:55: error: rotor.coriolis: takes one rotor.speed, not 2; give a case for each",
+       "c.yaml:12:55: error: rotor.coriolis: needs rotor.speed above 0; at rest there are no "
+       "Coriolis forces",
        1},
       {"2900 rpm", "0 rpm, coriolis: right",
-       "c.yaml:12:45: error: rotor.coriolis: needs rotor.speed; at rest there are no Coriolis "
-       "forces",
+       "c.yaml:12:45: error: rotor.coriolis: needs rotor.speed above 0; at rest there are no "
+       "Coriolis forces",
        1},
       {"2900 rpm", "[]", "c.yaml:12:28: error: rotor.speed: 0 speeds; there may be 1 to 256", 1},
       {"2900 rpm", "[1 rpm, -3 rpm]",

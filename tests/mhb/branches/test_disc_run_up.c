@@ -38,8 +38,10 @@ static mhb_settings balance_case(void) {
                         .lasting      = MHB_LASTING_NEVER};
 }
 
-static modal_settings stage_case(void) {
+/* turning: with Coriolis terms. */
+static modal_settings stage_case(fem_turning turning) {
   modal_settings settings   = sector_case(BLADES, MODES);
+  settings.coriolis         = turning;
   settings.load.n_harmonics = 2;
   settings.load.factor[2]   = -0.2 + 0.5 * I;
   settings.speed            = speeds[SPEEDS - 1];
@@ -131,8 +133,9 @@ static double apart(const mhb_receptance *a, const mhb_receptance *b) {
   return worst;
 }
 
-static double blade_between(const run_up *r, const mesh_fe *sector, double speed) {
-  modal_settings  settings = stage_case();
+static double blade_between(const run_up *r, const mesh_fe *sector, double speed,
+                            fem_turning turning) {
+  modal_settings  settings = stage_case(turning);
   mhb_settings    plain    = balance_case();
   mesh_fe         mesh     = sector_clamp_disc(sector);
   modal_result    result;
@@ -153,8 +156,9 @@ static double blade_between(const run_up *r, const mesh_fe *sector, double speed
   return off;
 }
 
-static double disc_between(const run_up *r, const mesh_fe *mesh, double speed) {
-  modal_settings  settings = stage_case();
+static double disc_between(const run_up *r, const mesh_fe *mesh, double speed,
+                           fem_turning turning) {
+  modal_settings  settings = stage_case(turning);
   mhb_settings    plain    = balance_case();
   modal_result    result;
   modal_sector    all;
@@ -180,18 +184,28 @@ static double disc_between(const run_up *r, const mesh_fe *mesh, double speed) {
   return off;
 }
 
-static void between_speeds_it_is_as_near_as_a_blade(void **state) {
-  const mesh_fe       *mesh     = *state;
-  const modal_settings settings = stage_case();
+static void compare_between(const mesh_fe *mesh, fem_turning turning) {
+  const modal_settings settings = stage_case(turning);
   run_up               blade = clamped(mesh, &settings), disc = on_disc(mesh, &settings);
   static const double  place[] = {1200, 1310, 1480, 1600};
   for (int i = 0; i < 4; i++) {
-    const double b = blade_between(&blade, mesh, place[i]), d = disc_between(&disc, mesh, place[i]);
-    print_message("%g rad/s: clamped blade off by %.1e, sector by %.1e\n", place[i], b, d);
+    const double b = blade_between(&blade, mesh, place[i], turning);
+    const double d = disc_between(&disc, mesh, place[i], turning);
+    print_message("%s%g rad/s: clamped blade off by %.1e, sector by %.1e\n",
+                  turning ? "Coriolis terms, " : "", place[i], b, d);
+    assert_below(b, i % 3 ? 1e-4 : 1e-9);
     assert_below(d, i % 3 ? fmax(5 * b, 1e-9) : 1e-9); /* at a speed of the file: exact */
   }
   destroy(&blade);
   destroy(&disc);
+}
+
+static void between_speeds_it_is_as_near_as_a_blade(void **state) {
+  compare_between(*state, FEM_TURNS_UNSAID);
+}
+
+static void with_coriolis_terms_too(void **state) {
+  compare_between(*state, FEM_TURNS_LEFT);
 }
 
 /* ---- stability ---- */
@@ -220,9 +234,9 @@ static const mhb_branch *main_curve(const mhb_response *r) {
 
 /* Multipliers are those of the structure frozen at the point's speed, with all its nodal
  * diameters. */
-static void multipliers_are_those_of_the_speed(void **state) {
-  const modal_settings settings = stage_case();
-  run_up               r        = on_disc(*state, &settings);
+static void compare_multipliers(const mesh_fe *mesh, fem_turning turning) {
+  const modal_settings settings = stage_case(turning);
+  run_up               r        = on_disc(mesh, &settings);
   mhb_settings         frozen   = r.settings;
   double               worst    = 0;
   frozen.run_up                 = NULL;
@@ -240,11 +254,17 @@ static void multipliers_are_those_of_the_speed(void **state) {
     assert_true(y > 0.5 && y < 1);
     worst = fmax(worst, fabs(x - y));
   }
-  print_message("%d multipliers at both ends of the scale off by %.1e\n", a->n_multipliers, worst);
+  print_message("%s%d multipliers at both ends of the scale off by %.1e\n",
+                turning ? "Coriolis terms, " : "", a->n_multipliers, worst);
   assert_below(worst, 1e-7);
   mhb_response_destroy(a);
   mhb_response_destroy(b);
   destroy(&r);
+}
+
+static void multipliers_are_those_of_the_speed(void **state) {
+  compare_multipliers(*state, FEM_TURNS_UNSAID);
+  compare_multipliers(*state, FEM_TURNS_LEFT);
 }
 
 /* ---- a stiff disc ---- */
@@ -271,7 +291,7 @@ static void find_peak(const run_up *r, double peak[2]) {
 
 static void a_stiff_disc_is_a_clamp(void **state) {
   mesh_fe             mesh     = **(const mesh_fe **)state;
-  modal_settings      settings = stage_case();
+  modal_settings      settings = stage_case(FEM_TURNS_UNSAID);
   run_up              blade    = clamped(&mesh, &settings);
   static const double factor[] = {1, 1e4, 1e5};
   double              wanted[2], found[2], off[3][2];
@@ -317,6 +337,7 @@ static int tear_down(void **state) {
 
 int main(int argc, char **argv) {
   const struct CMUnitTest tests[] = {cmocka_unit_test(between_speeds_it_is_as_near_as_a_blade),
+                                     cmocka_unit_test(with_coriolis_terms_too),
                                      cmocka_unit_test(multipliers_are_those_of_the_speed),
                                      cmocka_unit_test(a_stiff_disc_is_a_clamp)};
   modal_session           session;

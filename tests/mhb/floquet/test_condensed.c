@@ -61,7 +61,7 @@ static double *map_of(const periodic *p, bool condensed, int *n) {
   mhb_contact_evaluator  *contact;
   mhb_monodromy          *d;
   const mhb_receptance   *r = p->residual->receptance;
-  assert_ok(mhb_modal_structure_create(r, &p->settings, r->n_modes, true, &s));
+  assert_ok(mhb_modal_structure_create(r, &p->settings, r->n_modes, MHB_STRUCTURE_WHOLE, &s));
   assert_ok(mhb_transition_schedule_create(1, s.pairs, 0, false, &t));
   assert_ok(mhb_contact_evaluator_create(M, M, p->settings.tolerance, &contact));
   assert_ok(mhb_monodromy_create(&s, &t, contact, M, SUBSTEPS, 2, condensed, &d));

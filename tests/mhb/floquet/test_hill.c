@@ -27,7 +27,7 @@ static int multipliers_by_hill(periodic *p, double complex *mu) {
   double *r = calloc((size_t)b->n, sizeof *r), *J = calloc((size_t)b->n * (size_t)b->n, sizeof *J);
   mhb_balance_evaluate(b, p->x, p->omega, r, J, NULL); /* for dp */
   assert_int_equal(mhb_modal_structure_create(b->receptance, &p->settings, b->receptance->n_modes,
-                                              true, &structure),
+                                              MHB_STRUCTURE_WHOLE, &structure),
                    SHB_OK);
   for (int d = 0; d < structure.blades; d++, n += 2 * structure.modes)
     assert_int_equal(hill_multipliers(&structure, d, p->omega / p->settings.subharmonics, b->m,

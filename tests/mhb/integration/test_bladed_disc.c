@@ -31,6 +31,25 @@ static void sector_create_spinning(int engine_order, int harmonics, double load,
   s->settings.nodal_diameters = &s->waves;
 }
 
+/* A sector that is integrated, on engine order 3 at *omega: with Coriolis terms more damped, where
+ * the wave is stable. */
+static void sector_create_stable(double spin, sector *s, double *omega) {
+  *omega = spin > 0 ? 0.93 : 0.86;
+  if (spin > 0) {
+    s->disc         = lumped_disc_of(0.8, 1.7);
+    s->disc.spin    = spin;
+    s->disc.damping = 0.1;
+    lumped_disc_waves(&s->disc, DISC_DOFS, &s->waves);
+    s->settings                 = lumped_disc_settings(3, MANY);
+    s->settings.n_preloads      = 1;
+    s->settings.n0[0]           = 0.4;
+    s->settings.scale           = 12;
+    s->settings.nodal_diameters = &s->waves;
+  } else {
+    sector_create_spinning(3, MANY, 5, 0, s);
+  }
+}
+
 static void sector_create(int engine_order, int harmonics, double load, sector *s) {
   sector_create_spinning(engine_order, harmonics, load, 0, s);
 }
@@ -139,21 +158,21 @@ static void motion_of(const mhb_branch *b, int point, int m, double *x) {
     }
 }
 
-static void time_integration_ends_on_it(void **state) {
+static void ends_on_it(double spin) {
   sector                   s;
   modal_model              ring;
   mhb_response            *response;
+  double                   omega;
   mhb_integration_settings asked = {.n_frequencies = 1,
                                     .listed        = true,
-                                    .frequency     = {0.86 / SHB_TWO_PI},
                                     .start         = MHB_START_FROM_REST,
                                     .steps         = 32,
                                     .tolerance     = 1e-7,
                                     .max_periods   = 2000};
   static double            x[3 * N * (2 * MANY + 1)], end[3 * N * (2 * MANY + 1)];
   const int                n = 3 * N * (2 * MANY + 1);
-  (void)state;
-  sector_create(3, MANY, 5, &s);
+  sector_create_stable(spin, &s, &omega);
+  asked.frequency[0] = omega / SHB_TWO_PI;
   lumped_disc_ring(&s.disc, 3, &ring);
   const mhb_settings of_ring = lumped_disc_ring_settings(&s.settings);
   assert_ok(mhb_integration_sweep(&ring, &of_ring, &asked, NULL, NULL, NULL, NULL, &response));
@@ -166,8 +185,8 @@ static void time_integration_ends_on_it(void **state) {
     expand(MANY, 3, one.x, x);
     motion_of(b, i, MANY, end);
     const double apart = distance(n, 2 * MANY + 1, x, end);
-    print_message("%.2f rad/s: %.1e apart, slipping for %.2f of the period\n", one.omega, apart,
-                  slipping(&one));
+    print_message("%.2f rad/s, spin %g: %.1e apart, slipping for %.2f of the period\n", one.omega,
+                  spin, apart, slipping(&one));
     assert_below(apart, 5e-5);
     assert_true(slipping(&one) > 0.1);
     periodic_destroy(&one);
@@ -177,18 +196,28 @@ static void time_integration_ends_on_it(void **state) {
   modal_nodal_diameters_free(&s.waves);
 }
 
+static void time_integration_ends_on_it(void **state) {
+  (void)state;
+  ends_on_it(0);
+}
+
+static void with_coriolis_terms_it_ends_on_it_too(void **state) {
+  (void)state;
+  ends_on_it(0.1);
+}
+
 /* The ring made of nodal diameters is that of the sectors: all contacts, probe and load. */
 static void sectors_in_one_are_the_ring(void **state) {
   static const int order[] = {1, 4, 6, 11};
   (void)state;
-  for (int i = 0; i < 4; i++) {
-    const int       E = order[i];
+  for (int i = 0; i < 8; i++) {
+    const int       E = order[i % 4];
     const double    w = 0.93;
     sector          s;
     modal_model     ring, dense;
     mhb_settings    of_dense;
     mhb_receptance *r[2];
-    sector_create(E, 2, 5, &s);
+    sector_create_spinning(E, 2, 5, i < 4 ? 0 : 0.1, &s);
     lumped_disc_ring(&s.disc, E, &ring);
     const mhb_settings of_ring = lumped_disc_ring_settings(&s.settings);
     assert_ok(mhb_dense_disc(&s.settings, &dense));
@@ -217,8 +246,8 @@ static void sectors_in_one_are_the_ring(void **state) {
         size[2] = fmax(size[2], cabs(probe[0][c]));
       }
     }
-    print_message("E = %d: contact %.1e, load %.1e, probe %.1e apart\n", E, away[0] / size[0],
-                  away[1] / size[1], away[2] / size[2]);
+    print_message("E = %d, spin %g: contact %.1e, load %.1e, probe %.1e apart\n", E, s.disc.spin,
+                  away[0] / size[0], away[1] / size[1], away[2] / size[2]);
     for (int j = 0; j < 3; j++) assert_below(away[j] / size[j], 1e-11);
     for (int j = 0; j < 2; j++) mhb_receptance_destroy(r[j]);
     modal_model_free(&ring);
@@ -280,22 +309,22 @@ static void terms_are_those_of_the_nodal_diameters(void **state) {
 }
 
 /* From the balance: its forces lag from sector to sector. */
-static void integration_by_nodal_diameters_stays_on_the_balance(void **state) {
+static void stays_on_the_balance(double spin) {
   sector                   s;
   modal_model              dense;
   mhb_settings             of_dense;
   mhb_response            *balance, *response;
+  double                   omega;
   mhb_integration_settings asked = {.n_frequencies = 1,
                                     .listed        = true,
-                                    .frequency     = {0.86 / SHB_TWO_PI},
                                     .start         = MHB_START_FROM_BALANCE,
                                     .steps         = 32,
                                     .tolerance     = 1e-7,
                                     .max_periods   = 500};
-  (void)state;
-  sector_create(3, MANY, 5, &s);
-  s.settings.frequency[0] = 0.85 / SHB_TWO_PI;
-  s.settings.frequency[1] = 0.87 / SHB_TWO_PI;
+  sector_create_stable(spin, &s, &omega);
+  asked.frequency[0]      = omega / SHB_TWO_PI;
+  s.settings.frequency[0] = (omega - 0.01) / SHB_TWO_PI;
+  s.settings.frequency[1] = (omega + 0.01) / SHB_TWO_PI;
   assert_ok(mhb_forced_response(&s.waves.model[0], &s.settings, NULL, NULL, NULL, &balance));
   assert_ok(mhb_dense_disc(&s.settings, &dense));
   mhb_dense_disc_settings(&s.settings, &of_dense);
@@ -310,7 +339,7 @@ static void integration_by_nodal_diameters_stays_on_the_balance(void **state) {
   expand(MANY, 3, one.x, x);
   motion_of(b, 0, MANY, end);
   const double apart = distance(n, 2 * MANY + 1, x, end);
-  print_message("from the balance %d periods, %.1e apart, slipping for %.2f of the period\n",
+  print_message("spin %g, from the balance %d periods, %.1e apart, slipping for %.2f of it\n", spin,
                 b->periods[0], apart, slipping(&one));
   assert_below(apart, 5e-5);
   assert_true(slipping(&one) > 0.1);
@@ -319,6 +348,12 @@ static void integration_by_nodal_diameters_stays_on_the_balance(void **state) {
   mhb_response_destroy(balance);
   modal_model_free(&dense);
   modal_nodal_diameters_free(&s.waves);
+}
+
+static void integration_by_nodal_diameters_stays_on_the_balance(void **state) {
+  (void)state;
+  stays_on_the_balance(0);
+  stays_on_the_balance(0.1);
 }
 
 static void all_nodal_diameters_are_needed(void **state) {
@@ -338,6 +373,7 @@ int main(void) {
       cmocka_unit_test(the_ring_has_the_same_solution),
       cmocka_unit_test(with_coriolis_terms_too),
       cmocka_unit_test(time_integration_ends_on_it),
+      cmocka_unit_test(with_coriolis_terms_it_ends_on_it_too),
       cmocka_unit_test(sectors_in_one_are_the_ring),
       cmocka_unit_test(terms_are_those_of_the_nodal_diameters),
       cmocka_unit_test(integration_by_nodal_diameters_stays_on_the_balance),

@@ -27,7 +27,7 @@ enum { LEAST_MB = 8 };
 typedef struct {
   const char *name;
   int         pairs, blades, harmonics, points; /* blades 1: on the ground */
-  bool        residual;
+  bool        residual, coriolis;
 } scene;
 
 static mhb_settings make(const scene *c, modal_model *model) {
@@ -36,10 +36,16 @@ static mhb_settings make(const scene *c, modal_model *model) {
                model);
   free(model->residual_fourth); /* three random terms are no sums over modes */
   model->residual_fourth = NULL;
-  s.blades               = c->blades;
-  s.to_ground            = c->blades == 1;
-  s.frequency[0]         = 0.10;
-  s.frequency[1]         = 0.11;
+  if (c->coriolis) {
+    const int m     = model->n_modes;
+    model->coriolis = calloc((size_t)(m * m), sizeof *model->coriolis);
+    for (int i = 1; i < m; i++)
+      model->coriolis[i] = -(model->coriolis[i * m] = 0.1 * i); /* of mode 0 with the others */
+  }
+  s.blades       = c->blades;
+  s.to_ground    = c->blades == 1;
+  s.frequency[0] = 0.10;
+  s.frequency[1] = 0.11;
   return s;
 }
 
@@ -72,14 +78,15 @@ static double peak_of(const scene *c) {
 static void memory_is_that_of_runs(void **state) {
   (void)state;
   static const scene rows[] = {
-      {"one blade, 90 contact points", 90, 1, 9, 1, false},
-      {"50 with residual terms", 50, 1, 9, 1, true},
-      {"one blade, 200 harmonics", 30, 1, 200, 1, false},
-      {"one blade, 3000 points", 1, 1, 40, 3000, false},
-      {"ring of 4 blades, 50 each", 50, 4, 9, 1, false},
-      {"25 each with residual terms", 25, 4, 9, 1, true},
+      {"one blade, 90 contact points", 90, 1, 9, 1, false, false},
+      {"50 with residual terms", 50, 1, 9, 1, true, false},
+      {"the same with Coriolis terms", 50, 1, 9, 1, true, true},
+      {"one blade, 200 harmonics", 30, 1, 200, 1, false, false},
+      {"one blade, 3000 points", 1, 1, 40, 3000, false, false},
+      {"ring of 4 blades, 50 each", 50, 4, 9, 1, false, false},
+      {"25 each with residual terms", 25, 4, 9, 1, true, false},
   };
-  static const scene least   = {"", 1, 1, 1, 1, false};
+  static const scene least   = {"", 1, 1, 1, 1, false, false};
   const double       base    = peak_of(&least);
   int                outside = 0; /* of the band */
   for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
@@ -103,7 +110,7 @@ static void more_takes_more(void **state) {
   (void)state;
   static const mhb_integration_size size = {
       .pairs = 9, .blades = 12, .both = true, .modes = 6, .probes = 1, .harmonics = 7, .points = 5};
-  for (int i = 0; i < 9; i++) {
+  for (int i = 0; i < 10; i++) {
     mhb_integration_size more = size;
     if (i == 0) more.pairs++;
     if (i == 1) more.blades++;
@@ -114,6 +121,7 @@ static void more_takes_more(void **state) {
     if (i == 6) more.harmonics++;
     if (i == 7) more.points++;
     if (i == 8) more.residual = true;
+    if (i == 9) more.coriolis = true;
     assert_true(mhb_integration_bytes(&more) > mhb_integration_bytes(&size));
   }
 }
@@ -123,7 +131,7 @@ static void more_takes_more(void **state) {
 static void too_large_is_refused(void) {
   static const char *const key[] = {
       "contact.points: ", "integrate.harmonics: ", "rotor.blades: ", " or points: "};
-  const scene          ring = {"", 60, 50, 60, 9000, true};
+  const scene          ring = {"", 60, 50, 60, 9000, true, false};
   modal_model          model;
   int                  threads;
   const mhb_settings   s    = make(&ring, &model);

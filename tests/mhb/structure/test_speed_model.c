@@ -112,10 +112,14 @@ static void what_does_not_change_stays(void **state) {
 
 /* ---- a disc ---- */
 
-static mhb_disc_table *make_disc_run_up(int n, mhb_settings *s, mhb_disc_speeds **top) {
+/* With Coriolis terms half as large as the rotor's, from a speed above 0. */
+enum { STILL, TURNING };
+static const double coriolis_of[] = {0, 0.5}, lowest_of[] = {0, 0.05};
+
+static mhb_disc_table *make_disc_run_up(int n, int terms, mhb_settings *s, mhb_disc_speeds **top) {
   modal_sector_speeds speeds;
   mhb_disc_table     *run_up = NULL;
-  lumped_disc_speeds(n, 8, &speeds);
+  lumped_disc_speeds(n, lowest_of[terms], coriolis_of[terms], 8, &speeds);
   assert_ok(
       mhb_disc_table_create(&speeds, "disc.modal.h5", s->engine_order, s->frequency, &run_up));
   assert_ok(mhb_disc_table_check(run_up, "disc.modal.h5"));
@@ -136,17 +140,17 @@ static mhb_settings disc_settings(int engine_order) {
 }
 
 /* As error; some harmonics are backward waves, some those of nodal diameters 0 and N/2. */
-static double disc_error(int n, int engine_order) {
+static double disc_error(int n, int terms, int engine_order) {
   mhb_settings     s = disc_settings(engine_order), plain = s;
   mhb_disc_speeds *top;
-  mhb_disc_table  *run_up = make_disc_run_up(n, &s, &top);
+  mhb_disc_table  *run_up = make_disc_run_up(n, terms, &s, &top);
   mhb_receptance  *r, *exact;
   double           worst = 0;
   assert_ok(mhb_receptance_create(&top->now.model[0], &s, K, &r));
   for (int i = 0; i < PLACES; i++) {
     double complex        a[VALUES], b[VALUES];
     modal_nodal_diameters waves;
-    const lumped_disc     d = lumped_disc_spinning(place(i) / s.engine_order);
+    const lumped_disc     d = lumped_disc_spinning(place(i) / s.engine_order, coriolis_of[terms]);
     lumped_disc_waves(&d, 8, &waves);
     assert_ok(modal_nodal_diameters_reduce(&waves, run_up->table[0]->n_modes, true));
     for (int k = 0; k < waves.n; k++)
@@ -167,11 +171,12 @@ static double disc_error(int n, int engine_order) {
 
 static void order_of_a_disc_is_four(void **state) {
   (void)state;
-  for (int engine_order = 2; engine_order <= 3; engine_order++) {
-    double e[3];
-    for (int i = 0; i < 3; i++) e[i] = disc_error(8 << i, engine_order);
-    print_message("disc, E = %d: %.2e with 8 speeds, %.2e with 16, %.2e with 32\n", engine_order,
-                  e[0], e[1], e[2]);
+  for (int c = 0; c < 4; c++) {
+    const int engine_order = 2 + c % 2, terms = c / 2;
+    double    e[3];
+    for (int i = 0; i < 3; i++) e[i] = disc_error(8 << i, terms, engine_order);
+    print_message("disc%s, E = %d: %.2e with 8 speeds, %.2e with 16, %.2e with 32\n",
+                  terms ? " with Coriolis terms" : "", engine_order, e[0], e[1], e[2]);
     assert_below(e[1], e[0] / 12);
     assert_below(e[2], e[1] / 12);
     assert_below(e[2], 3e-7);
@@ -250,10 +255,11 @@ static void slopes_are_derivatives(void **state) {
 /* Modes that change places with ones left out are left out too. */
 static void slopes_of_a_disc_are_derivatives(void **state) {
   (void)state;
-  for (int engine_order = 2; engine_order <= 3; engine_order++) {
+  for (int c = 0; c < 4; c++) {
+    const int        engine_order = 2 + c % 2, terms = c / 2;
     mhb_settings     s = disc_settings(engine_order);
     mhb_disc_speeds *top;
-    mhb_disc_table  *run_up = make_disc_run_up(9, &s, &top);
+    mhb_disc_table  *run_up = make_disc_run_up(9, terms, &s, &top);
     mhb_receptance  *r;
     double           worst = 0;
     assert_ok(mhb_receptance_create(&top->now.model[0], &s, K, &r));
@@ -263,7 +269,8 @@ static void slopes_of_a_disc_are_derivatives(void **state) {
       outputs(r, place(i), true, exact);
       worst = fmax(worst, distance(exact, wanted));
     }
-    print_message("disc, E = %d: slopes differ by %.1e\n", engine_order, worst);
+    print_message("disc%s, E = %d: slopes differ by %.1e\n", terms ? " with Coriolis terms" : "",
+                  engine_order, worst);
     assert_below(worst, 1e-8);
     mhb_receptance_destroy(r);
     mhb_disc_speeds_destroy(top);
@@ -281,6 +288,18 @@ static void modes_that_leave_are_static(void **state) {
     mhb_speed_table_destroy(run_up);
     assert_below(error(SPINNING_LEAVING, 33, overlap), 1e-5);
   }
+}
+
+/* At rest there are no terms to interpolate. */
+static void coriolis_terms_at_rest_are_refused(void **state) {
+  modal_sector_speeds speeds;
+  mhb_disc_table     *table;
+  const double        range[2] = {.4 / SHB_TWO_PI, 1.9 / SHB_TWO_PI};
+  (void)state;
+  lumped_disc_speeds(5, 0, 0.5, 8, &speeds);
+  assert_refused(mhb_disc_table_create(&speeds, "disc.modal.h5", 2, range, &table), SHB_ERR_INPUT,
+                 "Coriolis terms are needed at every speed or at none, and no speed may be 0");
+  modal_sector_speeds_free(&speeds);
 }
 
 /* Only the speeds about the range count, two more on each side. */
@@ -349,6 +368,7 @@ int main(void) {
                                      cmocka_unit_test(order_of_a_disc_is_four),
                                      cmocka_unit_test(slopes_of_a_disc_are_derivatives),
                                      cmocka_unit_test(modes_that_leave_are_static),
+                                     cmocka_unit_test(coriolis_terms_at_rest_are_refused),
                                      cmocka_unit_test(speeds_far_away_do_not_count),
                                      cmocka_unit_test(what_cannot_be_is_refused)};
   return cmocka_run_group_tests(tests, NULL, NULL);
