@@ -120,6 +120,7 @@ shb_status post_blade_field_read_motion(const char *path, post_blade_field *fiel
 
 void post_blade_field_free(post_blade_field *f) {
   for (int i = 0; f->wave && i < f->n_waves; i++) {
+    free(f->wave[i].frequency);
     free(f->wave[i].stress);
     free(f->wave[i].residual);
     free(f->wave[i].shape);
@@ -210,6 +211,10 @@ static shb_status read_wave_data(hid_t file, int diameter, const char *name, int
 static shb_status read_modes(hid_t file, const post_blade_field *f, int i) {
   post_wave_field *w = &f->wave[i];
   const int        n = f->n_nodes, d = f->diameter[i], m = f->n_modes;
+  h5_shape         modes = H5_SHAPE((hsize_t)m);
+  char             path[PATH];
+  snprintf(path, sizeof path, "/nodal_diameter_%d/modes/frequency", d);
+  SHB_TRY(h5_read_double(file, path, &modes, &w->frequency));
   SHB_TRY(read_wave_data(file, d, "modes/stress", m, n, POST_STRESSES, &w->stress));
   return f->motion ? read_wave_data(file, d, "modes/shape", m, n, 3, &w->shape) : SHB_OK;
 }

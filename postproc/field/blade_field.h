@@ -16,6 +16,7 @@ enum { POST_STRESSES = 6 };
 typedef struct {
   double complex *stress, *residual;
   double complex *shape, *residual_shape; /* with motion */
+  double         *frequency;              /* [n_modes] Hz */
 } post_wave_field;
 
 /* Of a disc the fields are those of one sector. They are in wave, and stress, residual, shape and

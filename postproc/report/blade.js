@@ -54,23 +54,27 @@ const Blade = (() => {
       decode(D.position, Uint16Array).subarray(0, 3 * n),
       (v, i) => D.lo[i % 3] + D.size[i % 3] * v / 65535);
   const index = decode(D.index, wide ? Uint32Array : Uint16Array).subarray(0, 3 * D.triangles);
-  for (const m of D.modes) m.data = decode(m.data, Int8Array);
+  for (const m of D.modes) {
+    m.data = decode(m.data, Int8Array);
+    if (m.im) m.im = decode(m.im, Int8Array); /* a travelling wave of a disc */
+  }
   for (const p of D.points) p.q = decode(p.q, Float32Array);
   const centre = D.lo.map((v, d) => v + D.size[d] / 2), radius = Math.hypot(...D.size) / 2;
 
   /* ---------------------------------------------------------------- what is shown */
   const shown = {key: "", harmonics: [], order: 1, most: 1, value: new Float32Array(n), top: 1};
-  /* Harmonics of displacement (3 a node) or stress (6): sum of the modes by their amplitudes. */
-  function sum(q, from, width) {
-    const re = new Float32Array(width * n), im = new Float32Array(width * n);
-    D.modes.forEach((m, i) => {
+  /* A harmonic of displacement (3 a node) or stress (6): sum of the modes of its wave by their
+   * amplitudes. A wave that runs backwards has the conjugate shapes. */
+  function sum({q, wave, back}, from, width) {
+    const re = new Float32Array(width * n), im = new Float32Array(width * n), sign = back ? -1 : 1;
+    D.modes.filter(m => (m.w || 0) === wave).forEach((m, i) => {
       const scale = (width === 3 ? m.d : m.s) / 127, a = q[2 * i] * scale, b = q[2 * i + 1] * scale;
       if (a === 0 && b === 0) return;
       for (let v = 0; v < n; v++)
         for (let c = 0; c < width; c++) {
-          const x = m.data[9 * v + from + c];
-          re[width * v + c] += a * x;
-          im[width * v + c] += b * x;
+          const x = m.data[9 * v + from + c], y = m.im ? sign * m.im[9 * v + from + c] : 0;
+          re[width * v + c] += a * x - b * y;
+          im[width * v + c] += b * x + a * y;
         }
     });
     return {re, im};
@@ -101,19 +105,27 @@ const Blade = (() => {
   }
   const square = (x, i) => x[i] ** 2 + x[i + 1] ** 2 + x[i + 2] ** 2;
   let point = null; /* chosen on the curves */
+  const title = i =>
+      `Mode ${i % D.row + 1}` + (D.waves ? ` of nodal diameter ${D.waves[D.modes[i].w]}` : "");
   function load() {
     const key = $("blade-shown").value, colour = $("blade-colour").value;
-    let ks = [1], qs, order = 1, name;
+    let ks = [1], qs, order = 1, lag = 0, name;
     if (key === "point" && point) {
       ks = point.k;
       order = point.order;
-      qs = ks.map((_, j) => point.q.subarray(2 * j * D.modes.length, 2 * (j + 1) * D.modes.length));
+      lag = point.lag;
+      qs = ks.map((_, j) => ({
+        q: point.q.subarray(2 * j * D.row, 2 * (j + 1) * D.row),
+        wave: point.w ? point.w[j] : 0,
+        back: point.back && point.back[j]
+      }));
       name = point.name;
     } else {
-      const q = new Float32Array(2 * D.modes.length);
-      q[2 * Math.max(0, +key || 0)] = 1;
-      qs = [q];
-      name = `Mode ${+key + 1}, ${number(D.modes[+key].f, 5)}${NBSP}Hz, the contact free`;
+      const i = Math.max(0, +key || 0), q = new Float32Array(2 * D.row), wave = D.modes[i].w || 0;
+      q[2 * (i % D.row)] = 1;
+      qs = [{q, wave}];
+      lag = D.waves ? 2 * Math.PI * D.waves[wave] / D.blades : D.lag;
+      name = `${title(i)}, ${number(D.modes[i].f, 5)}${NBSP}Hz, the contact free`;
     }
     const motion = qs.map(q => sum(q, 0, 3)), u = greatest(motion, ks, 3, square);
     const value = colour === "motion" ? u : greatest(qs.map(q => sum(q, 3, 6)), ks, 6, mises);
@@ -122,6 +134,7 @@ const Blade = (() => {
     shown.harmonics = motion;
     shown.ks = ks;
     shown.order = order;
+    shown.lag = lag;
     shown.value = value.map(v => v / top);
     shown.real = key === "point" && !!point;
     const list = colour === "motion" ? LENGTH : PRESSURE, w = unit(list, top);
@@ -257,7 +270,7 @@ const Blade = (() => {
     for (let blade = all.from; blade <= all.to; blade++) {
       const phase = new Float32Array(2 * HARMONICS);
       shown.ks.forEach((k, j) => {
-        const angle = k * (2 * Math.PI * clock - blade * D.lag) / shown.order;
+        const angle = k * (2 * Math.PI * clock / shown.order - blade * shown.lag);
         phase[2 * j] = f * Math.cos(angle);
         phase[2 * j + 1] = -f * Math.sin(angle);
       });
@@ -293,7 +306,9 @@ const Blade = (() => {
     run();
   }).observe(canvas);
 
-  const options = D.modes.map((m, i) => [i, `mode ${i + 1}, ${number(m.f, 5)} Hz`]);
+  const options = D.modes.map(
+      (m, i) => [i, `mode ${i % D.row + 1}${D.waves ? `, n = ${D.waves[m.w]}` : ""}, ${
+          number(m.f, 5)} Hz`]);
   function fill(chosen) {
     const list = point ? [["point", "the chosen point"], ...options] : options;
     $("blade-shown").innerHTML =
@@ -378,6 +393,16 @@ const Blade = (() => {
       const keep = first ? "point" : $("blade-shown").value;
       fill(keep);
       if (keep === "point") load();
+    },
+    /* Displacement [node][3], m, of a blade in its own place, at an instant 0..1 of the period. */
+    motion(blade, instant) {
+      const x = new Float32Array(3 * n), rows = turned(D.blades ? 2 * Math.PI * blade / D.blades : 0);
+      shown.harmonics.forEach(({re, im}, j) => {
+        const angle = shown.ks[j] * (2 * Math.PI * instant - blade * shown.lag);
+        const c = Math.cos(angle), s = Math.sin(angle);
+        for (let i = 0; i < x.length; i++) x[i] += re[i] * c - im[i] * s;
+      });
+      return x.map((_, i) => rows[i % 3].reduce((sum, r, d) => sum + r * x[i - i % 3 + d], 0));
     },
     picture() {
       draw();

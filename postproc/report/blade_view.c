@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "mesh/base/constants.h"
+#include "mhb/structure/relative_motion.h"
 #include "postproc/draw/number_format.h"
 #include "postproc/report/still_blade.h"
 
@@ -14,17 +15,47 @@ _Static_assert(__BYTE_ORDER__ == __ORDER_LITTLE_ENDIAN__, "the page's arrays are
 /* Bytes before base64, which adds a third: 3 MB of text together. */
 enum { BUDGET = 2000000, POINT_BUDGET = 200000 };
 enum { MOST_MODES = 12, LEAST_MODES = 6, FIXED_BYTES = 18, MODE_BYTES = 9, MOST_SHOWN = 5 };
+enum { MOST_WAVES = 6 };
 
 static const double SHOWN = 0.02; /* of the largest modal amplitude */
 
+/* Nodal diameters of a disc in the page; without a disc one, which is not named. */
+typedef struct {
+  int n, index[MOST_WAVES]; /* in field->wave */
+  int parts;                /* arrays of all waves together: one real, or two of complex shapes */
+} waves;
+
+static bool has_shapes(const post_blade_field *f) {
+  bool any = f->shape != NULL;
+  for (int i = 0; i < f->n_waves; i++) any = any || f->wave[i].shape;
+  return any;
+}
+
 bool post_blade_view_fits(const post_blade_view *view, const mhb_response *response) {
   const post_blade_field *f = view->field;
-  return f && f->n_nodes > 0 && f->shape && f->mesh.n_elements > 0 && f->n_modes > 0 &&
+  return f && f->n_nodes > 0 && has_shapes(f) && f->mesh.n_elements > 0 && f->n_modes > 0 &&
          f->n_modes == response->n_modes;
 }
 
-static int modes_shown(const post_skin *skin, int n_modes) {
-  int fit = (BUDGET / skin->n_nodes - FIXED_BYTES) / MODE_BYTES;
+static bool is_complex(const post_blade_field *f, int wave) {
+  return f->n_waves > 0 && f->diameter[wave] > 0 && 2 * f->diameter[wave] < f->blades;
+}
+
+static int place_of(const waves *w, int wave) {
+  for (int i = 0; i < w->n; i++)
+    if (w->index[i] == wave) return i;
+  return -1;
+}
+
+static void add_wave(const post_blade_field *f, int wave, waves *w) {
+  if (wave < 0 || w->n == MOST_WAVES || place_of(w, wave) >= 0) return;
+  if (f->n_waves > 0 && !f->wave[wave].shape) return;
+  w->index[w->n++] = wave;
+  w->parts += is_complex(f, wave) ? 2 : 1;
+}
+
+static int modes_shown(const post_skin *skin, int n_modes, int parts) {
+  int fit = (BUDGET / skin->n_nodes - FIXED_BYTES) / (MODE_BYTES * parts);
   if (fit > MOST_MODES) fit = MOST_MODES;
   return fit < n_modes ? fit : n_modes;
 }
@@ -101,12 +132,12 @@ static shb_status merge(const post_blade_field *f, double width, post_skin *skin
   return SHB_OK;
 }
 
-static shb_status make_skin(const post_blade_field *f, post_skin *skin) {
+static shb_status make_skin(const post_blade_field *f, int parts, post_skin *skin) {
   double lo[3], size[3], width;
   SHB_TRY(post_skin_create(&f->mesh, skin));
   box_of(f, skin, lo, size);
   width = 1e-3 * (size[0] + size[1] + size[2]);
-  while (skin->n_nodes > BUDGET / (FIXED_BYTES + LEAST_MODES * MODE_BYTES)) {
+  while (skin->n_nodes > BUDGET / (FIXED_BYTES + LEAST_MODES * MODE_BYTES * parts)) {
     SHB_TRY(merge(f, width, skin));
     width *= 1.25;
   }
@@ -147,26 +178,55 @@ static void put_surface(const post_blade_field *f, const post_skin *skin, post_b
   free(large);
 }
 
-static double largest(const post_skin *skin, int width, const double *x) {
+/* A field of one mode: real, or real and imaginary parts side by side. */
+typedef struct {
+  const double *of;
+  int           width, parts; /* numbers a node; 1 or 2 doubles a number */
+} mode_field;
+
+static mode_field field_of(const double *real, const double complex *wave, size_t mode, int nodes,
+                           int width) {
+  const size_t at = mode * (size_t)nodes * (size_t)width;
+  if (!wave) return (mode_field){real + at, width, 1};
+  return (mode_field){(const double *)(wave + at), width, 2};
+}
+
+static double number_of(const mode_field *m, int node, int component, int part) {
+  return m->of[(m->width * node + component) * m->parts + part];
+}
+
+static double largest(const post_skin *skin, const mode_field *m) {
   double most = 0;
   for (int i = 0; i < skin->n_nodes; i++)
-    for (int c = 0; c < width; c++) most = fmax(most, fabs(x[width * skin->node[i] + c]));
+    for (int c = 0; c < m->width * m->parts; c++)
+      most = fmax(most, fabs(number_of(m, skin->node[i], c / m->parts, c % m->parts)));
   return most > 0 ? most : 1;
 }
 
-static void put_mode(const post_blade_field *f, const post_skin *skin, double frequency, int mode,
-                     int8_t *data, post_buffer *out) {
-  const double *shape  = f->shape + (size_t)mode * 3 * (size_t)f->n_nodes;
-  const double *stress = f->stress + (size_t)mode * POST_STRESSES * (size_t)f->n_nodes;
-  const double  d = largest(skin, 3, shape), s = largest(skin, POST_STRESSES, stress);
-  for (int i = 0; i < skin->n_nodes; i++) {
-    for (int c = 0; c < 3; c++)
-      data[9 * i + c] = (int8_t)lround(127 * shape[3 * skin->node[i] + c] / d);
-    for (int c = 0; c < POST_STRESSES; c++)
-      data[9 * i + 3 + c] = (int8_t)lround(127 * stress[POST_STRESSES * skin->node[i] + c] / s);
-  }
-  post_put(out, "%s{\"f\":%.7g,\"d\":%.7g,\"s\":%.7g", mode ? "," : "", frequency, d, s);
-  put_array("data", 9 * (size_t)skin->n_nodes, data, out);
+static void put_part(const post_skin *skin, const mode_field *u, const mode_field *s,
+                     const double scale[2], int part, int8_t *data, post_buffer *out) {
+  for (int i = 0; i < skin->n_nodes; i++)
+    for (int c = 0; c < 3 + POST_STRESSES; c++) {
+      const double x =
+          c < 3 ? number_of(u, skin->node[i], c, part) : number_of(s, skin->node[i], c - 3, part);
+      data[MODE_BYTES * i + c] = (int8_t)lround(127 * x / scale[c >= 3]);
+    }
+  put_array(part ? "im" : "data", MODE_BYTES * (size_t)skin->n_nodes, data, out);
+}
+
+/* Mode of the wave at a place of the page. */
+static void put_mode(const post_blade_field *f, const post_skin *skin, const waves *w, int at,
+                     int mode, double frequency, int8_t *data, post_buffer *out) {
+  const post_wave_field *own = f->n_waves > 0 ? &f->wave[w->index[at]] : NULL;
+  const mode_field u = field_of(f->shape, own ? own->shape : NULL, (size_t)mode, f->n_nodes, 3);
+  const mode_field s =
+      field_of(f->stress, own ? own->stress : NULL, (size_t)mode, f->n_nodes, POST_STRESSES);
+  const double scale[] = {largest(skin, &u), largest(skin, &s)};
+  post_put(out, "%s{\"f\":%.7g,\"d\":%.7g,\"s\":%.7g", at || mode ? "," : "",
+           own ? own->frequency[mode] : frequency, scale[0], scale[1]);
+  if (own) post_put(out, ",\"w\":%d", at);
+  for (int part = 0; part < (is_complex(f, w->index[at]) ? 2 : 1); part++)
+    put_part(skin, &u, &s, scale, part, data, out);
   post_put(out, "}");
 }
 
@@ -191,7 +251,30 @@ static int choose_harmonics(const mhb_branch *b, int kept, int n_modes, int chos
   return n;
 }
 
-static void put_point(const post_analysis *analysis, int b, int kept, int modes, post_buffer *out) {
+/* The wave of each harmonic: its place on the page, and whether it runs backwards. */
+static void put_waves(const post_blade_field *f, const mhb_branch *b, const waves *w, int n,
+                      const int *k, post_buffer *out) {
+  int  slot[MOST_SHOWN];
+  bool backward[MOST_SHOWN];
+  for (int i = 0; i < n; i++) slot[i] = place_of(w, post_blade_wave(f, b, k[i], &backward[i]));
+  post_put(out, ",\"w\":[");
+  for (int i = 0; i < n; i++) post_put(out, i ? ",%d" : "%d", slot[i]);
+  post_put(out, "],\"back\":[");
+  for (int i = 0; i < n; i++) post_put(out, i ? ",%d" : "%d", backward[i]);
+  post_put(out, "]");
+}
+
+/* rad, by which the right neighbour lags at the fundamental. */
+static double lag_of(const mhb_response *r, const mhb_branch *b) {
+  const mhb_settings own = {
+      .engine_order = r->engine_order, .blades = r->blades, .subharmonics = b->order};
+  const int shift = r->blades > 0 ? mhb_wave_shift(&own) : -1;
+  if (shift < 0) return 0;
+  return SHB_TWO_PI / b->order * ((double)r->engine_order / r->blades + shift);
+}
+
+static void put_point(const post_analysis *analysis, const post_blade_field *f, const waves *w,
+                      int b, int kept, int modes, post_buffer *out) {
   const mhb_response   *r      = analysis->response;
   const mhb_branch     *branch = &r->branch[b];
   const int             point = branch->modal.point[kept], all = r->n_modes;
@@ -200,9 +283,9 @@ static void put_point(const post_analysis *analysis, int b, int kept, int modes,
   int    k[MOST_SHOWN], n = choose_harmonics(branch, kept, all, k);
   float  data[2 * MOST_SHOWN * MOST_MODES];
   float *to = data;
-  post_put(out, "{\"b\":%d,\"x\":%.9g,\"a\":%.7g,\"order\":%d,\"k\":[", b,
+  post_put(out, "{\"b\":%d,\"x\":%.9g,\"a\":%.7g,\"order\":%d,\"lag\":%.9g,\"k\":[", b,
            post_abscissa_values(r, branch)[point], analysis->curve[b].amplitude[point],
-           branch->order);
+           branch->order, lag_of(r, branch));
   for (int i = 0; i < n; i++) {
     post_put(out, i ? ",%d" : "%d", k[i]);
     for (int m = 0; m < modes; m++) {
@@ -211,6 +294,7 @@ static void put_point(const post_analysis *analysis, int b, int kept, int modes,
     }
   }
   post_put(out, "]");
+  if (f->n_waves > 0) put_waves(f, branch, w, n, k, out);
   put_array("q", sizeof(float) * (size_t)(to - data), data, out);
   post_put(out, "}");
 }
@@ -221,8 +305,30 @@ static bool is_highest(const post_analysis *analysis, int b, int point) {
   return false;
 }
 
+/* The waves of the harmonics that the kept points show, those of the lowest harmonics first. */
+static void find_waves(const post_analysis *analysis, const post_blade_field *f, waves *w) {
+  const mhb_response *r = analysis->response;
+  *w                    = (waves){0};
+  if (f->n_waves == 0) {
+    add_wave(f, 0, w);
+    return;
+  }
+  for (int rank = 0; rank < MOST_SHOWN; rank++)
+    for (int b = 0; b < r->n_branches; b++) {
+      const mhb_branch *branch = &r->branch[b];
+      for (int i = 0; branch->kind == MHB_BRANCH_NONLINEAR && i < branch->modal.n; i++) {
+        bool backward;
+        int  k[MOST_SHOWN];
+        if (rank < choose_harmonics(branch, i, r->n_modes, k))
+          add_wave(f, post_blade_wave(f, branch, k[rank], &backward), w);
+      }
+    }
+  for (int i = 0; i < f->n_waves && w->n == 0; i++) add_wave(f, i, w);
+}
+
 /* Kept points of all nonlinear curves: all if they fit, else peaks and every stride-th. */
-static void put_points(const post_analysis *analysis, int modes, post_buffer *out) {
+static void put_points(const post_analysis *analysis, const post_blade_field *f, const waves *w,
+                       int modes, post_buffer *out) {
   const mhb_response *r     = analysis->response;
   int                 total = 0, any = 0;
   for (int b = 0; b < r->n_branches; b++)
@@ -234,9 +340,23 @@ static void put_points(const post_analysis *analysis, int modes, post_buffer *ou
     for (int i = 0; i < branch->modal.n; i++) {
       if (i % stride && !is_highest(analysis, b, branch->modal.point[i])) continue;
       post_put(out, any++ ? "," : "");
-      put_point(analysis, b, i, modes, out);
+      put_point(analysis, f, w, b, i, modes, out);
     }
   }
+}
+
+static void put_modes(const post_analysis *analysis, const post_blade_field *f,
+                      const post_skin *skin, const waves *w, int modes, int8_t *data,
+                      post_buffer *out) {
+  post_put(out, ",\"modes\":[");
+  for (int at = 0; at < w->n; at++)
+    for (int i = 0; i < modes; i++)
+      put_mode(f, skin, w, at, i, analysis->response->mode_frequency[i], data, out);
+  post_put(out, "],\"row\":%d", modes);
+  for (int i = 0; i < w->n && f->n_waves > 0; i++)
+    post_put(out, i ? ",%d" : ",\"waves\":[%d", f->diameter[w->index[i]]);
+  if (f->n_waves > 0) post_put(out, "]");
+  post_put(out, ",\"modesLeftOut\":%d", f->n_modes - modes);
 }
 
 shb_status post_blade_data(const post_analysis *analysis, const post_blade_view *view,
@@ -244,20 +364,21 @@ shb_status post_blade_data(const post_analysis *analysis, const post_blade_view 
   const mhb_response     *r    = analysis->response;
   const post_blade_field *f    = view->field;
   post_skin               skin = {0};
+  waves                   w;
   double                  axis[3];
-  shb_status              status = make_skin(f, &skin);
-  int8_t                 *data = status == SHB_OK ? calloc(9 * (size_t)skin.n_nodes + 4, 1) : NULL;
+  find_waves(analysis, f, &w);
+  shb_status status = make_skin(f, w.parts, &skin);
+  int8_t    *data   = status == SHB_OK ? calloc(MODE_BYTES * (size_t)skin.n_nodes + 4, 1) : NULL;
   if (status == SHB_OK && !data)
     status = shb_fail(SHB_ERR_IO, __FILE__, __LINE__, "not enough memory for the page");
   if (status == SHB_OK) {
-    const int modes = modes_shown(&skin, f->n_modes);
+    const int modes = modes_shown(&skin, f->n_modes, w.parts);
     mesh_axis_vector(view->axis, axis);
     post_put(out, "{");
     put_surface(f, &skin, out);
-    post_put(out, ",\"modes\":[");
-    for (int i = 0; i < modes; i++) put_mode(f, &skin, r->mode_frequency[i], i, data, out);
-    post_put(out, "],\"modesLeftOut\":%d,\"points\":[", f->n_modes - modes);
-    put_points(analysis, modes, out);
+    put_modes(analysis, f, &skin, &w, modes, data, out);
+    post_put(out, ",\"points\":[");
+    put_points(analysis, f, &w, modes, out);
     post_put(out, "],\"axis\":[%g,%g,%g],\"blades\":%d,\"lag\":%.9g}", axis[0], axis[1], axis[2],
              r->blades, r->blades > 0 ? SHB_TWO_PI * r->engine_order / r->blades : 0);
   }

@@ -14,7 +14,8 @@ typedef struct {
   mesh_axis               axis;
 } post_blade_view;
 
-/* True if the field has elements and shapes, of as many modes as the response. */
+/* True if the field has elements and shapes, of as many modes as the response. Of a disc the field
+ * must match the response (post_blade_field_match). */
 bool post_blade_view_fits(const post_blade_view *view, const mhb_response *response);
 
 /* Section of the page: canvas, controls, still picture. */
@@ -27,10 +28,14 @@ void post_blade_section(const post_analysis *analysis, const post_blade_view *vi
  *   position  [nodes][3] uint16 in the box
  *   index     [triangles][3] uint16, or uint32 from 65536 nodes
  *   modes     [{f Hz, d, s, data}]: int8 [nodes][9], displacement x d kg^-1/2 and Cauchy stress
- *             xx, yy, zz, xy, yz, xz times s Pa kg^-1/2, in 1/127
- *   points    [{b, x, a, order, k, q}]: branch, abscissa and amplitude of the point, harmonics
- *             kept; q: float32 [k][mode][re, im] m kg^1/2
- *   axis [3], blades, lag (rad, of the right neighbour at the excitation's first harmonic)
+ *             xx, yy, zz, xy, yz, xz times s Pa kg^-1/2, in 1/127. Of a disc: row of them for each
+ *             of the nodal diameters in waves, w its place there; im: imaginary part as data, where
+ *             the shape is complex
+ *   points    [{b, x, a, order, lag, k, q}]: branch, abscissa and amplitude of the point; lag rad,
+ *             of the right neighbour at the fundamental; harmonics kept; q: float32
+ *             [k][row][re, im] m kg^1/2. Of a disc: w place in waves, or -1; back 1: the conjugate
+ *             shapes
+ *   axis [3], blades, lag (the same of a mode without a disc)
  *
  * Where the surface has too many nodes, those of a cell of a grid are merged. Errors: SHB_ERR_IO no
  * memory. */

@@ -59,7 +59,10 @@ static shb_status add_model(const post_job *job, work *w) {
   if (w->model.n_pairs == w->response->n_pairs) w->analysis->area = w->model.area;
   if (!job->html) return SHB_OK;
   SHB_TRY(post_blade_field_read_motion(job->modal, &w->field));
-  if (w->field.n_waves > 0) post_blade_field_free(&w->field); /* the picture has real modes */
+  if (w->field.n_waves == 0) return SHB_OK;
+  /* a disc of another response is not shown */
+  if (post_blade_field_match(&w->field, w->response, job->modal) != SHB_OK)
+    post_blade_field_free(&w->field);
   return SHB_OK;
 }
 

@@ -1,9 +1,11 @@
-/* Surface, modes and kept points of the page's blade.
+/* Surface, modes and kept points of the page's blade, and of a sector of a disc.
  * With "keep": pages for test_page_script.py. */
 #include "postproc/report/blade_view.h"
 
 #include "mesh/base/constants.h"
 #include "mesh/base/progress.h"
+#include "postproc/field/blade_skin.h"
+#include "postproc/field/whole_period.h"
 #include "postproc/report/report.h"
 #include "postproc/report/still_blade.h"
 #include "tests/support/box.h"
@@ -32,9 +34,46 @@ static void make_field(const int cells[3], post_blade_field *f) {
 }
 
 static void free_field(post_blade_field *f) {
+  for (int w = 0; w < f->n_waves; w++) {
+    free(f->wave[w].frequency);
+    free(f->wave[w].shape);
+    free(f->wave[w].stress);
+  }
+  free(f->wave);
+  free(f->diameter);
   mesh_fe_free(&f->mesh);
   free(f->shape);
   free(f->stress);
+}
+
+/* The same bar as a sector of twelve: modes of nodal diameters 0 to 6, whose second bending is a
+ * quarter of a period behind the first. */
+static void make_disc(const int cells[3], post_blade_field *f) {
+  make_field(cells, f);
+  f->blades       = 12;
+  f->engine_order = 5;
+  f->n_waves      = 7;
+  f->diameter     = calloc(7, sizeof *f->diameter);
+  f->wave         = calloc(7, sizeof *f->wave);
+  assert_true(f->diameter && f->wave);
+  for (int w = 0; w < f->n_waves; w++) {
+    post_wave_field *to = &f->wave[w];
+    const size_t     n = (size_t)(MODES * f->n_nodes), complex_too = w > 0 && w < 6;
+    f->diameter[w] = w;
+    to->frequency  = calloc(MODES, sizeof *to->frequency);
+    to->shape      = calloc(3 * n, sizeof *to->shape);
+    to->stress     = calloc(POST_STRESSES * n, sizeof *to->stress);
+    assert_true(to->frequency && to->shape && to->stress);
+    for (int m = 0; m < MODES; m++) to->frequency[m] = 100 * (m + 1) + 10 * w;
+    for (size_t i = 0; i < 3 * n; i++)
+      to->shape[i] =
+          f->shape[i] + (complex_too ? 0.2 * w * I * f->shape[i / 3 * 3 + (i + 1) % 3] : 0);
+    for (size_t i = 0; i < POST_STRESSES * n; i++)
+      to->stress[i] = f->stress[i] * (complex_too ? CMPLX(1, 0.3) : 1);
+  }
+  free(f->shape);
+  free(f->stress);
+  f->shape = f->stress = NULL;
 }
 
 /* Kept amplitudes at every 40th point of the nonlinear curves. */
@@ -150,18 +189,96 @@ static void pictures_are_drawn(void **state) {
   free_field(&f);
 }
 
+/* ---------------------------------------------------------------- a disc */
+
+/* Harmonic 3 also as harmonic 2, which runs backwards: 2 x 5 of 12 is nodal diameter 2. */
+static mhb_response *make_disc_response(const fixture_options *o) {
+  mhb_response *r = make_response(o);
+  r->engine_order = 5;
+  r->blades       = 12;
+  for (int b = 0; b < r->n_branches; b++) {
+    mhb_branch  *branch = &r->branch[b];
+    const size_t K = (size_t)branch->n_harmonics + 1, m = (size_t)r->n_modes;
+    for (int i = 0; i < branch->modal.n; i++)
+      for (size_t k = 0; k < m; k++)
+        branch->modal.amplitude[((size_t)i * K + 2) * m + k] = 4e-5 * CMPLX(1, -0.4 * (double)k);
+  }
+  return r;
+}
+
+static void waves_of_a_disc_are_there(void **state) {
+  (void)state;
+  fixture_options  o = fixture_usual();
+  post_blade_field f;
+  make_disc((const int[]){4, 1, 10}, &f);
+  mhb_response *r   = make_disc_response(&o);
+  post_buffer   out = data_of(&f, r);
+  assert_has(out.text, "\"waves\":[5,2,3],"); /* of harmonics 1, 2 and 3 */
+  assert_has(out.text, "\"row\":8,");
+  assert_has(out.text, "\"f\":150,"); /* of nodal diameter 5 */
+  assert_has(out.text, ",\"im\":\"");
+  assert_has(out.text, "\"k\":[1,2,3],\"w\":[0,1,2],\"back\":[0,1,0]");
+  assert_has(out.text, "\"lag\":2.61799388,"); /* 2 pi 5/12 */
+  post_buffer_free(&out);
+  mhb_response_destroy(r);
+  free_field(&f);
+}
+
+static void many_waves_fit_into_three_megabytes(void **state) {
+  (void)state;
+  fixture_options  o = fixture_usual();
+  post_blade_field f;
+  make_disc((const int[]){30, 4, 50}, &f);
+  mhb_response *r   = make_disc_response(&o);
+  post_buffer   out = data_of(&f, r);
+  print_message("%d nodes: %.2f MB; %.40s\n", f.n_nodes, 1e-6 * (double)out.length, out.text);
+  assert_true(out.length < 3000000);
+  post_buffer_free(&out);
+  mhb_response_destroy(r);
+  free_field(&f);
+}
+
 /* ---------------------------------------------------------------- pages for a browser */
 
-static void keep_page(const char *name, const int cells[3]) {
+/* What `shroudhb field --ring` has at the first kept point: nodes of the page, of three sectors at
+ * an instant. */
+static void keep_motion(const post_blade_field *f, const mhb_response *r, const char *path) {
+  static const int sector[] = {0, 1, 7};
+  post_skin        skin;
+  post_period      p;
+  post_buffer      out    = {0};
+  int              branch = 0;
+  while (r->branch[branch].kind != MHB_BRANCH_NONLINEAR || r->branch[branch].modal.n == 0) branch++;
+  const mhb_branch *b = &r->branch[branch];
+  double           *u = calloc(3 * (size_t)f->n_nodes, sizeof *u);
+  assert_ok(post_skin_create(&f->mesh, &skin));
+  assert_ok(post_period_create(f, r, branch, 0, MESH_AXIS_X, &p));
+  post_put(&out, "{\"b\":%d,\"x\":%.12g,\"sectors\":[0,1,7],\"instant\":0.31,\"u\":[", branch,
+           b->frequency[b->modal.point[0]]);
+  for (int s = 0; s < 3; s++) {
+    post_period_at(&p, sector[s], 0.31, u, NULL);
+    for (int i = 0; i < 3 * skin.n_nodes; i++)
+      post_put(&out, s + i ? ",%.7g" : "%.7g", u[3 * skin.node[i / 3] + i % 3]);
+  }
+  post_put(&out, "]}");
+  assert_ok(post_buffer_publish(&out, path));
+  post_buffer_free(&out);
+  post_period_free(&p);
+  post_skin_free(&skin);
+  free(u);
+}
+
+static void keep_page(const char *name, bool disc, const int cells[3]) {
   char             none[] = "", path[64];
   post_origin      source = {none, none, none, none, none, none, none, 1};
   fixture_options  o      = fixture_usual();
   post_blade_field f;
   post_buffer      out = {0};
   post_analysis   *a;
-  make_field(cells, &f);
-  mhb_response         *r    = make_response(&o);
+  (disc ? make_disc : make_field)(cells, &f);
+  mhb_response         *r    = (disc ? make_disc_response : make_response)(&o);
   const post_blade_view view = {&f, MESH_AXIS_X};
+  if (disc) keep_motion(&f, r, "motion.json");
   assert_ok(post_analysis_create(r, &a));
   assert_ok(post_report(a, &source, name, &view, &out));
   snprintf(path, sizeof path, "page_%s.html", name);
@@ -178,10 +295,13 @@ int main(int argc, char **argv) {
       cmocka_unit_test(fifty_thousand_nodes_fit_into_three_megabytes),
       cmocka_unit_test(a_large_surface_is_merged),
       cmocka_unit_test(pictures_are_drawn),
+      cmocka_unit_test(waves_of_a_disc_are_there),
+      cmocka_unit_test(many_waves_fit_into_three_megabytes),
   };
   if (argc > 1 && strcmp(argv[1], "keep") == 0) {
-    keep_page("blade", (const int[]){4, 1, 10});
-    keep_page("large", (const int[]){40, 4, 65});
+    keep_page("blade", false, (const int[]){4, 1, 10});
+    keep_page("large", false, (const int[]){40, 4, 65});
+    keep_page("disc", true, (const int[]){4, 1, 10});
     return 0;
   }
   return cmocka_run_group_tests(tests, NULL, NULL);

@@ -36,7 +36,8 @@ LAW = """
 # Acts on a page as a reader does, then leaves what it saw in the document.
 ACTIONS = (Path(__file__).parent / 'page_actions.js').read_text()
 
-KINDS = ('usual', 'contacts', 'friction', 'free', 'many', 'blade', 'large')
+KINDS = ('usual', 'contacts', 'friction', 'free', 'many', 'blade', 'large', 'disc')
+BLADES = ('blade', 'large', 'disc')
 LOOPS = {'loop-u', 'loop-w', 'path', 'period'}
 
 
@@ -65,6 +66,39 @@ def law_faults(chromium, folder):
     return console + [f'{m["name"]}: {m["work"]:.1e}' for m in seen if m['work'] > 5e-3]
 
 
+# The motion of sectors on the page against that of `shroudhb field --ring`.
+MOTION = """
+<script>
+queueMicrotask(() => {
+  Blade.choose(wanted.b, wanted.x, 0, () => "first");
+  const select = document.getElementById("blade-shown");
+  select.value = "point";
+  select.dispatchEvent(new Event("change"));
+  let off = 0, size = 0, at = 0;
+  for (const s of wanted.sectors)
+    for (const x of Blade.motion(s, wanted.instant)) {
+      off = Math.max(off, Math.abs(x - wanted.u[at]));
+      size = Math.max(size, Math.abs(wanted.u[at++]));
+    }
+  document.title = "seen " + JSON.stringify({off: off / size, left: wanted.u.length - at});
+});
+</script></body>"""
+
+
+def motion_faults(chromium, folder):
+    """Sectors of a disc in motion: forward and backward waves."""
+    wanted = (folder / 'motion.json').read_text()
+    page = (folder / 'page_disc.html').read_text()
+    console, seen = visit(chromium, folder, 'motion', page,
+                          f'<script>const wanted = {wanted};</script>' + MOTION)
+    if not seen:
+        return console + ['the motion did not end']
+    print(f'  motion of three sectors: off by {seen["off"]:.1e} of the largest')
+    if seen['left']:
+        console.append(f'{seen["left"]} numbers are left')
+    return console + ([] if seen['off'] < 0.01 else [f'off by {seen["off"]:.2g}'])
+
+
 def faults(kind, chromium, folder):
     """What is wrong with the page of a kind."""
     page = (folder / f'page_{kind}.html').read_text()
@@ -72,11 +106,11 @@ def faults(kind, chromium, folder):
     if not seen:
         return found + ['the actions did not end']
     found += seen['faults']
-    if (kind in ('blade', 'large')) != ('pictures' in seen):
-        found.append('no blade' if kind in ('blade', 'large') else 'a blade')
+    if (kind in BLADES) != ('pictures' in seen):
+        found.append('no blade' if kind in BLADES else 'a blade')
     if (kind == 'free') != seen['speeds']:  # it runs up
         found.append('axis of speeds')
-    if LOOPS <= set(seen['charts']) == (kind in ('free', 'blade', 'large')):
+    if LOOPS <= set(seen['charts']) == (kind in ('free', *BLADES)):
         found.append(f'charts {seen["charts"]}')
     return found
 
@@ -90,6 +124,9 @@ def main():
             subprocess.run([Path(maker).resolve(), 'keep'], cwd=folder, check=True)
         wrong = law_faults(chromium, folder)
         print(f'law: {"; ".join(wrong) or "good"}')
+        still = motion_faults(chromium, folder)
+        print(f'motion: {"; ".join(still) or "good"}')
+        wrong += still
         for kind in KINDS:
             found = faults(kind, chromium, folder)
             print(f'{kind}: {"; ".join(found) or "good"}')
