@@ -46,7 +46,7 @@ static void free_field(post_blade_field *f) {
   free(f->stress);
 }
 
-/* The same bar as a sector of twelve: modes of nodal diameters 0 to 6, whose second bending is a
+/* The same bar as a sector of twelve: modes of nodal diameters 0 to 6. The second bending is a
  * quarter of a period behind the first. */
 static void make_disc(const int cells[3], post_blade_field *f) {
   make_field(cells, f);
