@@ -289,27 +289,38 @@ static void sum_changes(const fem_body *body, const double *u, double complex ph
   }
 }
 
+/* Up to LANES motions. false: no memory. */
+static bool change_few(const fem_body *body, const double *u, int n, const double *motion,
+                       float *stress) {
+  const size_t nodes        = (size_t)body->mesh->n_nodes;
+  recovery    *r            = recovery_create(body);
+  lanes(*sum)[FEM_STRESSES] = malloc(nodes * sizeof *sum);
+  const bool made           = r && sum;
+  if (made) sum_changes(body, u, 1, n, motion, r, sum);
+  for (int l = 0; made && l < n; l++) {
+    float *out = stress + FEM_STRESSES * nodes * (size_t)l;
+    for (size_t i = 0; i < nodes; i++)
+      for (int c = 0; c < FEM_STRESSES; c++)
+        out[FEM_STRESSES * i + (size_t)c] = (float)(sum[i][c][l] / r->volume[i]);
+  }
+  free(sum);
+  recovery_destroy(r);
+  return made;
+}
+
 PetscErrorCode fem_nodal_stress_change(const fem_body *body, const double *u, int n,
                                        const double *motion, float *stress) {
   const size_t nodes = (size_t)body->mesh->n_nodes;
-  recovery    *r     = recovery_create(body);
-  lanes(*sum)[FEM_STRESSES];
-
+  bool         good  = true;
   PetscFunctionBeginUser;
-  PetscCheck(r, PETSC_COMM_SELF, PETSC_ERR_MEM, "no memory for nodal stresses");
-  PetscCall(PetscMalloc1(nodes, &sum));
+#pragma omp parallel for schedule(dynamic, 1) reduction(&& : good)
   for (int first = 0; first < n; first += LANES) {
-    const int count = PetscMin(LANES, n - first);
-    sum_changes(body, u, 1, count, motion + 3 * nodes * (size_t)first, r, sum);
-    for (int l = 0; l < count; l++) {
-      float *out = stress + FEM_STRESSES * nodes * (size_t)(first + l);
-      for (size_t i = 0; i < nodes; i++)
-        for (int c = 0; c < FEM_STRESSES; c++)
-          out[FEM_STRESSES * i + (size_t)c] = (float)(sum[i][c][l] / r->volume[i]);
-    }
+    const size_t at = nodes * (size_t)first;
+    good            = change_few(body, u, PetscMin(LANES, n - first), motion + 3 * at,
+                                 stress + FEM_STRESSES * at) &&
+           good;
   }
-  PetscCall(PetscFree(sum));
-  recovery_destroy(r);
+  PetscCheck(good, PETSC_COMM_SELF, PETSC_ERR_MEM, "no memory for nodal stresses");
   PetscFunctionReturn(0);
 }
 

@@ -3,14 +3,14 @@
 #include <omp.h>
 #include <stdlib.h>
 #include <string.h>
-#include <sys/mman.h>
 
 #include "fem/solver/block_order.h"
+#include "fem/solver/large_pages.h"
 #include "fem/solver/supernodal_factor.h"
 #include "fem/solver/supernodal_solve.h"
 
 /* MANY: right-hand sides from which BLAS is faster. BLOCK: columns that a thread solves at once. */
-enum { MANY = 12, BLOCK = 40, PAGE = 1 << 21 };
+enum { MANY = 12, BLOCK = 40 };
 
 /* Upper triangle of a symmetric matrix (sequential SBAIJ, block size 3) by block rows. */
 typedef struct {
@@ -161,21 +161,14 @@ static bool create_lower(const block_rows *b, const int *place, fem_lower_blocks
   return true;
 }
 
-/* Memory in large pages, for what is read as a whole. */
-static double *allocate_values(size_t count) {
-  const size_t bytes = (count * sizeof(double) + PAGE) / PAGE * PAGE;
-  double      *value = aligned_alloc(PAGE, bytes);
-  if (value) madvise(value, bytes, MADV_HUGEPAGE);
-  return value;
-}
-
 PetscErrorCode fem_cholesky_update(fem_cholesky *factor, Mat A, bool *definite) {
   block_rows       b;
   fem_lower_blocks lower;
   fem_factorised   end = FEM_NO_MEMORY;
 
   PetscFunctionBeginUser;
-  if (!factor->value) factor->value = allocate_values(factor->panels.n_values);
+  if (!factor->value)
+    factor->value = fem_large_malloc((factor->panels.n_values + 1) * sizeof *factor->value);
   PetscCall(borrow_blocks(A, &b));
   const bool listed = create_lower(&b, factor->place, &lower);
   if (listed && factor->value)
@@ -193,7 +186,7 @@ PetscErrorCode fem_cholesky_update(fem_cholesky *factor, Mat A, bool *definite) 
 static bool solve_block(const fem_cholesky *factor, const bool *needed, size_t count,
                         const double *b, size_t ldb, double *x, size_t ldx) {
   const size_t n = 3 * (size_t)factor->n, rows = (size_t)factor->panels.most_rows;
-  double      *own = allocate_values((n + rows) * count);
+  double      *own = fem_large_malloc((n + rows) * count * sizeof *own);
   if (!own) return false;
   for (size_t i = 0; i < n; i++) {
     double *at = own + (3 * (size_t)factor->place[i / 3] + i % 3) * count;

@@ -3,6 +3,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "fem/solver/large_pages.h"
 #include "fem/solver/supernodal_hermitian.h"
 
 struct fem_hermitian_order {
@@ -118,6 +119,8 @@ static shb_status factorise(fem_hermitian *factor, const double complex *value, 
   cholmod_sparse *A =
       factor->L ? permute(&factor->order->pattern, factor->order->place, value, common) : NULL;
   SHB_CHECK(A, SHB_ERR_IO, "out of memory for the factor of %d nodes", factor->order->pattern.n);
+  if (cholmod_change_factor(CHOLMOD_COMPLEX, 1, 1, 1, 1, factor->L, common))
+    fem_prefer_large_pages(factor->L->x, factor->L->xsize * sizeof *value);
   fem_cholmod_factorise(A, factor->L, common);
   cholmod_free_sparse(&A, common);
   SHB_CHECK(common->status >= CHOLMOD_OK, SHB_ERR_IO, "out of memory for the factor of %d nodes",
@@ -148,7 +151,8 @@ static bool make_room(fem_hermitian *factor) {
   const size_t n    = 3 * (size_t)factor->order->pattern.n,
                rows = fem_supernodal_hermitian_rows(factor->L);
   if (factor->x && factor->work) return true;
-  factor->x    = aligned_alloc(alignment, n * each);
+  factor->x =
+      n * each < FEM_LARGE_PAGE ? aligned_alloc(alignment, n * each) : fem_large_malloc(n * each);
   factor->work = aligned_alloc(alignment, rows * each);
   return factor->x && factor->work;
 }

@@ -5,6 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "fem/solver/large_pages.h"
 #include "mesh/base/constants.h"
 #include "modal/common/random_vector.h"
 #include "modal/cyclic/small_hermitian.h"
@@ -15,9 +16,9 @@ shb_status wave_basis_create(wave_operator *op, int p, int capacity, wave_basis 
   const size_t block = (size_t)p * op->order, each = (size_t)p * (size_t)p;
   const size_t blocks = (size_t)capacity, m = (size_t)p * blocks;
   *b       = (wave_basis){.op = op, .order = op->order, .p = p, .capacity = capacity};
-  b->W     = malloc(block * sizeof *b->W);
-  b->MW    = malloc(block * sizeof *b->MW);
-  b->Q     = malloc(blocks * block * sizeof *b->Q); /* touched as it grows */
+  b->W     = fem_large_malloc(block * sizeof *b->W);
+  b->MW    = fem_large_malloc(block * sizeof *b->MW);
+  b->Q     = fem_large_malloc(blocks * block * sizeof *b->Q); /* touched as it grows */
   b->D     = calloc(blocks * each, sizeof *b->D);
   b->B     = calloc(blocks * each, sizeof *b->B);
   b->H     = malloc(m * m * sizeof *b->H);

@@ -5,6 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "fem/solver/large_pages.h"
 #include "mesh/base/constants.h"
 #include "mesh/base/progress.h"
 #include "modal/condense/residual_terms.h"
@@ -409,9 +410,9 @@ static shb_status create_columns(workspace *w) {
 static shb_status create_batch(workspace *w, int batch) {
   const size_t b = (size_t)batch, size = b * w->op->order;
   w->batch  = batch;
-  w->X      = malloc(size * sizeof *w->X);
-  w->Y      = malloc(size * sizeof *w->Y);
-  w->MX     = malloc(size * sizeof *w->MX);
+  w->X      = fem_large_malloc(size * sizeof *w->X);
+  w->Y      = fem_large_malloc(size * sizeof *w->Y);
+  w->MX     = fem_large_malloc(size * sizeof *w->MX);
   w->C      = malloc(b * (size_t)w->modes->n * sizeof *w->C);
   bool made = w->X && w->Y && w->MX && w->C;
   for (int i = 0; i < BLOCKS; i++) {

@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "fem/body/energy.h"
+#include "fem/solver/large_pages.h"
 #include "mesh/base/constants.h"
 #include "mesh/base/progress.h"
 #include "modal/common/random_vector.h"
@@ -172,8 +173,8 @@ static shb_status allocate(size_t order, int modes, wave_modes *out) {
   out->order          = order;
   out->lambda         = malloc(n * sizeof *out->lambda);
   out->eigen_residual = calloc(n, sizeof *out->eigen_residual);
-  out->phi            = malloc(n * order * sizeof *out->phi);
-  out->m_phi          = malloc(n * order * sizeof *out->m_phi);
+  out->phi            = fem_large_malloc(n * order * sizeof *out->phi);
+  out->m_phi          = fem_large_malloc(n * order * sizeof *out->m_phi);
   SHB_CHECK(out->lambda && out->eigen_residual && out->phi && out->m_phi, SHB_ERR_IO,
             "out of memory for the modes of a sector");
   return SHB_OK;

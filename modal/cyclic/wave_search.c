@@ -1,4 +1,5 @@
 #include "modal/cyclic/wave_search.h"
+#include "fem/solver/large_pages.h"
 #include "modal/cyclic/small_hermitian.h"
 
 #include <math.h>
@@ -175,7 +176,7 @@ shb_status wave_search(wave_basis *b, double t, modal_missed_modes *out) {
   const size_t    size = (size_t)b->p * b->order, each = (size_t)b->p * (size_t)b->p;
   const size_t    columns = (size_t)b->p * MAX_STEPS;
   search          s       = {.b = b};
-  double complex *vectors = malloc(3 * size * sizeof *vectors);
+  double complex *vectors = fem_large_malloc(3 * size * sizeof *vectors);
   double complex *small   = calloc((3 + 2 * MAX_STEPS) * each + columns * columns, sizeof *small);
   double         *theta   = malloc(columns * sizeof *theta);
   shb_status      status  = SHB_OK;

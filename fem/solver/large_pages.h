@@ -1,0 +1,29 @@
+/* Memory in pages of 2 MB. A page fault costs as much as filling 4 kB, and large arrays have many;
+ * where the system has no large pages nothing changes. Free of PETSc. */
+#ifndef FEM_SOLVER_LARGE_PAGES_H
+#define FEM_SOLVER_LARGE_PAGES_H
+
+#include <stdint.h>
+#include <stdlib.h>
+#include <sys/mman.h>
+
+enum { FEM_LARGE_PAGE = 1 << 21 };
+
+/* Ask for them in memory that is there and not yet touched. */
+static inline void fem_prefer_large_pages(void *memory, size_t bytes) {
+  const uintptr_t page = FEM_LARGE_PAGE, begin = ((uintptr_t)memory + page - 1) / page * page;
+  const uintptr_t end = ((uintptr_t)memory + bytes) / page * page;
+  if (memory && end > begin)
+    madvise((char *)memory + (begin - (uintptr_t)memory), end - begin, MADV_HUGEPAGE);
+}
+
+/* As malloc; to be freed by free. From a page on it begins at one. */
+static inline void *fem_large_malloc(size_t bytes) {
+  const size_t page = FEM_LARGE_PAGE;
+  if (bytes < page) return malloc(bytes);
+  void *memory = aligned_alloc(page, (bytes + page - 1) / page * page);
+  fem_prefer_large_pages(memory, bytes);
+  return memory;
+}
+
+#endif
