@@ -27,7 +27,7 @@ set(INTEGRATION_TESTS cases.study.study cases.study.samples cases.study.eval
   cases.study.ring_samples
   mhb.integration.integrator
   mhb.integration.integration_sweep mhb.integration.integration_memory mhb.integration.mistuned_ring
-  mhb.integration.bladed_disc
+  mhb.integration.bladed_disc mhb.integration.amplitudes postproc.report.blade_view
   mhb.amplification.ring_response bench.mistuning mhb.ring.lasting mhb.ring.mistuned_lasting
   mhb.branches.lasting_motion
   mhb.continuation.arclength mhb.continuation.linear_resonances
