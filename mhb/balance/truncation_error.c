@@ -208,8 +208,10 @@ double mhb_truncation_error(mhb_truncation *t, const double *x) {
   t->kind        = MHB_TRUNCATION_NONE;
   if (mhb_balance_is_linear(t->balance)) return 0;
   mhb_balance_set_operating_point(b, &t->balance->eval->at);
-  for (int a = 0; a < b->n_pairs; a++)
+  for (int a = 0; a < b->n_pairs; a++) { /* nothing from an estimate before enters */
     memcpy(b->eval->info[a].slider, t->balance->eval->info[a].slider, sizeof(double[2]));
+    b->eval->kind[a] = t->balance->eval->kind[a];
+  }
   set_step(t, t->broyden != NULL);
   return size > 0 ? hypot(mhb_norm(t->step, b->n), t->higher_size) / size : 0;
 }

@@ -344,6 +344,9 @@ static void pass_current(mhb_trace_state *s, mhb_arclength *curve) {
   mhb_trace_state_numbers(s, &p->truncation, 1);
   mhb_trace_state_numbers(s, &p->modal, 1);
   mhb_trace_state_whole(s, &p->truncation_kind);
+  mhb_trace_state_numbers(s, &curve->former_step, 1);
+  if (curve->former_step > 0)
+    mhb_trace_state_numbers(s, curve->former_tangent, (size_t)curve->n + 1);
 }
 
 static shb_status pass_levels(mhb_trace_state *s, mhb_harmonic_levels *h) {

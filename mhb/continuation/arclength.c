@@ -119,7 +119,8 @@ mhb_reason mhb_arclength_depart(mhb_arclength *curve, const double *x, double va
   static const double step[]  = {1e-2, 3e-2, 3e-3, 1e-3};
   mhb_curve_point    *current = &curve->current;
   memcpy(current->x, x, sizeof(double) * (size_t)curve->n);
-  current->value = value;
+  current->value     = value;
+  curve->former_step = 0;
   mhb_arclength_measure(curve, current);
   double unit = mhb_arclength_unit(curve), length = mhb_norm(along, curve->n) / unit;
   for (int i = 0; i < curve->n; i++) current->tangent[i] = along[i] / length;
@@ -250,6 +251,7 @@ static int adaptive_step(mhb_arclength *curve, const mhb_curve_point *tried) {
     return 1;
   }
   if (curve->system->plain) return 0;
+  curve->former_step = 0; /* a kink lies between this step and the next */
   return step_across_kink(curve) || step_larger(curve) || step_to_value(curve) ||
          step_reversed(curve);
 }

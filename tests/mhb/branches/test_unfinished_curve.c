@@ -4,6 +4,7 @@
 
 #include "mesh/base/constants.h"
 #include "mhb/branches/main_branch.h"
+#include "mhb/mistuning/mistuned_ring.h"
 #include "mhb/response/response_fields.h"
 #include "tests/support/check.h"
 #include "tests/support/files.h"
@@ -161,11 +162,38 @@ static void many_pairs_go_on(void **state) {
   modal_model_free(&c.model);
 }
 
+/* Blades that differ: with a fixed number of harmonics, and with harmonics chosen at each point. */
+static void a_ring_goes_on(void **state) {
+  enum { N = 4 };
+  const double deviation[N] = {0.02, -0.01, 0.015, -0.03};
+  (void)state;
+  for (int chosen = 0; chosen < 2; chosen++) {
+    curve_case         c = {.settings = random_settings(3), .harmonics = chosen ? 31 : 3};
+    mhb_mistuned_ring *ring;
+    modal_model        blade;
+    random_model(1, WITH_LEFT | WITH_RESIDUAL, 3, &blade);
+    c.settings.blades           = N;
+    c.settings.scale            = 2;
+    c.settings.motion_tolerance = chosen ? 0.05 : 0;
+    set_range(&c.settings, 1.25, 1.55);
+    assert_ok(mhb_mistuned_ring_create(&blade, &c.settings, deviation, 1, &ring));
+    c.settings.ring = ring;
+    c.model         = ring->whole;
+    check_stops(chosen ? "ring, harmonics" : "ring", &c, 4, 1);
+    mhb_mistuned_ring_destroy(ring);
+    modal_model_free(&blade);
+  }
+}
+
 int main(void) {
   const struct CMUnitTest tests[] = {
-      cmocka_unit_test(a_curve_with_folds_goes_on), cmocka_unit_test(harmonics_go_on),
-      cmocka_unit_test(a_resonance_stays_known),    cmocka_unit_test(an_excursion_goes_on),
-      cmocka_unit_test(a_preload_goes_on),          cmocka_unit_test(many_pairs_go_on),
+      cmocka_unit_test(a_curve_with_folds_goes_on),
+      cmocka_unit_test(harmonics_go_on),
+      cmocka_unit_test(a_resonance_stays_known),
+      cmocka_unit_test(an_excursion_goes_on),
+      cmocka_unit_test(a_preload_goes_on),
+      cmocka_unit_test(many_pairs_go_on),
+      cmocka_unit_test(a_ring_goes_on),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }
