@@ -37,9 +37,9 @@ typedef struct {
   mhb_pair_kind      *kind;      /* [pair] of the last linearisation */
   mhb_contact_info   *info;      /* [pair] */
   double             *by_parameter; /* [n] dp/dparameter, of the last evaluation with slope */
-  bool                near; /* in: x is near that of the last evaluation. Many pairs start their
-                             * sliders from there, which moves forces within the law's tolerance;
-                             * false: nothing from before enters */
+  bool                near; /* in: x is near that of the last evaluation. Many pairs, and those of
+                             * a ring, start their sliders from there, which moves forces within the
+                             * law's tolerance; false: nothing from before enters */
   shb_arena           arena;
 } mhb_evaluation;
 
@@ -141,10 +141,10 @@ void mhb_balance_slope(mhb_balance *balance, const double *x, mhb_parameter para
 bool mhb_balance_solve_many_stuck(mhb_balance *balance, int k, const mhb_pair_kind *kind,
                                   double complex *u);
 
-/* Slider that the law of a pair may start from: that of the last evaluation with many pairs, else
- * NULL. */
+/* Slider that the law of a pair may start from: that of the last evaluation with many pairs or in a
+ * ring, else NULL. */
 static inline const double *mhb_balance_slider(const mhb_balance *balance, int pair) {
-  return balance->product ? balance->eval->info[pair].slider : NULL;
+  return balance->product || balance->receptance->ring ? balance->eval->info[pair].slider : NULL;
 }
 
 /* Rows of dp that are the mean friction of a pair, [3 nb]; axis 1 u, 2 w. */

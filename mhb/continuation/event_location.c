@@ -16,6 +16,7 @@ static const double VALUE_BESIDE      = 3e-8;                 /* distance kept f
 static const double VALUE_LAST_RESORT = 1e-4;                 /* accepted if nothing converges */
 static const double ROUNDED           = 1e-9;                 /* residual of round-off */
 static const double SAME_PLACE        = 1e-3;                 /* part of a bracket */
+static const double STEEPEST          = 2; /* length of a curve over its chord, to be bent */
 enum {
   BISECTED_FROM = 24, /* from here on by bisection: a test function that jumps misleads Illinois */
   LAG           = 2,  /* where events are brief: steps that Illinois may stay behind bisection */
@@ -63,8 +64,31 @@ static int take_end(search *s, int side) {
 
 /* ---- a point at a fraction of the chord ---- */
 
+/* trial, `part` of the way from one end of the bracket to the other, += what makes the line a cubic
+ * with the tangents of both ends. It stays in the plane, and saves a correction. */
+static void bend(const search *s, double part) {
+  mhb_arclength *curve = s->curve;
+  const double   unit = mhb_arclength_unit(curve), length = s->at[1] - s->at[0], rest = 1 - part;
+  const double   weight[] = {part * rest * rest, -part * part * rest};
+  const double   all      = mhb_arclength_inner(curve, unit, curve->chord, curve->chord) * length;
+  double         rate[2];
+  for (int side = 0; side < 2; side++) {
+    rate[side] = all / mhb_arclength_inner(curve, unit, curve->chord, s->end[side]->tangent);
+    if (!(rate[side] > 0 && rate[side] < STEEPEST * sqrt(all * length))) return;
+  }
+  for (int side = 0; side < 2; side++) {
+    const double *t = s->end[side]->tangent, by = weight[side] * rate[side];
+    for (int i = 0; i < curve->n; i++) curve->trial.x[i] += by * t[i];
+    curve->trial.value += by * t[curve->n];
+  }
+  const mhb_curve_point *a = s->end[0], *b = s->end[1]; /* the line has these slopes already */
+  const double           less = weight[0] + weight[1];
+  for (int i = 0; i < curve->n; i++) curve->trial.x[i] -= less * (b->x[i] - a->x[i]);
+  curve->trial.value -= less * (b->value - a->value);
+}
+
 /* trial <- the solution in the plane across the chord at fraction `at`, from guess `which`:
- *   0     from the line between the ends
+ *   0     from the line between the ends, bent where events are brief
  *   1, 2  from an end, shifted along the chord
  *   3     from the line, by the damped Newton method at fixed value
  * 0: not converged. */
@@ -78,6 +102,7 @@ static int correct_guess(search *s, double at, int which) {
   for (int i = 0; i < n; i++)
     trial->x[i] = a->x[i] + part * (b->x[i] - a->x[i]) + rest * curve->chord[i];
   trial->value = a->value + part * (b->value - a->value) + rest * curve->chord[n];
+  if (curve->system->brief_events && which == 0) bend(s, part);
   if (which < 3) return mhb_arclength_correct(curve, curve->chord, 1, trial);
   if (curve->system->solve_at_value(curve->system, curve->tolerance, trial) != MHB_CONVERGED)
     return 0;
