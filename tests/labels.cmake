@@ -44,7 +44,7 @@ set(INTEGRATION_TESTS cases.study.study cases.study.samples cases.study.eval
   docs.first_case
   mhb.ring.ring_step mhb.ring.neimark_sacker cases.install.install
   mhb.tracking.corner mhb.tracking.tracked_curve
-  mhb.tracking.tracked_multiplier bench.tracking
+  mhb.tracking.tracked_multiplier mhb.branches.mistuned_sweep bench.tracking
   robust.same_bits robust.not_finite robust.fail_nth_integrate robust.fail_nth_study
   robust.fail_nth_mesh mesh.blade.shroud_angle cases.converge.points_ladder
   robust.memory

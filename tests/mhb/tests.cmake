@@ -75,11 +75,11 @@ foreach(noun whitehead ring_response)
   shb_test(mhb/amplification ${noun} tests_models)
 endforeach()
 foreach(noun branch_completion branch_stability chain forced_response harmonic_selection
-    lasting_motion linear_limits main_branch peak_search period_doubling record run_up
-    secondary_branches ring_search sweep_memory tracer unfinished_curve verdicts)
+    lasting_motion linear_limits main_branch mistuned_sweep peak_search period_doubling record
+    run_up secondary_branches ring_search sweep_memory tracer unfinished_curve verdicts)
   shb_test(mhb/branches ${noun} tests_models)
 endforeach()
-foreach(noun corner corner_pairs output_amplitude peak_derivatives peak_system tracked_curve
+foreach(noun corner corner_pairs output_amplitude peak_derivatives peak_system ring_peaks tracked_curve
     tracked_multiplier tracked_response)
   shb_test(mhb/tracking ${noun} tests_models)
 endforeach()
