@@ -64,8 +64,8 @@ static int take_end(search *s, int side) {
 
 /* ---- a point at a fraction of the chord ---- */
 
-/* trial, `part` of the way from one end of the bracket to the other, += what makes the line a cubic
- * with the tangents of both ends. It stays in the plane, and saves a correction. */
+/* trial lies on the line between the ends, at `part` of the way. The line becomes a cubic with the
+ * tangents of both ends, which saves a correction. It stays in the plane. */
 static void bend(const search *s, double part) {
   mhb_arclength *curve = s->curve;
   const double   unit = mhb_arclength_unit(curve), length = s->at[1] - s->at[0], rest = 1 - part;
