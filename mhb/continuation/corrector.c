@@ -5,8 +5,10 @@
 
 /* Chord steps: from this residual on, and only as long as each gains a decade. */
 static const double CHORD_FROM = 1e-2, CHORD_GAIN = 0.1, PROMISE = 3;
-/* Of a costly system three corrections gain this at least, or the step is given up. */
-static const double LEAST_GAIN = 0.1;
+/* Of a costly system the first two corrections, and any three, gain this at least. Else the step is
+ * given up. Of 86 steps that failed on a ring of 40 blades the first two tell 77, and stop 16 of
+ * 1360 that would have converged. */
+static const double GAIN_OF_TWO = 0.3, GAIN_OF_THREE = 0.1;
 enum { MAX_CORRECTIONS = 12, MAX_HALVINGS = 3, MAX_CHORD_STEPS = 4 };
 
 double mhb_arclength_size(const mhb_arclength *curve) {
@@ -93,7 +95,8 @@ static int alternates(const double *seen, int last) {
 }
 
 static bool gains_little(const double *seen, int last) {
-  return last >= 3 && seen[last] > LEAST_GAIN * seen[last - 3];
+  return (last == 2 && seen[2] > GAIN_OF_TWO * seen[0]) ||
+         (last >= 3 && seen[last] > GAIN_OF_THREE * seen[last - 3]);
 }
 
 static int correct(mhb_arclength *curve, const double *normal, double clip,
