@@ -18,6 +18,7 @@
 #include "mhb/response/ring_description.h"
 #include "mhb/search/solution_set.h"
 #include "tests/support/check.h"
+#include "tests/support/random_model.h"
 #include "tests/support/settings.h"
 #include "tests/support/three_degree.h"
 
@@ -33,15 +34,15 @@ typedef struct {
   mhb_mistuned_ring *ring;
 } problem;
 
-static void make(problem *g, const double *deviation) {
+static void make_ring(problem *g, int blades, int engine_order, const double *deviation) {
   one_degree_model(ZETA, 0, 2 * ZETA, &g->blade);
   g->blade.left               = calloc(3, sizeof(double));
   g->blade.left[0]            = 1;
   g->blade.has_left           = true;
   g->settings                 = ground_settings(0, KV, KV, -GAP * KV, SEARCH_HARMONICS);
   g->settings.to_ground       = false;
-  g->settings.blades          = N;
-  g->settings.engine_order    = 1;
+  g->settings.blades          = blades;
+  g->settings.engine_order    = engine_order;
   g->settings.frequency[0]    = 0.99 / SHB_TWO_PI;
   g->settings.frequency[1]    = 1.15 / SHB_TWO_PI;
   g->settings.search.starts   = STARTS;
@@ -54,6 +55,10 @@ static void make(problem *g, const double *deviation) {
   g->settings.ring = g->ring;
   assert_ok(mhb_dense_ring(g->ring, &g->dense));
   mhb_dense_ring_settings(&g->settings, &g->of_dense);
+}
+
+static void make(problem *g, const double *deviation) {
+  make_ring(g, N, 1, deviation);
 }
 
 static void drop(problem *g) {
@@ -258,9 +263,46 @@ static void different_blades_are_searched_too(void **state) {
   drop(&g);
 }
 
+/* Forty blades that differ have localised motions without end: curves wander from blade to blade.
+ * No curve is longer than mhb.max_points, whether a search found it or not, and all starts are
+ * tried. */
+static void many_blades_are_searched_within_bounds(void **state) {
+  enum { BLADES = 40, FEW = 30, POINTS = 100 };
+  double             deviation[BLADES];
+  unsigned long long seed = 1;
+  problem            g;
+  mhb_response      *r = NULL;
+  (void)state;
+  for (int i = 0; i < BLADES; i++) deviation[i] = 1e-4 * random_unit(&seed);
+  make_ring(&g, BLADES, 5, deviation);
+  g.settings.search.n_orders = 1;
+  g.settings.search.starts   = FEW;
+  g.settings.max_points      = POINTS;
+  g.settings.stability       = MHB_STABILITY_NEVER;
+  assert_int_equal(mhb_forced_response(&g.ring->whole, &g.settings, NULL, NULL, NULL, &r),
+                   SHB_NOT_CONVERGED);
+  const mhb_branch *main = &r->branch[2];
+  int               cut = 0, found = 0;
+  for (int i = 2; i < r->n_branches; i++) {
+    const mhb_branch *b = &r->branch[i];
+    assert_true(b->n_points <=
+                2 * POINTS); /* a curve is traced both ways from where it was found */
+    cut += strstr(b->reason, "mhb.max_points reached") != NULL;
+    found += b->origin == MHB_FROM_SEARCH;
+  }
+  print_message("%d curves, %d found by %d starts, %d cut at %d points\n", r->n_branches - 2, found,
+                main->search[0].starts, cut, POINTS);
+  assert_true(cut >= 1 && found >= 1);
+  assert_int_equal(main->n_searches, 1);
+  assert_int_equal(main->search[0].starts, FEW);
+  mhb_response_destroy(r);
+  drop(&g);
+}
+
 int main(void) {
   const struct CMUnitTest tests[] = {cmocka_unit_test(equal_blades_have_a_localised_motion),
                                      cmocka_unit_test(a_turned_motion_counts_once),
-                                     cmocka_unit_test(different_blades_are_searched_too)};
+                                     cmocka_unit_test(different_blades_are_searched_too),
+                                     cmocka_unit_test(many_blades_are_searched_within_bounds)};
   return cmocka_run_group_tests(tests, NULL, NULL);
 }
