@@ -59,7 +59,7 @@ set(SLOW_TESTS
   bench.elements cases.scenes.optimum_preload cases.scenes.tracked_peaks
   mhb.tracking.corner_pairs
   fuzz.libfuzzer mhb.tracking.tracked_response
-  robust.fail_nth robust.kills robust.damaged)
+  robust.fail_nth robust.fail_nth_motion robust.kills robust.damaged)
 
 set(NIGHTLY_TESTS robust.fail_nth_all robust.kills_many robust.damaged_many robust.sanitizers)
 

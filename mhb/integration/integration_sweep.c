@@ -198,15 +198,16 @@ static double difference(const double complex *a, const double complex *b, int n
   return size > 0 ? sqrt(apart / size) : 0;
 }
 
-/* Run again with twice the steps until two runs agree. */
-static const mhb_steady_state_result *refine(const sweep *s, mhb_integrator *g,
-                                             mhb_steady_state                *steady,
-                                             const mhb_steady_state_settings *settings,
-                                             const mhb_steady_state_result *r, sweep_point *c) {
-  int             n = 3 * r->n_pairs * (r->n_harmonics + 1), periods = r->periods;
-  double complex *last = malloc(sizeof *last * (size_t)n);
-  for (int steps = 2 * g->steps; last && r->multiple && !r->failed && steps <= MOST_STEPS;
-       steps *= 2) {
+/* Run again with twice the steps until two runs agree. result: of the first run, then of the
+ * last. */
+static shb_status refine(const sweep *s, mhb_integrator *g, mhb_steady_state *steady,
+                         const mhb_steady_state_settings *settings,
+                         const mhb_steady_state_result **result, sweep_point *c) {
+  const mhb_steady_state_result *r = *result;
+  int                            n = 3 * r->n_pairs * (r->n_harmonics + 1), periods = r->periods;
+  double complex                *last = malloc(sizeof *last * (size_t)n);
+  SHB_CHECK(last, SHB_ERR_IO, "out of memory");
+  for (int steps = 2 * g->steps; r->multiple && !r->failed && steps <= MOST_STEPS; steps *= 2) {
     memcpy(last, r->motion, sizeof *last * (size_t)n);
     mhb_integrator_set(g, g->omega, g->n0, steps);
     r        = mhb_steady_state_run(steady, settings, not_interrupted, NULL);
@@ -215,8 +216,9 @@ static const mhb_steady_state_result *refine(const sweep *s, mhb_integrator *g,
     if (c->error <= s->request->tolerance || shb_interrupted()) break;
   }
   c->periods = periods;
+  *result    = r;
   free(last);
-  return r;
+  return SHB_OK;
 }
 
 static void store_rows(int rows, int from, int to, const double complex *in, double complex *out) {
@@ -257,13 +259,12 @@ static shb_status run_point(const sweep *s, mhb_integrator *g, mhb_steady_state 
   }
   const mhb_steady_state_result *r = mhb_steady_state_run(steady, &settings, not_interrupted, NULL);
   c->periods                       = r->periods;
-  if (r->multiple && !r->failed) r = refine(s, g, steady, &settings, r, c);
+  if (r->multiple && !r->failed) SHB_TRY(refine(s, g, steady, &settings, &r, c));
   if (shb_interrupted()) return SHB_OK;
   if (!r->failed) SHB_CHECK(store_result(s, r, c), SHB_ERR_IO, "out of memory");
   c->outcome = r->failed ? POINT_FAILED : POINT_FOUND;
-  if (c->outcome == POINT_FOUND && !c->multiple &&
-      !mhb_spectrum(g, SPECTRUM_PERIODS, c->line_frequency, c->line_amplitude))
-    c->line_amplitude[0] = 0;
+  if (c->outcome == POINT_FOUND && !c->multiple)
+    SHB_TRY(mhb_spectrum(g, SPECTRUM_PERIODS, c->line_frequency, c->line_amplitude));
   c->seconds = shb_seconds() - began;
   return SHB_OK;
 }

@@ -98,23 +98,31 @@ static void record(void *context, const mhb_integrator *g, double t0, double h) 
   for (int c = 0; c < 3; c++) r->u[c * r->n + i] = g->step[0].u[3 * (MHB_STAGES - 1) + c];
 }
 
-int mhb_spectrum(mhb_integrator *g, int periods, double *frequency, double *amplitude) {
-  int       n = periods * g->steps, largest = 0, found = 1;
-  recording r = {0, n, calloc(3 * (size_t)n, sizeof(double))};
-  double    square[3];
+/* The lines of recorded motion: of the axis that moves most. */
+static int largest_lines(const mhb_integrator *g, const recording *r, double *frequency,
+                         double *amplitude) {
+  int    largest = 0;
+  double square[3];
+  for (int c = 0; c < 3; c++) {
+    square[c] = apply_window(r->n, r->u + c * r->n);
+    if (square[c] > square[largest]) largest = c;
+  }
+  return find_lines(r->n, r->u + largest * r->n, r->period * g->period,
+                    10 * r->period * g->settings.subharmonics, frequency, amplitude);
+}
+
+shb_status mhb_spectrum(mhb_integrator *g, int periods, double *frequency, double *amplitude) {
+  const int n     = periods * g->steps;
+  int       found = 1;
+  recording r     = {0, n, calloc(3 * (size_t)n, sizeof(double))};
   clear_lines(frequency, amplitude);
-  if (!r.u) return 0;
+  SHB_CHECK(r.u, SHB_ERR_IO, "out of memory");
   g->watch   = record;
   g->context = &r;
   for (; r.period < periods && found; r.period++) found = mhb_integrator_period(g);
-  g->watch = NULL;
-  for (int c = 0; c < 3; c++) {
-    square[c] = apply_window(n, r.u + c * n);
-    if (square[c] > square[largest]) largest = c;
-  }
-  if (found)
-    found = find_lines(n, r.u + largest * n, periods * g->period,
-                       10 * periods * g->settings.subharmonics, frequency, amplitude);
+  g->watch    = NULL;
+  bool memory = !found || largest_lines(g, &r, frequency, amplitude);
   free(r.u);
-  return found;
+  SHB_CHECK(memory, SHB_ERR_IO, "out of memory");
+  return SHB_OK;
 }

@@ -19,7 +19,8 @@ int mhb_spectrum_lines(int n, double *x, double duration, int top, double *frequ
 /* Integrate over a number of periods of the fundamental. The lines are those of the axis of contact
  * 0 that moves most, up to ten times the excitation's frequency.
  *   frequency, amplitude  out  [MHB_SPECTRUM_LINES] Hz, m, as above
- * Returns 0 without memory, or if the forces of a step were not found. */
-int mhb_spectrum(mhb_integrator *integrator, int periods, double *frequency, double *amplitude);
+ * Without the forces of a step there are no lines. Errors: SHB_ERR_IO without memory. */
+shb_status mhb_spectrum(mhb_integrator *integrator, int periods, double *frequency,
+                        double *amplitude);
 
 #endif

@@ -65,6 +65,8 @@ if(SHROUDHB_PYTHON)
     shb_robust_test(fail_nth_plan fail_nth $<TARGET_FILE:fail_nth> ${SCENE} 40 mesh:malloc)
     # while the case and its defaults are read
     shb_robust_test(fail_nth_case fail_nth $<TARGET_FILE:fail_nth> ${SCENE} -110 mhb:malloc)
+    # while the time integration runs
+    shb_robust_test(fail_nth_motion fail_nth $<TARGET_FILE:fail_nth> ${SCENE} -64 integrate:malloc)
     shb_robust_test(fail_nth_modal fail_nth $<TARGET_FILE:fail_nth> ${SCENE} 2 modal:malloc)
     set(CONFIGURATION CONFIGURATIONS nightly)
     shb_robust_test(fail_nth_all fail_nth $<TARGET_FILE:fail_nth> ${SCENE})
