@@ -82,13 +82,13 @@ void case_reader_issue(const case_reader *r, const char *path, const char *forma
 /* A default is in order: without a value there is no memory. */
 static void read_default(case_reader *r, const case_key *key, char *base) {
   case_issues none = case_issues_start("default", key->fallback, strlen(key->fallback));
-  case_node   plain;
-  bool        scalar = case_plain_value(key->fallback, &plain);
-  case_node  *node   = scalar ? NULL : case_document_parse(&none);
-  bool good = (scalar || node) && case_value_read(&none, key, key->path, scalar ? &plain : node,
-                                                  r->file, base + key->at);
+  case_plain  plain;
+  bool        simple = case_plain_value(key->fallback, &plain);
+  case_node  *parsed = simple ? NULL : case_document_parse(&none);
+  case_node  *node   = simple ? &plain.value : parsed;
+  bool        good = node && case_value_read(&none, key, key->path, node, r->file, base + key->at);
   if (!good) case_issues_no_memory(r->issues);
-  case_document_free(node);
+  case_document_free(parsed);
   case_issues_free(&none);
 }
 

@@ -366,16 +366,37 @@ case_node *case_document_parse(case_issues *issues) {
   return root;
 }
 
-bool case_plain_value(const char *text, case_node *out) {
+static bool is_plain(const char *text) {
   static const char plain[] =
       "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_./%+- ";
-  *out = (case_node){.kind = CASE_SCALAR, .line = 1, .column = 1, .text = (char *)text};
-  if (strcmp(text, "{}") == 0) {
-    *out = (case_node){.kind = CASE_MAPPING, .line = 1, .column = 1};
-    return true;
-  }
   return isalnum((unsigned char)text[0]) && text[strspn(text, plain)] == '\0' &&
          strcmp(text, "null") != 0;
+}
+
+/* The entries of "[a, b]", whose copy is cut at its commas. */
+static bool plain_list(case_plain *out) {
+  char *end = strchr(out->text, ']'), *rest = out->text + 1;
+  if (!end || end[1]) return false;
+  *end            = '\0';
+  out->value.kind = CASE_SEQUENCE;
+  for (char *one; (one = strsep(&rest, ","));) {
+    one += strspn(one, " ");
+    if (out->value.n == CASE_PLAIN_ENTRIES || !is_plain(one)) return false;
+    out->entry[out->value.n++] = (case_node){.kind = CASE_SCALAR, .text = one};
+  }
+  out->value.child = out->entry;
+  return true;
+}
+
+bool case_plain_value(const char *text, case_plain *out) {
+  const size_t length = strlen(text);
+  if (length >= sizeof out->text) return false;
+  memcpy(out->text, text, length + 1);
+  out->value = (case_node){.kind = CASE_SCALAR, .line = 1, .column = 1};
+  if (text[0] == '[') return plain_list(out);
+  out->value.text = out->text;
+  if (strcmp(text, "{}") == 0) out->value = (case_node){.kind = CASE_MAPPING, 1, 1};
+  return out->value.kind == CASE_MAPPING || is_plain(text);
 }
 
 void case_document_free(case_node *root) {

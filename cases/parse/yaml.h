@@ -41,9 +41,17 @@ shb_status case_text_read(const char *path, char **text, size_t *length);
 case_node *case_document_parse(case_issues *issues);
 void       case_document_free(case_node *root);
 
-/* A text of letters, digits, spaces and _ . / % + -, or the mapping {}, as the node that YAML makes
- * of it. The node borrows the text. False for any other text. */
-bool case_plain_value(const char *text, case_node *out);
+/* A value that needs no parser: nodes and their text. */
+enum { CASE_PLAIN_ENTRIES = 4, CASE_PLAIN_TEXT = 64 };
+typedef struct {
+  case_node value; /* borrows what follows */
+  case_node entry[CASE_PLAIN_ENTRIES];
+  char      text[CASE_PLAIN_TEXT];
+} case_plain;
+
+/* A text of letters, digits, spaces and _ . / % + -, a short list of such texts, or the mapping {},
+ * as the node that YAML makes of it, without the places of the entries. False for other texts. */
+bool case_plain_value(const char *text, case_plain *out);
 
 /* FNV-1a of a string (Fowler, Noll, Vo). */
 uint64_t case_hash(const char *text);

@@ -20,8 +20,9 @@ const char *fuzz_file(const char *name, const void *data, size_t size);
  * the path is a literal. */
 const char *fuzz_text(const char *path, const void *data, size_t size);
 
-/* A case of that path beside an input: a short one, or for one length in 16 the example. The short
- * case is read three times as fast. The path is a literal, and is returned. */
+/* A case of that path beside an input: without a mesh, or for three lengths in 32 a short one, or
+ * for one the example. The first is read twice as fast as the second, six times as fast as the
+ * third. The path is a literal, and is returned. */
 const char *fuzz_case(const char *path, size_t size);
 
 /* Begin a stream for messages. */
