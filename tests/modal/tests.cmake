@@ -2,7 +2,8 @@ shb_test(modal/hdf5 h5 shb_model)
 shb_test(modal/hdf5 stamp shb_modal_hdf5)
 target_compile_definitions(test_modal_hdf5_stamp PRIVATE
   DAMAGED="${CMAKE_CURRENT_SOURCE_DIR}/modal/hdf5/damaged/heap.h5"
-  ENDLESS="${CMAKE_CURRENT_SOURCE_DIR}/modal/hdf5/damaged/endless.h5")
+  ENDLESS="${CMAKE_CURRENT_SOURCE_DIR}/modal/hdf5/damaged/endless.h5"
+  WRITTEN_OVER="${CMAKE_CURRENT_SOURCE_DIR}/modal/hdf5/damaged/written_over.h5")
 shb_test(modal/model model shb_model)
 shb_test(modal/model spline shb_model)
 shb_test(modal/model speeds tests_fem shb_modal)
