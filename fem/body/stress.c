@@ -344,9 +344,8 @@ static void change_waves(const fem_body *body, const double *u, double complex p
   for (size_t l = 0; l < (size_t)n; l++)
     for (size_t i = 0; i < nodes; i++)
       for (size_t c = 0; c < FEM_STRESSES; c++)
-        stress[FEM_STRESSES * (nodes * l + i) + c] =
-            CMPLXF((float)(w->sum[i][c][2 * l] / w->r->volume[i]),
-                   (float)(w->sum[i][c][2 * l + 1] / w->r->volume[i]));
+        stress[FEM_STRESSES * (nodes * l + i) + c] = (float complex)CMPLX(
+            w->sum[i][c][2 * l] / w->r->volume[i], w->sum[i][c][2 * l + 1] / w->r->volume[i]);
 }
 
 shb_status fem_nodal_stress_wave(const fem_body *body, const double *u, double complex phase, int n,
