@@ -342,6 +342,13 @@ void mhb_contact_step_change(const mhb_law *law, mhb_state state, double directi
   point->state = state;
 }
 
+void mhb_contact_step_after(const mhb_law *law, mhb_contact_event event, mhb_contact_point *point) {
+  if (event == MHB_CONTACT_OPENS) mhb_contact_step_change(law, MHB_SEPARATE, 0, point);
+  if (event == MHB_STICK_TO_SLIP)
+    mhb_contact_step_change(law, MHB_SLIDE, atan2(point->p[2], point->p[1]), point);
+  if (event == MHB_SLIP_TO_STICK) mhb_contact_step_change(law, MHB_STICK, 0, point);
+}
+
 double mhb_contact_step_closing(const mhb_radau *rule, const mhb_law *law,
                                 const mhb_contact_point *point, const mhb_contact_step *step,
                                 double *direction) {

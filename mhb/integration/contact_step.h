@@ -75,6 +75,9 @@ void mhb_contact_step_advance(const mhb_law *law, const mhb_contact_step *step, 
 void mhb_contact_step_change(const mhb_law *law, mhb_state state, double direction,
                              mhb_contact_point *point);
 
+/* The state after an event of a closed contact: open, slip along the friction, or stick. */
+void mhb_contact_step_after(const mhb_law *law, mhb_contact_event event, mhb_contact_point *point);
+
 /* Whether a closing contact slips (eq. 13): rate of |f| - mu n at the start of a step that sticks,
  * N a step. Slip if positive.
  *   direction  out  of f, rad */

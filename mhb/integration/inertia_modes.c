@@ -2,18 +2,19 @@
 
 #include <lapacke.h>
 #include <math.h>
+#include <stdbool.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "mesh/base/constants.h"
 #include "modal/model/residual_series.h"
 
-/* Directions softer than this share of the largest flexibility have inertia. A mode so many times
- * above the last frequency of the model is left out. */
+/* Directions softer than this share of the softest one have inertia. A mode so many times above the
+ * last frequency of the model is left out. */
 static const double SOFT_ENOUGH = 1e-8, FAR_ABOVE = 1e4;
 
 typedef struct {
-  int     n, kept;        /* contact dofs; modes found */
+  int     n, p, kept;     /* contact dofs; directions; modes found */
   int     power;          /* psi = nu^power L v: 1 from R and R2, 2 from R2 and R3 */
   double *vector, *value; /* [n][n] rows L^T / sqrt(r), [n]; then the modes */
   double *A, *tau;        /* [n][n], [n] */
@@ -39,21 +40,31 @@ static void reduce(const search *s, const double *R2, int p) {
     }
 }
 
-static shb_status find(const modal_model *model, search *s) {
-  int    n = s->n, p = 0;
-  double last  = SHB_TWO_PI * model->frequency[model->n_modes - 1];
-  bool   three = modal_series_has_fourth(model);
-  s->power     = three ? 2 : 1;
+/* Directions by their flexibility (with R3: inertia), and how many of them may have inertia. */
+static shb_status find_directions(const modal_model *model, search *s) {
+  const size_t n     = (size_t)s->n;
+  const bool   three = modal_series_has_fourth(model);
+  s->power           = three ? 2 : 1;
   memcpy(s->vector, three ? model->residual_inertia : model->residual_flexibility,
-         sizeof(double) * (size_t)n * (size_t)n);
-  SHB_CHECK(symmetric_eigen(n, s->vector, s->value), SHB_ERR_INPUT,
+         sizeof(double) * n * n);
+  SHB_CHECK(symmetric_eigen(s->n, s->vector, s->value), SHB_ERR_INPUT,
             "/contact/residual_%s has no eigenvalues; it must be finite",
             three ? "inertia" : "flexibility");
-  while (p < n && s->value[n - 1 - p] > SOFT_ENOUGH * s->value[n - 1] && s->value[n - 1] > 0) p++;
-  reduce(s, three ? model->residual_fourth : model->residual_inertia, p);
+  while (s->p < s->n && s->p < MHB_INERTIA_MODES &&
+         s->value[s->n - 1 - s->p] > SOFT_ENOUGH * s->value[s->n - 1] && s->value[s->n - 1] > 0)
+    s->p++;
+  return SHB_OK;
+}
+
+/* The modes in the p softest directions. */
+static shb_status find_modes(const modal_model *model, search *s) {
+  const int    n = s->n, p = s->p;
+  const double last = SHB_TWO_PI * model->frequency[model->n_modes - 1];
+  reduce(s, s->power == 2 ? model->residual_fourth : model->residual_inertia, p);
   SHB_CHECK(p == 0 || symmetric_eigen(p, s->A, s->tau), SHB_ERR_INPUT,
             "/contact/residual_%s has no eigenvalues; it must be finite",
-            three ? "fourth" : "inertia");
+            s->power == 2 ? "fourth" : "inertia");
+  s->kept = 0;
   for (int k = 0; k < p; k++) {
     if (!(s->tau[k] > 1 / pow(FAR_ABOVE * last, 2))) continue;
     double *psi    = s->psi + (size_t)s->kept * (size_t)n;
@@ -132,19 +143,33 @@ static void add_modes(const search *s, int m, modal_model *out) {
   }
 }
 
-/* The remaining flexibility must not be negative. space [n][n + 1]. */
-static shb_status check_flexibility(const modal_model *model, const modal_model *out, int n,
-                                    double *space) {
-  double *value = space + (size_t)n * (size_t)n, largest = 0;
-  memcpy(space, out->residual_flexibility, sizeof(double) * (size_t)n * (size_t)n);
-  for (int i = 0; i < n; i++)
-    largest = fmax(largest, model->residual_flexibility[(size_t)i * (size_t)(n + 1)]);
-  SHB_CHECK(
-      symmetric_eigen(n, space, value) && value[0] >= -1e-6 * largest, SHB_ERR_INPUT,
-      "/contact/residual_fourth does not fit residual_flexibility and residual_inertia: no "
-      "modes have all three; leave it out, or write sums of phi phi^T/w^2, /w^4 and /w^6 over "
-      "the modes left out");
-  return SHB_OK;
+/* Whether the remaining flexibility is not negative. Overwrites A and tau. */
+static bool is_passive(const modal_model *model, const modal_model *out, const search *s) {
+  const size_t n       = (size_t)s->n;
+  double       largest = 0;
+  memcpy(s->A, out->residual_flexibility, sizeof(double) * n * n);
+  for (size_t i = 0; i < n; i++) largest = fmax(largest, model->residual_flexibility[i * (n + 1)]);
+  return symmetric_eigen(s->n, s->A, s->tau) && s->tau[0] >= -1e-6 * largest;
+}
+
+/* The model with modes in fewer and fewer directions until what remains is passive. Directions of
+ * little inertia may hold nothing but the rounding of R3. */
+static shb_status add_fewest(const modal_model *model, search *s, modal_model *out) {
+  for (;; s->p = 2 * s->p / 3) {
+    SHB_TRY(find_modes(model, s));
+    *out = *model;
+    if (!widen_all(model, s->kept, out)) {
+      mhb_inertia_free(out);
+      SHB_FAIL(SHB_ERR_IO, "out of memory for residual modes");
+    }
+    add_modes(s, model->n_modes, out);
+    if (s->power == 1 || is_passive(model, out, s)) return SHB_OK;
+    mhb_inertia_free(out);
+    SHB_CHECK(s->p > 1, SHB_ERR_INPUT,
+              "/contact/residual_fourth does not fit residual_flexibility and residual_inertia: no "
+              "modes have all three; leave it out, or write sums of phi phi^T/w^2, /w^4 and /w^6 "
+              "over the modes left out");
+  }
 }
 
 shb_status mhb_inertia_modes(const modal_model *model, modal_model *out) {
@@ -162,19 +187,8 @@ shb_status mhb_inertia_modes(const modal_model *model, modal_model *out) {
   s.value           = space + 3 * n * n;
   s.tau             = s.value + n;
   s.nu              = s.tau + n;
-  shb_status status = find(model, &s);
-  if (status == SHB_OK) {
-    *out = *model;
-    if (!widen_all(model, s.kept, out)) {
-      mhb_inertia_free(out);
-      status = shb_fail(SHB_ERR_IO, __FILE__, __LINE__, "out of memory for residual modes");
-    }
-  }
-  if (status == SHB_OK) {
-    add_modes(&s, model->n_modes, out);
-    if (s.power == 2) status = check_flexibility(model, out, s.n, s.vector);
-    if (status != SHB_OK) mhb_inertia_free(out);
-  }
+  shb_status status = find_directions(model, &s);
+  if (status == SHB_OK) status = add_fewest(model, &s, out);
   free(space);
   return status;
 }

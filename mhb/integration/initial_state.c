@@ -138,7 +138,12 @@ void mhb_integrator_set(mhb_integrator *g, double omega, double n0, int steps) {
   g->t      = 0;
   set_laws(g, n0);
   mhb_receptance_at(g->receptance, omega, g->n_harmonics);
-  mhb_modal_step_length(&g->ring, g->period / steps, &g->nominal);
+  if (g->joint) {
+    mhb_modal_step_modes(&g->ring, g->period / steps, &g->nominal);
+    mhb_joint_step_set(g->joint, &g->nominal, g->law);
+  } else {
+    mhb_modal_step_length(&g->ring, g->period / steps, &g->nominal);
+  }
   g->cut.h = NAN;
   if (!has_state) return;
   add_free_response(g, -1);

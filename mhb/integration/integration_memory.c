@@ -1,6 +1,7 @@
 #include "mhb/integration/integration_memory.h"
 
 #include <complex.h>
+#include <math.h>
 #include <omp.h>
 #include <stdio.h>
 
@@ -46,8 +47,16 @@ static structure structure_of(const mhb_integration_size *z) {
                          .neighbours = 1,
                          .harmonics  = z->harmonics + 1.};
   if (z->both && !z->dense) s.neighbours = z->blades < 3 ? z->blades : 3;
-  if (z->inertia) s.modes += s.rows;
+  if (z->inertia) s.modes += fmin(s.rows, MHB_INERTIA_MODES);
   return s;
+}
+
+/* Joint steps: modes, flexibility, and what the contacts do. */
+static double of_joint_steps(const structure *s) {
+  const double each = sizeof(mhb_contact_path) + real * 2 * MHB_STAGE_FORCES;
+  return real * s->modes * (MHB_MODAL_STEP_ROWS + MHB_STAGES * (MHB_STAGES + s->blades)) +
+         real * s->neighbours * 9 * s->pairs * s->pairs + s->pairs * sizeof(mhb_contact_spring) +
+         s->blades * s->pairs * each;
 }
 
 /* Compliances of the contacts over the usual step and over a shorter one. */
@@ -59,13 +68,16 @@ static double of_steps(const structure *s) {
          45 * pair; /* moments: 3 x 3 x 5 */
 }
 
-/* Receptances, shapes by harmonic in two forms, residual terms, and flexibilities. */
+/* Receptances, shapes by harmonic in two forms, residual terms, and flexibilities; that of a ring
+ * joins all its contacts. */
 static double of_structure(const mhb_integration_size *z, const structure *s) {
-  enum { SHAPES = 3, SQUARES = 3, OF_INERTIA = 4 };
+  enum { SHAPES = 3, SQUARES = 3, OF_INERTIA = 4, BLOCKS = 6 };
   const double n = 3 * s->pairs, squares = SQUARES + (z->inertia ? OF_INERTIA : 0);
+  const double ring =
+      s->neighbours > 1 && z->residual ? n * n * (s->blades * s->blades + BLOCKS) : 0;
   const double terms = z->residual ? n + MODAL_TERMS * 3. * z->probes : 0;
   return complex_number * s->harmonics * n * (n + 2 * s->modes + terms) +
-         real * (SHAPES * s->rows * s->modes + squares * s->rows * s->rows);
+         real * (SHAPES * s->rows * s->modes + squares * s->rows * s->rows + ring);
 }
 
 /* With Coriolis terms: matrix and factor of each harmonic, gyroscopic modes, motion and force of
@@ -87,8 +99,10 @@ static double of_steady_state(const structure *s) {
 }
 
 static double of_a_thread(const mhb_integration_size *z) {
-  const structure s = structure_of(z);
-  return of_steps(&s) + of_structure(z, &s) + of_coriolis(z, &s) + of_steady_state(&s) + A_THREAD;
+  const structure s     = structure_of(z);
+  const bool      joint = s.pairs >= MHB_JOINT_PAIRS && !z->coriolis;
+  return (joint ? of_joint_steps(&s) : of_steps(&s)) + of_structure(z, &s) + of_coriolis(z, &s) +
+         of_steady_state(&s) + A_THREAD;
 }
 
 /* Motion and force of a point, once where it is found and once as it is written; its start. */

@@ -245,20 +245,34 @@ static int store_result(const sweep *s, const mhb_steady_state_result *r, sweep_
   return 1;
 }
 
+/* The steady state from where the point starts. Steps in which no forces are found are halved,
+ * unless the state of the point before would be lost. */
+static const mhb_steady_state_result *settle(const sweep *s, mhb_integrator *g,
+                                             mhb_steady_state                *steady,
+                                             const mhb_steady_state_settings *settings, bool first,
+                                             const sweep_point *c) {
+  const bool from_rest = s->request->start == MHB_START_FROM_REST || first;
+  for (int steps = s->request->steps;; steps *= 2) {
+    mhb_integrator_set(g, SHB_TWO_PI * c->hz, c->n0, steps);
+    if (c->start)
+      mhb_integrator_balance(g, c->m, c->start);
+    else if (from_rest)
+      mhb_integrator_rest(g);
+    const mhb_steady_state_result *r =
+        mhb_steady_state_run(steady, settings, not_interrupted, NULL);
+    if (!r->failed || !(c->start || from_rest) || 2 * steps > MOST_STEPS || shb_interrupted())
+      return r;
+  }
+}
+
 /* first: of its sequence. Nothing is stored if interrupted. */
 static shb_status run_point(const sweep *s, mhb_integrator *g, mhb_steady_state *steady, bool first,
                             sweep_point *c) {
   const mhb_integration_settings *a        = s->request;
   mhb_steady_state_settings       settings = {0.1 * a->tolerance, a->max_periods};
   double                          began    = shb_seconds();
-  mhb_integrator_set(g, SHB_TWO_PI * c->hz, c->n0, a->steps);
-  if (c->start) {
-    mhb_integrator_balance(g, c->m, c->start);
-  } else if (a->start == MHB_START_FROM_REST || first) {
-    mhb_integrator_rest(g);
-  }
-  const mhb_steady_state_result *r = mhb_steady_state_run(steady, &settings, not_interrupted, NULL);
-  c->periods                       = r->periods;
+  const mhb_steady_state_result  *r        = settle(s, g, steady, &settings, first, c);
+  c->periods                               = r->periods;
   if (r->multiple && !r->failed) SHB_TRY(refine(s, g, steady, &settings, &r, c));
   if (shb_interrupted()) return SHB_OK;
   if (!r->failed) SHB_CHECK(store_result(s, r, c), SHB_ERR_IO, "out of memory");

@@ -1,6 +1,7 @@
 #include "mhb/integration/integrator.h"
 
 #include <math.h>
+#include <stdbool.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -176,7 +177,8 @@ MHB_HOT static void end_amplitudes(int m, const double *a, const double *force, 
   }
 }
 
-static void accept(mhb_integrator *g, const mhb_modal_step *modal) {
+/* Modes to the end of the step, under the forces at its stages. */
+static void end_step(mhb_integrator *g, const mhb_modal_step *modal) {
   int m = g->modes, lines = g->ring.lines, n3 = 3 * g->pairs;
   if (g->watch) g->watch(g->context, g, g->t, modal->h);
   for (int b = 0; b < g->blades; b++) {
@@ -187,14 +189,55 @@ static void accept(mhb_integrator *g, const mhb_modal_step *modal) {
     (g->ring.amplitudes ? end_amplitudes : end_modes)(m, modal->mode, g->stage, g->z + b * m,
                                                       g->z + (g->blades + b) * m);
   }
+  g->t += modal->h;
+  g->count.steps++;
+}
+
+static void note_scale(mhb_integrator *g, int contact) {
+  for (int c = 0; c < 3; c++) g->scale = fmax(g->scale, fabs(g->point[contact].p[c]));
+}
+
+static void accept(mhb_integrator *g, const mhb_modal_step *modal) {
+  end_step(g, modal);
   int progress = modal->h > NO_PROGRESS * g->nominal.h;
   for (int j = 0; j < g->contacts; j++) {
     mhb_contact_step_advance(&g->law[j % g->pairs], &g->step[j], modal->h, &g->point[j]);
-    for (int c = 0; c < 3; c++) g->scale = fmax(g->scale, fabs(g->point[j].p[c]));
+    note_scale(g, j);
     if (progress) g->n_stalled[j] = g->suppressed[j] = 0;
   }
-  g->t += modal->h;
-  g->count.steps++;
+}
+
+void mhb_integrator_share(const mhb_integrator *g, int contact, double share[3], double *work) {
+  const mhb_contact_point *point = &g->point[contact];
+  const mhb_contact_step  *step  = &g->step[contact];
+  if (g->joint) {
+    memcpy(share, g->joint->path[contact].share, 3 * sizeof *share);
+    *work = g->joint->path[contact].work;
+    return;
+  }
+  for (int k = 0; k < 3; k++) share[k] = k == (int)point->state;
+  *work = 0;
+  for (int j = 0; j < S && point->state == MHB_SLIDE; j++)
+    *work += g->ring.rule.A[S - 1][j] * step->kappa[j] * g->law[contact % g->pairs].mu * step->n[j];
+}
+
+/* ---- steps of many contacts ---- */
+
+/* One step of nominal length. Returns 0 if it failed. */
+static int joint_step(mhb_integrator *g) {
+  set_motion(g, &g->nominal);
+  if (!mhb_joint_step_solve(g->joint, g->point, g->y, g->scale)) return 0;
+  for (int j = 0; j < g->contacts; j++)
+    memcpy(g->step[j].p, g->joint->path[j].p, sizeof g->step[j].p);
+  end_step(g, &g->nominal);
+  for (int j = 0; j < g->contacts; j++) {
+    const mhb_contact_path *path = &g->joint->path[j];
+    g->point[j]                  = path->end;
+    note_scale(g, j);
+    g->count.events += path->events;
+    g->count.forced += path->forced;
+  }
+  return 1;
 }
 
 /* ---- steps that end at events ---- */
@@ -249,20 +292,10 @@ static void apply_event(mhb_integrator *g, const step_event *o) {
     g->suppressed[o->contact] = 1;
     g->count.forced++;
   }
-  switch (o->kind) {
-    case MHB_CONTACT_CLOSES:
-      close_contact(g, o->contact);
-      break;
-    case MHB_CONTACT_OPENS:
-      mhb_contact_step_change(law, MHB_SEPARATE, 0, point);
-      break;
-    case MHB_STICK_TO_SLIP:
-      mhb_contact_step_change(law, MHB_SLIDE, atan2(point->p[2], point->p[1]), point);
-      break;
-    case MHB_SLIP_TO_STICK:
-      mhb_contact_step_change(law, MHB_STICK, 0, point);
-      break;
-  }
+  if (o->kind == MHB_CONTACT_CLOSES)
+    close_contact(g, o->contact);
+  else
+    mhb_contact_step_after(law, o->kind, point);
 }
 
 /* Relative change of the step's length that moves its end to the event. */
@@ -333,7 +366,9 @@ static int advance(mhb_integrator *g, double longest) {
 
 int mhb_integrator_period(mhb_integrator *g) {
   g->t = 0;
-  for (int i = 0; i < g->steps; i++) {
+  for (int i = 0; i < g->steps && g->joint; i++)
+    if (!joint_step(g)) return 0;
+  for (int i = 0; i < g->steps && !g->joint; i++) {
     double end = (i + 1) * (g->period / g->steps), rest;
     while ((rest = end - g->t) > NO_PROGRESS * g->nominal.h) {
       int hushed = 0;
@@ -362,6 +397,12 @@ static int allocate(mhb_integrator *g) {
 
 shb_status mhb_integrator_create(const modal_model *model, const mhb_settings *settings,
                                  int n_harmonics, mhb_integrator **out) {
+  return mhb_integrator_create_as(model, settings, n_harmonics,
+                                  model->n_pairs >= MHB_JOINT_PAIRS && !model->coriolis, out);
+}
+
+shb_status mhb_integrator_create_as(const modal_model *model, const mhb_settings *settings,
+                                    int n_harmonics, bool joint, mhb_integrator **out) {
   mhb_integrator *g = calloc(1, sizeof *g);
   SHB_CHECK(g, SHB_ERR_IO, "out of memory");
   int nu            = settings->subharmonics;
@@ -383,8 +424,9 @@ shb_status mhb_integrator_create(const modal_model *model, const mhb_settings *s
     g->contacts = g->ring.s.contacts;
     if (!allocate(g)) status = shb_fail(SHB_ERR_IO, __FILE__, __LINE__, "out of memory");
   }
-  if (status == SHB_OK) status = mhb_modal_step_create(&g->ring, &g->nominal);
-  if (status == SHB_OK) status = mhb_modal_step_create(&g->ring, &g->cut);
+  if (status == SHB_OK) status = mhb_modal_step_create(&g->ring, !joint, &g->nominal);
+  if (status == SHB_OK && !joint) status = mhb_modal_step_create(&g->ring, true, &g->cut);
+  if (status == SHB_OK && joint) status = mhb_joint_step_create(&g->ring, &g->joint);
   if (status != SHB_OK) {
     mhb_integrator_destroy(g);
     return status;
@@ -397,6 +439,7 @@ void mhb_integrator_destroy(mhb_integrator *g) {
   if (!g) return;
   mhb_modal_step_destroy(&g->nominal);
   mhb_modal_step_destroy(&g->cut);
+  mhb_joint_step_destroy(g->joint);
   mhb_ring_step_destroy(&g->ring);
   mhb_receptance_destroy(g->receptance);
   mhb_inertia_free(&g->model);

@@ -4,16 +4,22 @@
  * The steady response without contact is known exactly; z is the part by the contact forces:
  *   z'' + 2 zeta w z' + w^2 z = -B^T p,   u = u_free(t) + B z - R p
  * A step propagates every mode exactly under the collocated force (modal_step.h). The contacts are
- * solved one after the other until nothing changes (contact_step.h). A step ends where a contact
- * changes its state. Nominal steps divide the period of the fundamental, 2 pi nu/omega. The method
- * is of fifth order; nothing is linearised or assumed periodic. Blade b of a ring lags by b times
- * the wave's phase, as in the balance. Derivation: docs/theory/time_integration.md. */
+ * solved one after the other until nothing changes. A step ends where a contact changes its state
+ * (contact_step.h), and the method is of fifth order. From MHB_JOINT_PAIRS pairs on, without
+ * Coriolis terms, the steps are equal (joint_step.h): each contact changes its state within them.
+ * Nominal steps divide the period of the fundamental, 2 pi nu/omega. Nothing is linearised or
+ * assumed periodic. Blade b of a ring lags by b times the wave's phase, as in the balance.
+ * Derivation: docs/theory/time_integration.md. */
 #ifndef MHB_INTEGRATION_INTEGRATOR_H
 #define MHB_INTEGRATION_INTEGRATOR_H
 
 #include "mesh/base/arena.h"
 #include "mhb/integration/contact_step.h"
 #include "mhb/integration/inertia_modes.h"
+#include "mhb/integration/joint_step.h"
+
+/* From here on a step of all contacts does not end where one of them changes its state. */
+enum { MHB_JOINT_PAIRS = 16 };
 
 /* Counts since the start. */
 typedef struct {
@@ -48,6 +54,7 @@ struct mhb_integrator {
   double              *y; /* [contact][9] motion at the stages without contact forces of the step */
   double              *stage; /* [stage][lines] */
   mhb_modal_step       nominal, cut;
+  mhb_joint_step      *joint; /* many contacts: steps do not end at their events; else NULL */
   double               scale; /* N, largest force so far */
   mhb_integrator_count count;
   mhb_integrator_watch watch;
@@ -60,6 +67,9 @@ struct mhb_integrator {
  * Errors: SHB_ERR_INPUT as mhb_receptance_create; SHB_ERR_IO no memory. */
 shb_status mhb_integrator_create(const modal_model *model, const mhb_settings *settings,
                                  int n_harmonics, mhb_integrator **integrator);
+/* The same with or without joint steps, which know no Coriolis terms. */
+shb_status mhb_integrator_create_as(const modal_model *model, const mhb_settings *settings,
+                                    int n_harmonics, bool joint, mhb_integrator **integrator);
 void       mhb_integrator_destroy(mhb_integrator *integrator);
 
 /* Continue at another frequency (rad/s), preload (N, total) and number of steps a period, at phase
@@ -78,6 +88,11 @@ void mhb_integrator_balance(mhb_integrator *integrator, int n_harmonics,
 /* Integrate one period of the fundamental. Returns 0 if the contact forces of a step were not
  * found. */
 int mhb_integrator_period(mhb_integrator *integrator);
+
+/* What a contact did in the accepted step, as shares of its time by state, and its work in J. For
+ * the watch. */
+void mhb_integrator_share(const mhb_integrator *integrator, int contact, double share[3],
+                          double *work);
 
 /* Phase by which a blade lags at the fundamental, rad. */
 double mhb_integrator_lag(const mhb_integrator *integrator, int blade);

@@ -58,6 +58,11 @@ void mhb_radau_create(mhb_radau *r) {
   set_inverse(r);
 }
 
+void mhb_radau_lagrange(const mhb_radau *r, double tau, double l[S]) {
+  for (int j = 0; j < S; j++)
+    l[j] = r->basis[j][0] + tau * (r->basis[j][1] + tau * r->basis[j][2] / 2);
+}
+
 /* ---- modes ----
  *
  * In tau the impulse response G_0 solves G'' + 2a G' + b G = delta, a = zeta w h, b = (w h)^2. G_k
@@ -212,25 +217,40 @@ static void set_moments(const mhb_ring_step *c, const mhb_modal_step *step) {
   }
 }
 
-/* R between a row of sector 0 and one of its neighbour. */
-static double flexibility(const mhb_ring_step *c, int neighbour, int row, int column) {
+double mhb_ring_step_flexibility(const mhb_ring_step *c, int neighbour, int row, int column) {
   int n3 = 3 * c->s.pairs, n = 3 * c->s.contacts;
   if (!c->s.flexibility) return 0;
   return c->s.flexibility[(size_t)row * (size_t)n +
                           (size_t)(mhb_ring_step_sector(c, 0, neighbour) * n3 + column)];
 }
 
-static void set_compliance(const mhb_ring_step *c, mhb_modal_step *step) {
-  const mhb_radau *r  = &c->rule;
-  int              n3 = 3 * c->s.pairs, pairs = c->s.pairs;
-  double           weight[S][S][MOMENTS] = {{{0}}};
+/* w_i by the force at stage j: sum_q weight[i][j][q] h^2 G_q+1. */
+static void set_weights(const mhb_radau *r, double weight[S][S][MOMENTS]) {
+  memset(weight, 0, sizeof(double) * S * S * MOMENTS);
   for (int k = 0; k < S * S * S * S; k++) { /* stages i, j; powers l, m */
     int i = k / (S * S * S), j = k / (S * S) % S, l = k / S % S, m = k % S;
     weight[i][j][l + m] += r->kernel[i][l] * r->basis[j][m];
   }
+}
+
+void mhb_modal_step_response(const mhb_ring_step *c, const mhb_modal_step *step, double *response) {
+  int    m = c->s.modes;
+  double weight[S][S][MOMENTS];
+  set_weights(&c->rule, weight);
+  for (int k = 0; k < S * S * m; k++) {
+    response[k] = 0;
+    for (int q = 0; q < MOMENTS; q++)
+      response[k] += weight[k / (S * m)][k / m % S][q] * step->mode[(MHB_MOMENT + q) * m + k % m];
+  }
+}
+
+static void set_compliance(const mhb_ring_step *c, mhb_modal_step *step) {
+  int    n3 = 3 * c->s.pairs, pairs = c->s.pairs;
+  double weight[S][S][MOMENTS];
+  set_weights(&c->rule, weight);
   for (int k = 0; k < c->n_neighbours * n3 * n3; k++) {
     int     neighbour = k / (n3 * n3), row = k / n3 % n3, column = k % n3;
-    double  R = flexibility(c, neighbour, row, column);
+    double  R = mhb_ring_step_flexibility(c, neighbour, row, column);
     double *block =
         step->compliance + (size_t)((neighbour * pairs + row / 3) * pairs + column / 3) *
                                MHB_STAGE_FORCES * MHB_STAGE_FORCES;
@@ -244,10 +264,14 @@ static void set_compliance(const mhb_ring_step *c, mhb_modal_step *step) {
   }
 }
 
-void mhb_modal_step_length(const mhb_ring_step *ring, double h, mhb_modal_step *step) {
+void mhb_modal_step_modes(const mhb_ring_step *ring, double h, mhb_modal_step *step) {
   step->h = h;
   for (int i = 0; i < ring->s.modes; i++)
     (ring->amplitudes ? set_amplitude : set_mode)(ring, h, i, step);
+}
+
+void mhb_modal_step_length(const mhb_ring_step *ring, double h, mhb_modal_step *step) {
+  mhb_modal_step_modes(ring, h, step);
   set_moments(ring, step);
   set_compliance(ring, step);
   for (int a = 0; a < ring->s.pairs; a++) step->stuck[a].pivot[0] = -1;
@@ -295,8 +319,8 @@ void mhb_ring_step_destroy(mhb_ring_step *ring) {
   *ring = (mhb_ring_step){0};
 }
 
-shb_status mhb_modal_step_create(const mhb_ring_step *c, mhb_modal_step *step) {
-  size_t pairs = (size_t)c->s.pairs, square = MHB_STAGE_FORCES * MHB_STAGE_FORCES;
+shb_status mhb_modal_step_create(const mhb_ring_step *c, bool contacts, mhb_modal_step *step) {
+  size_t pairs = contacts ? (size_t)c->s.pairs : 0, square = MHB_STAGE_FORCES * MHB_STAGE_FORCES;
   *step = (mhb_modal_step){.h = NAN};
   step->mode =
       shb_arena_take(&step->arena, MHB_MODAL_STEP_ROWS * (size_t)c->s.modes, sizeof(double));

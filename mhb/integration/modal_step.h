@@ -31,6 +31,8 @@ typedef struct {
 } mhb_radau;
 
 void mhb_radau_create(mhb_radau *radau);
+/* l_j at tau. */
+void mhb_radau_lagrange(const mhb_radau *radau, double tau, double l[MHB_STAGES]);
 
 /* Coefficients of the modes for one step, rows of [modes]. Of amplitudes those by z and by f for z
  * are real parts, those by z' and by f for z' imaginary parts. */
@@ -73,6 +75,9 @@ static inline int mhb_ring_step_sector(const mhb_ring_step *c, int sector, int n
   return neighbour == 0 ? sector : neighbour == 1 ? (sector + n - 1) % n : (sector + 1) % n;
 }
 
+/* R between a row of sector 0 and one of its neighbour, m/N. */
+double mhb_ring_step_flexibility(const mhb_ring_step *ring, int neighbour, int row, int column);
+
 /* The factored matrix of a stuck contact over a step. */
 typedef struct {
   double matrix[MHB_STAGE_FORCES * MHB_STAGE_FORCES];
@@ -88,9 +93,15 @@ typedef struct {
   shb_arena         arena;
 } mhb_modal_step;
 
-shb_status mhb_modal_step_create(const mhb_ring_step *ring, mhb_modal_step *step);
+/* contacts: with their compliances; else for the modes alone. */
+shb_status mhb_modal_step_create(const mhb_ring_step *ring, bool contacts, mhb_modal_step *step);
 void       mhb_modal_step_destroy(mhb_modal_step *step);
-/* Set all coefficients for a step of h seconds. */
+/* Set all coefficients for a step of h seconds; or those of the modes alone. */
 void mhb_modal_step_length(const mhb_ring_step *ring, double h, mhb_modal_step *step);
+void mhb_modal_step_modes(const mhb_ring_step *ring, double h, mhb_modal_step *step);
+
+/* What the modes add to w_i by a force at stage j: response[i][j][modes], m/N kg. */
+void mhb_modal_step_response(const mhb_ring_step *ring, const mhb_modal_step *step,
+                             double *response);
 
 #endif

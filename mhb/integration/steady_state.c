@@ -98,10 +98,10 @@ static void record(void *context, const mhb_integrator *g, double t0, double h) 
         o->force[k * n + i] += weight[j] * g->step[i / 3].p[3 * j + i % 3];
   }
   for (int c = 0; c < g->contacts; c++) {
-    o->share[3 * c + (int)g->point[c].state] += h / g->period;
-    for (int j = 0; j < S && g->point[c].state == MHB_SLIDE; j++)
-      o->work[c] +=
-          r->A[S - 1][j] * g->step[c].kappa[j] * g->law[c % g->pairs].mu * g->step[c].n[j];
+    double share[3], work;
+    mhb_integrator_share(g, c, share, &work);
+    for (int k = 0; k < 3; k++) o->share[3 * c + k] += share[k] * h / g->period;
+    o->work[c] += work;
   }
 }
 

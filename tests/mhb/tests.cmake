@@ -54,8 +54,8 @@ foreach(noun multipliers floquet condensed disc_stability mistuned_stability fri
 endforeach()
 shb_counts_allocations(test_mhb_floquet_floquet)
 shb_test(mhb/floquet monodromy tests_models)
-foreach(noun modal_step contact_step spectrum integrator integration_memory integration_sweep
-  mistuned_ring bladed_disc amplitudes)
+foreach(noun modal_step contact_step contact_path joint_step spectrum integrator
+  integration_memory integration_sweep mistuned_ring bladed_disc amplitudes)
   shb_test(mhb/integration ${noun} tests_models)
 endforeach()
 foreach(noun ring_statistics side_waves slip_flow)

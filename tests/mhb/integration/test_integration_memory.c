@@ -84,7 +84,7 @@ static void memory_is_that_of_runs(void **state) {
       {"one blade, 200 harmonics", 30, 1, 200, 1, false, false},
       {"one blade, 3000 points", 1, 1, 40, 3000, false, false},
       {"ring of 4 blades, 50 each", 50, 4, 9, 1, false, false},
-      {"25 each with residual terms", 25, 4, 9, 1, true, false},
+      {"60 each with residual terms", 60, 4, 9, 1, true, false},
   };
   static const scene least   = {"", 1, 1, 1, 1, false, false};
   const double       base    = peak_of(&least);

@@ -413,6 +413,47 @@ static void fourth_term(void **state) {
   modal_model_free(&two);
 }
 
+/* Twelve pairs with the residual terms of 60 modes, R3 to 1e-9 only. Directions of little inertia
+ * would turn that into modes that are not there, and into negative flexibility. */
+static void many_directions(void **state) {
+  (void)state;
+  enum { N = 36, LEFT_OUT = 60 };
+  modal_model model, with;
+  random_model(12, WITH_RESIDUAL, 5, &model);
+  for (int i = 0; i < N; i++)
+    for (int j = 0; j < N; j++) {
+      double *R = &model.residual_flexibility[i * N + j], *R2 = &model.residual_inertia[i * N + j],
+             *R3 = &model.residual_fourth[i * N + j];
+      *R = *R2 = *R3 = 0;
+      for (int k = 0; k < LEFT_OUT; k++) {
+        double w = 20 * pow(1.25, k), product = cos(k * (i + .5) * SHB_PI / N);
+        product *= cos(k * (j + .5) * SHB_PI / N);
+        *R += product * pow(w, -2);
+        *R2 += product * pow(w, -4);
+        *R3 += product * pow(w, -6);
+      }
+      *R3 *= 1 + 1e-9 * cos(3. * (i + j) + i * j);
+    }
+  assert_ok(mhb_inertia_modes(&model, &with));
+  assert_true(with.n_modes >= model.n_modes + 6);
+  assert_true(with.n_modes <= model.n_modes + MHB_INERTIA_MODES);
+  double worst = 0, w = 4; /* a fifth of the first mode left out */
+  for (int i = 0; i < N; i++)
+    for (int j = 0; j < N; j++) {
+      double gap = with.residual_flexibility[i * N + j] - model.residual_flexibility[i * N + j];
+      gap -= w * w * (model.residual_inertia[i * N + j] + w * w * model.residual_fourth[i * N + j]);
+      for (int k = model.n_modes; k < with.n_modes; k++)
+        gap += with.right[i * with.n_modes + k] * with.right[j * with.n_modes + k] /
+               (pow(SHB_TWO_PI * with.frequency[k], 2) - w * w);
+      worst = fmax(worst, fabs(gap) / model.residual_flexibility[0]);
+    }
+  print_message("%d modes, receptance off by %.1e of the flexibility\n",
+                with.n_modes - model.n_modes, worst);
+  assert_true(worst < 1e-4);
+  mhb_inertia_free(&with);
+  modal_model_free(&model);
+}
+
 /* Rings of two, three and five blades, all blades of them in time, against the wave of the
  * balance. */
 static void rings(void **state) {
@@ -553,6 +594,7 @@ int main(void) {
                                      cmocka_unit_test(residual_flexibility),
                                      cmocka_unit_test(residual_inertia),
                                      cmocka_unit_test(fourth_term),
+                                     cmocka_unit_test(many_directions),
                                      cmocka_unit_test(rings),
                                      cmocka_unit_test(disturbances),
                                      cmocka_unit_test(passive)};
