@@ -37,7 +37,9 @@ static void finish(transient *t) {
   mhb_integrator_destroy(t->g);
 }
 
-/* Errors of joint steps against many steps that end at events, their order and size. */
+/* Errors of joint steps against many steps that end at events: their order over the first levels,
+ * and the last error. Steps of either way miss changes of state that are too brief, which leaves up
+ * to 7e-9 here. */
 static void compare(const char *name, const modal_model *model, const mhb_settings *s, double w,
                     int fewest, double goal) {
   double    error[LEVELS];
@@ -51,7 +53,7 @@ static void compare(const char *name, const modal_model *model, const mhb_settin
     finish(&t);
   }
   assert_true(exact.count.events > PERIODS);
-  double order = log2(error[0] / error[LEVELS - 1]) / (LEVELS - 1);
+  double order = log2(error[0] / error[LEVELS - 2]) / (LEVELS - 2);
   print_message("%s: order %.2f\n", name, order);
   assert_true(order > 3);
   assert_true(error[LEVELS - 1] < goal);
