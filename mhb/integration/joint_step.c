@@ -103,6 +103,16 @@ static int is_seen(const mhb_joint_step *o, int contact, const double *w, double
   return most * (law->kv + law->ku[0] + law->ku[2]) <= UNSEEN * scale;
 }
 
+/* Whether a contact starts where a path ended; not so before the first step. */
+static bool has_ended_at(const mhb_contact_path *path, const mhb_contact_point *point) {
+  bool same = path->share[0] + path->share[1] + path->share[2] > 0 &&
+              path->end.state == point->state && path->end.zeta[0] == point->zeta[0] &&
+              path->end.zeta[1] == point->zeta[1];
+  for (int c = 0; c < 3; c++)
+    same = same && path->end.u[c] == point->u[c] && path->end.p[c] == point->p[c];
+  return same;
+}
+
 /* Forces of the step before at the stages of the next: the quadratic goes on where nothing changed,
  * else the force stays. */
 static void guess(mhb_joint_step *o, const mhb_contact_point *point) {
@@ -110,9 +120,8 @@ static void guess(mhb_joint_step *o, const mhb_contact_point *point) {
   memset(o->force, 0, sizeof *o->force * (size_t)(F * o->ring->s.contacts));
   for (int j = 0; j < o->ring->s.contacts; j++) {
     const mhb_contact_path *last    = &o->path[j];
-    const bool              goes_on = last->events == 0 && last->share[0] + last->share[1] > 0 &&
-                         memcmp(&last->end, &point[j], sizeof point[j]) == 0;
-    double p[F];
+    const bool              goes_on = last->events == 0 && has_ended_at(last, &point[j]);
+    double                  p[F];
     for (int k = 0; k < F; k++) {
       p[k] = goes_on ? 0 : point[j].p[k % 3];
       for (int i = 0; i < S && goes_on; i++) p[k] += o->onward[k / 3][i] * last->p[3 * i + k % 3];
