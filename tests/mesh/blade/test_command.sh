@@ -57,6 +57,7 @@ bring() { # FILE
 run 0 --quiet case.yaml
 lines 0
 [ -s "$mesh" ] || fail "no mesh written"
+[ "$(sed -n 2p "$mesh")" = "4.1 0 8" ] || fail "not format 4.1: $(sed -n 2p "$mesh")"
 cp "$mesh" "$work/first.msh"
 first=$(inode)
 

@@ -91,6 +91,23 @@ static void meshes_come_back(void **state) {
     }
 }
 
+/* The format that docs/developer/map.md names for meshes of solids. */
+static void the_format_is_the_one_stated(void **state) {
+  (void)state;
+  const shb_provenance none = {0};
+  mesh_fe              mesh = make_mesh(MESH_TET10);
+  char                 path[sizeof scratch_folder + 16];
+  char                 head[20];
+  snprintf(path, sizeof path, "%s/box.msh", scratch_folder);
+  assert_ok(mesh_msh_write(&mesh, path, &none));
+  FILE *file = fopen(path, "r");
+  assert_non_null(file);
+  assert_int_equal(fread(head, 1, sizeof head, file), sizeof head);
+  fclose(file);
+  assert_memory_equal(head, "$MeshFormat\n2.2 0 8\n", sizeof head);
+  mesh_fe_free(&mesh);
+}
+
 static void a_folder_that_is_absent_is_told(void **state) {
   (void)state;
   const shb_provenance none = {0};
@@ -106,6 +123,7 @@ static void a_folder_that_is_absent_is_told(void **state) {
 
 int main(void) {
   const struct CMUnitTest tests[] = {cmocka_unit_test(meshes_come_back),
+                                     cmocka_unit_test(the_format_is_the_one_stated),
                                      cmocka_unit_test(a_folder_that_is_absent_is_told)};
   return cmocka_run_group_tests(tests, scratch_make, scratch_remove);
 }
