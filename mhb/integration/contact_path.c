@@ -4,7 +4,7 @@
 #include <stdbool.h>
 #include <string.h>
 
-#include "mesh/base/constants.h"
+#include "mhb/numerics/lu.h"
 
 enum { S = MHB_STAGES, F = MHB_STAGE_FORCES, MAX_TRIALS = 60, MAX_PIECES = 200, MAX_STALLED = 4 };
 
@@ -24,28 +24,22 @@ static void times_stiffness(const mhb_law *law, const double *u, double *x) {
   x[2] = law->ku[1] * u[1] + law->ku[2] * u[2];
 }
 
-/* a <- a^-1 */
-static void invert(double a[3][3]) {
-  double b[3][3];
-  for (int i = 0; i < 3; i++)
-    for (int k = 0; k < 3; k++) {
-      int p = (i + 1) % 3, q = (i + 2) % 3, r = (k + 1) % 3, s = (k + 2) % 3;
-      b[k][i] = a[p][r] * a[q][s] - a[p][s] * a[q][r];
-    }
-  double det = a[0][0] * b[0][0] + a[0][1] * b[1][0] + a[0][2] * b[2][0];
-  for (int i = 0; i < 9; i++) a[i / 3][i % 3] = b[i / 3][i % 3] / det;
-}
-
 void mhb_contact_spring_set(const mhb_law *law, const double R[3][3], mhb_contact_spring *spring) {
   *spring = (mhb_contact_spring){.law = *law};
   memcpy(spring->R, R, sizeof spring->R);
+  double matrix[3][3], x[3];
+  int    pivot[3];
   for (int k = 0; k < 3; k++) {
     const double column[3] = {R[0][k], R[1][k], R[2][k]};
-    double       x[3];
     times_stiffness(law, column, x);
-    for (int i = 0; i < 3; i++) spring->stuck[i][k] = x[i] + (i == k);
+    for (int i = 0; i < 3; i++) matrix[i][k] = x[i] + (i == k);
   }
-  invert(spring->stuck);
+  mhb_factor_real(3, *matrix, pivot);
+  for (int k = 0; k < 3; k++) {
+    for (int i = 0; i < 3; i++) x[i] = i == k;
+    mhb_solve_real(3, *matrix, pivot, x);
+    for (int i = 0; i < 3; i++) spring->stuck[i][k] = x[i];
+  }
   for (int i = 0; i < F; i++)
     for (int k = 0; k < 3; k++) spring->square[i * F + i / 3 * 3 + k] = R[i % 3][k];
 }
@@ -114,13 +108,6 @@ static double correction(const march *o) {
   return slope > 0 ? fmin(fmax(-at / slope, -0.5), 0.5) : 0;
 }
 
-/* Whether the direction of slip turns in a piece that ends with an opening. It may turn like a
- * power of the time left; the pieces then shrink with that time. */
-static bool direction_turns(const march *o) {
-  return o->kind == MHB_CONTACT_OPENS && o->at.state == MHB_SLIDE &&
-         fabs(remainder(o->piece.theta[S - 1] - o->at.theta, SHB_PI)) > 1e-9;
-}
-
 /* Place in the piece of the first event, 2: none. */
 static double first_event(const march *o, mhb_contact_event *kind) {
   return o->deaf ? 2
@@ -156,7 +143,7 @@ static int find_piece(march *o) {
       return 1;
     }
     o->kind = kind;
-    o->ends = !(direction_turns(o) && at * length > TURNING);
+    o->ends = !(mhb_contact_step_turns(&o->at, &o->piece, o->kind) && at * length > TURNING);
     length *= o->ends ? fmax(at, 1e-3) : 0.7 * at;
   }
   return 0;

@@ -311,6 +311,12 @@ double mhb_contact_step_first(const mhb_radau *rule, const mhb_law *law,
   return ends <= opens ? ends : opens;
 }
 
+bool mhb_contact_step_turns(const mhb_contact_point *point, const mhb_contact_step *step,
+                            mhb_contact_event event) {
+  return event == MHB_CONTACT_OPENS && point->state == MHB_SLIDE &&
+         fabs(remainder(step->theta[S - 1] - point->theta, SHB_PI)) > 1e-9;
+}
+
 /* ---- between steps ---- */
 
 void mhb_contact_step_advance(const mhb_law *law, const mhb_contact_step *step, double h,

@@ -67,6 +67,11 @@ double mhb_contact_step_first(const mhb_radau *rule, const mhb_law *law,
                               const mhb_contact_point *point, const mhb_contact_step *step,
                               double tolerance, mhb_contact_event *event);
 
+/* Whether the direction of slip turns in a step that ends with this event, an opening. It may turn
+ * like a power of the time left; steps then shrink with that time. */
+bool mhb_contact_step_turns(const mhb_contact_point *point, const mhb_contact_step *step,
+                            mhb_contact_event event);
+
 /* Move the contact to the end of a step of h seconds. */
 void mhb_contact_step_advance(const mhb_law *law, const mhb_contact_step *step, double h,
                               mhb_contact_point *point);

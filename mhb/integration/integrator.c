@@ -304,15 +304,6 @@ static double correction(const mhb_integrator *g, const step_event *o) {
   return slope > 0 ? -at / slope : 0;
 }
 
-/* Whether the direction of slip turns in a step that ends with an opening. It may turn like a power
- * of the time left; the steps then shrink with that time. */
-static int direction_turns(const mhb_integrator *g, const step_event *o) {
-  const mhb_contact_point *point = &g->point[o->contact];
-  const mhb_contact_step  *step  = &g->step[o->contact];
-  return o->kind == MHB_CONTACT_OPENS && point->state == MHB_SLIDE &&
-         fabs(remainder(step->theta[S - 1] - point->theta, SHB_PI)) > 1e-9;
-}
-
 /* One step that ends at the event, or at an earlier one; longest in s. Returns 0 if it failed. */
 static int step_to_event(mhb_integrator *g, step_event o, double h, double longest) {
   for (int k = 0; k < MAX_CUTS; k++) {
@@ -351,7 +342,8 @@ static int advance(mhb_integrator *g, double longest) {
       apply_event(g, &o);
       return 1;
     }
-    if (direction_turns(g, &o) && o.tau * h > 1e-3 * g->nominal.h) {
+    if (mhb_contact_step_turns(&g->point[o.contact], &g->step[o.contact], o.kind) &&
+        o.tau * h > 1e-3 * g->nominal.h) {
       modal = modal_step_of(g, 0.7 * o.tau * h);
       if (!solve(g, modal)) continue;
       if (first_event(g).tau > 1) {
