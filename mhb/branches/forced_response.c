@@ -483,9 +483,9 @@ static shb_status take_curves(sweep *s) {
 }
 
 /* A secondary branch that does not cover its range is noted in the file only. The sweep has its
- * main branches all the same. */
+ * main branches all the same. Branches 0 and 1 are the linear limits, which an outline has not. */
 static shb_status outcome(const mhb_response *response, const mhb_settings *settings) {
-  for (int i = 0; i < response->n_branches; i++) {
+  for (int i = 2; i < response->n_branches; i++) {
     const mhb_branch *branch = &response->branch[i];
     if (branch->complete || branch->main != i) continue;
     return shb_fail(SHB_NOT_CONVERGED, __FILE__, __LINE__,

@@ -152,6 +152,26 @@ static void a_detached_curve_in_outline_closes(void **state) {
   modal_model_free(&model);
 }
 
+/* An outline has no linear limits. A sweep that covers its range succeeds without them, and one
+ * that does not names its own curve. */
+static void an_outline_is_judged_by_its_curves(void **state) {
+  (void)state;
+  modal_model   model;
+  mhb_response *r;
+  mhb_settings  s = small_gap();
+  s.outline       = true;
+  s.search.starts = 0;
+  three_degree_model(&model);
+  assert_ok(mhb_forced_response(&model, &s, NULL, NULL, NULL, &r));
+  assert_int_equal(r->branch[0].n_points, 0);
+  mhb_response_destroy(r);
+  s.max_points = 3;
+  assert_int_equal(mhb_forced_response(&model, &s, NULL, NULL, NULL, &r), SHB_NOT_CONVERGED);
+  assert_non_null(strstr(shb_message(), "branch 2 "));
+  mhb_response_destroy(r);
+  modal_model_free(&model);
+}
+
 /* What a stopped search found is dropped, with its records: a resumed run makes it anew. */
 static void a_stopped_search_leaves_nothing(void **state) {
   (void)state;
@@ -207,6 +227,7 @@ int main(void) {
       cmocka_unit_test(along_another_parameter),
       cmocka_unit_test(a_detached_curve_is_found),
       cmocka_unit_test(a_detached_curve_in_outline_closes),
+      cmocka_unit_test(an_outline_is_judged_by_its_curves),
       cmocka_unit_test(a_stopped_search_leaves_nothing),
       cmocka_unit_test(every_run_searches),
   };
