@@ -47,7 +47,7 @@ set(INTEGRATION_TESTS cases.study.study cases.study.samples cases.study.eval
   mhb.tracking.tracked_multiplier mhb.branches.mistuned_sweep bench.tracking
   robust.same_bits robust.not_finite robust.fail_nth_integrate robust.fail_nth_study
   robust.fail_nth_mesh mesh.blade.shroud_angle cases.converge.points_ladder
-  robust.memory
+  robust.memory robust.surroundings
   cases.commands.contact_points modal.hdf5.stamp)
 if(SHROUDHB_CHROMIUM AND SHROUDHB_PYTHON)
   list(APPEND INTEGRATION_TESTS postproc.study.page_script postproc.report.page_script)

@@ -118,7 +118,8 @@ static void take_errors(convergence_study *s, int i, int reference) {
   free(path);
 }
 
-/* Runs row i and compares it with row reference (-1: none). A failure affects only its row. */
+/* Runs row i and compares it with row reference (-1: none). A rung that does not converge, or that
+ * is killed, affects only its row. What is refused or cannot be written would fail in every row. */
 static shb_status run(convergence_study *s, int i, int reference) {
   study_row        *p   = &s->row[i];
   post_rung        *row = &s->result.rung[i];
@@ -130,8 +131,8 @@ static shb_status run(convergence_study *s, int i, int reference) {
     SHB_FAIL(SHB_INTERRUPTED, "interrupted; the rungs so far are kept and used again");
   shb_progress_clear(&s->progress);
   if (status != SHB_OK) fprintf(stderr, "shroudhb: warning: %s\n", shb_message());
-  if (status == SHB_OK && result.code == SHB_ERR_INPUT) /* the child has printed its message */
-    return shb_fail(SHB_ERR_INPUT, __FILE__, __LINE__, "%s", "");
+  if (status == SHB_OK && (result.code == SHB_ERR_INPUT || result.code == SHB_ERR_IO))
+    return shb_fail(result.code, __FILE__, __LINE__, "%s", ""); /* the child has said why */
   if (status != SHB_OK || result.code != 0 || rung_cost_read(p->stem, &p->cost) != SHB_OK) {
     row->state = POST_RUNG_FAILED;
     return SHB_OK;

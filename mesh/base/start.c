@@ -1,8 +1,11 @@
-/* A limit of the address space (ulimit -v) below what OpenBLAS takes at its start makes it try for
- * ever. The check stands before the start of every library, so it uses system calls only. */
+/* What must be in order before the start of every library: standard descriptors, address space.
+ * System calls only: a sanitizer, which replaces functions, may not be there yet. */
+#define _GNU_SOURCE /* syscall */
+#include <fcntl.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/resource.h>
+#include <sys/syscall.h>
 #include <unistd.h>
 
 #include "mesh/base/status.h"
@@ -38,8 +41,23 @@ static void say_number(rlim_t number) {
   say(at);
 }
 
-static void check(int argc, char **argv, char **environment) {
-  (void)argc, (void)argv;
+/* Where standard input, output or error is closed, the first file opened would take its number:
+ * messages would be written into a result. Closed ones become /dev/null. It is open for reading
+ * only, so a write still fails as on a closed one. */
+static void fill_descriptors(void) {
+  long taken;
+  do {
+    taken = syscall(SYS_openat, AT_FDCWD, "/dev/null", O_RDONLY);
+  } while (taken >= 0 && taken <= STDERR_FILENO);
+  if (taken >= 0)
+    (void)syscall(SYS_close, taken);
+  else if (syscall(SYS_fcntl, STDERR_FILENO, F_GETFD) < 0)
+    _exit(SHB_ERR_IO); /* a result could be damaged, and nobody can be told */
+}
+
+/* A limit of the address space (ulimit -v) below what OpenBLAS takes at its start makes it try for
+ * ever. */
+static void check_address_space(char **environment) {
   struct rlimit limit;
   const long    threads = threads_of(environment);
   const rlim_t  needed  = FIRST_THREAD + (rlim_t)(threads - 1) * FURTHER_THREAD;
@@ -57,5 +75,11 @@ static void check(int argc, char **argv, char **environment) {
   _exit(SHB_ERR_IO);
 }
 
+static void start(int argc, char **argv, char **environment) {
+  (void)argc, (void)argv;
+  fill_descriptors();
+  check_address_space(environment);
+}
+
 __attribute__((section(".preinit_array"),
-               used)) static void (*const before_libraries)(int, char **, char **) = check;
+               used)) static void (*const before_libraries)(int, char **, char **) = start;
