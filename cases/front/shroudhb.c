@@ -44,6 +44,7 @@ static const char usage[] =
     "  field NAME.response.h5  the moving blade: motion and stress everywhere over a period, for\n"
     "                     ParaView and viewers of glTF; `shroudhb field --help`\n"
     "  contact FILE.yaml  contact forces for a prescribed motion; --svg OUT.svg draws the loops\n"
+    "  help [COMMAND]     this text, or what COMMAND does, as COMMAND --help\n"
     "\n"
     "  --quiet    no progress, no summary       --verbose  time and memory of every stage\n"
     "  --force    run though up to date         --help, --version\n"
@@ -376,15 +377,28 @@ static int run_command(int index, int argc, char **argv) {
   return run_json(json, argc, argv);
 }
 
-int main(int argc, char **argv) {
-  if (argc < 2) {
-    fputs(usage, stderr);
-    return SHB_ERR_INPUT;
-  }
+static int front(int argc, char **argv) {
   const char *word = argv[1];
   for (int i = 0; i < N_COMMANDS; i++)
     if (strcmp(word, commands[i].name) == 0) return run_command(i, argc - 1, argv + 1);
   command_options options;
   if (word[0] == '-') return command_parse(2, argv, usage, &options);
   return unknown_command(word);
+}
+
+/* help: as --help. help COMMAND: as COMMAND --help. */
+static int help(int argc, char **argv) {
+  char  asked[] = "--help";
+  char *words[] = {argv[0], argc > 2 ? argv[2] : asked, argc > 2 ? asked : NULL, NULL};
+  if (argc <= 3) return front(argc > 2 ? 3 : 2, words);
+  fprintf(stderr, "shroudhb: error: help takes one command; unexpected '%s'\n", argv[3]);
+  return SHB_ERR_INPUT;
+}
+
+int main(int argc, char **argv) {
+  if (argc < 2) {
+    fputs(usage, stderr);
+    return SHB_ERR_INPUT;
+  }
+  return strcmp(argv[1], "help") == 0 ? help(argc, argv) : front(argc, argv);
 }

@@ -90,6 +90,13 @@ ls -l "$work/dir" >"$work/before"
 run 0 --help; says out 'usage: shroudhb COMMAND'; silent err
 run 0 check --help; says out 'usage: shroudhb COMMAND'
 run 0 keys --help; says out 'usage: shroudhb COMMAND'
+run 0 help; says out 'usage: shroudhb COMMAND'; silent err
+run 0 help check; says out 'usage: shroudhb COMMAND'; silent err
+run 0 help mhb
+called 'mhb --help;'
+run 0 help --help; says out 'usage: shroudhb COMMAND'; silent err
+run 2 help chek; says err "unknown command 'chek'; did you mean 'check'?"; silent out
+run 2 help check more; says err "help takes one command; unexpected 'more'"; silent out
 run 0 --version; says out 'shroudhb 0.'; silent err
 run 2; says err 'usage: shroudhb COMMAND'; silent out
 run 2 chek good.yaml; says err "shroudhb: error: unknown command 'chek'; did you mean 'check'?"
