@@ -10,7 +10,15 @@
 /* Most rounds over the contacts that residual flexibility couples; without it two are enough. */
 enum { MAX_ROUNDS = 400, UNCOUPLED_ROUNDS = 2 };
 
+/* The scale of the forces before any motion. */
+static void set_scale(mhb_integrator *g) {
+  g->scale = 0;
+  for (int a = 0; a < g->pairs; a++) g->scale = fmax(g->scale, fabs(g->law[a].n0));
+}
+
+/* Nothing remains of the motion before, so a point of a sweep does not depend on the others. */
 static void clear_state(mhb_integrator *g) {
+  set_scale(g);
   memset(g->z, 0, sizeof(double) * 2 * (size_t)(g->blades * g->modes));
   for (int j = 0; j < g->contacts; j++) memset(&g->point[j], 0, sizeof g->point[j]);
   g->count = (mhb_integrator_count){0};
@@ -120,13 +128,12 @@ static void set_laws(mhb_integrator *g, double n0) {
   const mhb_settings *s  = &g->settings;
   mhb_operating_point at = mhb_operating_point_of(s);
   at.n0 = g->n0 = n0;
-  g->scale      = 0;
   for (int a = 0; a < g->pairs; a++) {
     mhb_operating_point own = mhb_interface_operating_point(&at, s, g->receptance->interface[a]);
     mhb_law             law = mhb_operating_point_law(&own, s->preload, g->receptance->share[a]);
     g->law[a]               = mhb_contact_step_law(&law);
-    g->scale                = fmax(g->scale, fabs(law.n0));
   }
+  set_scale(g);
 }
 
 void mhb_integrator_set(mhb_integrator *g, double omega, double n0, int steps) {

@@ -1,8 +1,11 @@
-"""robust.same_bits: numbers do not depend on threads; those of the modes on ranks to 1e-12.
+"""robust.same_bits: numbers do not depend on threads or on the load of the machine; those of the
+modes on ranks to 1e-12.
 
 Usage: test_same_bits.py FOLDER_OF_PROGRAMS CASE_FOLDER. Exit code 77: h5py is missing.
 """
+import contextlib
 import os
+import subprocess
 import sys
 
 try:
@@ -16,39 +19,48 @@ from programs import ENVIRONMENT, bring_your_own, run, write
 from results import numbers
 
 BIN, SCENE = (os.path.abspath(word) for word in sys.argv[1:3])
+CORES = len(os.sched_getaffinity(0))
 
 
 def program(stage):
     return os.path.join(BIN, f'shroudhb-{stage}')
 
 
-def threads_change_nothing():
-    run(sys.executable, 'write_modal.py')
+@contextlib.contextmanager
+def machine_load(processes):
+    """Busy processes beside the run."""
+    busy = [subprocess.Popen([sys.executable, '-c', 'while True: pass'])
+            for _ in range(processes)]
+    try:
+        yield
+    finally:
+        for process in busy:
+            process.kill()
+            process.wait()
+
+
+def same_numbers(stage, case, name, least):
+    """1, 2, 3 threads, and more threads than cores on a busy machine, give the same numbers."""
     first = None
-    for threads in 1, 2, 3:
+    for threads, load in (1, 0), (2, 0), (3, 0), (2 * CORES + 1, 2 * CORES):
         ENVIRONMENT['OMP_NUM_THREADS'] = str(threads)
-        run(program('mhb'), '--quiet', '--force', 'case.yaml')
-        found = numbers('three_degree.response.h5')
+        with machine_load(load):
+            run(program(stage), '--quiet', '--force', case)
+        found = numbers(name)
         first = first or found
-        different = [name for name in first.keys() | found.keys()
-                     if first.get(name) != found.get(name)]
-        assert len(found) > 50 and not different, (threads, different)
-    print(f'1, 2, 3 threads: {len(first)} datasets alike to the last bit')
+        different = [key for key in first.keys() | found.keys() if first.get(key) != found.get(key)]
+        assert len(found) > least and not different, (stage, threads, load, different)
+    print(f'{stage}: 1, 2, 3 threads, and {threads} beside {load} busy processes: {len(first)} '
+          'datasets alike to the last bit')
 
 
-def threads_change_no_mode():
+def load_and_threads_change_nothing():
+    run(sys.executable, 'write_modal.py')
+    same_numbers('mhb', 'case.yaml', 'three_degree.response.h5', 50)
+    same_numbers('integrate', 'case.yaml', 'three_degree.integration.h5', 50)
     write('blade.yaml', BLADE.replace('SIZE', '14 mm'))
     run(program('mesh'), '--quiet', 'blade.yaml')
-    first = None
-    for threads in 1, 2, 3:
-        ENVIRONMENT['OMP_NUM_THREADS'] = str(threads)
-        run(program('modal'), '--quiet', '--force', 'blade.yaml')
-        found = numbers('blade.modal.h5')
-        first = first or found
-        different = [name for name in first.keys() | found.keys()
-                     if first.get(name) != found.get(name)]
-        assert len(found) > 20 and not different, (threads, different)
-    print(f'modal stage, 1, 2, 3 threads: {len(first)} datasets alike to the last bit')
+    same_numbers('modal', 'blade.yaml', 'blade.modal.h5', 20)
 
 
 def frequencies(ranks):
@@ -59,8 +71,6 @@ def frequencies(ranks):
 
 
 def ranks_change_the_last_digits():
-    write('blade.yaml', BLADE.replace('SIZE', '14 mm'))
-    run(program('mesh'), '--quiet', 'blade.yaml')
     one, all_of_one = frequencies(1)
     again, all_again = frequencies(1)
     assert all_of_one == all_again, 'two runs of one rank differ'
@@ -71,6 +81,5 @@ def ranks_change_the_last_digits():
 
 
 with bring_your_own(SCENE):
-    threads_change_nothing()
-    threads_change_no_mode()
+    load_and_threads_change_nothing()
     ranks_change_the_last_digits()

@@ -1,4 +1,5 @@
-"""Results as numbers: what two HDF5 files of the same run must share."""
+"""Results as numbers: what two files of the same run must share."""
+import csv
 import os
 
 import h5py
@@ -21,6 +22,13 @@ def numbers(path):
     with h5py.File(path, 'r') as file:
         file.visititems(keep)
     return found
+
+
+def table(path):
+    """The rows of a CSV file without the times of the run."""
+    with open(path, newline='') as file:
+        return [{name: value for name, value in row.items() if name != 'seconds'}
+                for row in csv.DictReader(file)]
 
 
 def content(path):
