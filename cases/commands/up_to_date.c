@@ -3,6 +3,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/stat.h>
 
 #include "cases/schema/stage_settings.h"
 #include "mesh/base/publish.h"
@@ -46,6 +47,8 @@ char *up_to_date_written(const char *path) {
 }
 
 bool up_to_date_with(const char *path, const char *settings) {
+  struct stat about;
+  if (lstat(path, &about) == 0 && S_ISDIR(about.st_mode)) return false; /* writing it will tell */
   if (h5_check_earlier(path) != SHB_OK) {
     fprintf(stderr, "shroudhb: warning: %s; it is replaced\n", shb_message());
     return false;

@@ -5,6 +5,7 @@
 #include <stdarg.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/stat.h>
 #include <yaml.h>
 
 typedef struct {
@@ -32,7 +33,11 @@ static int read_bytes(FILE *file, char **bytes, size_t *n) {
 }
 
 shb_status case_text_read(const char *path, char **text, size_t *length) {
-  *text      = NULL;
+  struct stat about;
+  *text = NULL;
+  /* opening a pipe would wait for its writer; every stage reads the file again */
+  SHB_CHECK(stat(path, &about) != 0 || S_ISREG(about.st_mode) || S_ISDIR(about.st_mode), SHB_ERR_IO,
+            "%s: is a pipe or a device, not a file", path);
   FILE *file = fopen(path, "rb");
   SHB_CHECK(file, SHB_ERR_IO, "%s: cannot be opened: %s", path, strerror(errno));
   char  *bytes = NULL;

@@ -1,7 +1,9 @@
-/* What must be in order before the start of every library: standard descriptors, address space.
- * System calls only: a sanitizer, which replaces functions, may not be there yet. */
+/* What must be in order before the program runs: standard descriptors and address space before the
+ * start of every library, the locale after it. The former by system calls only: a sanitizer, which
+ * replaces functions, may not be there yet. */
 #define _GNU_SOURCE /* syscall */
 #include <fcntl.h>
+#include <locale.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/resource.h>
@@ -83,3 +85,8 @@ static void start(int argc, char **argv, char **environment) {
 
 __attribute__((section(".preinit_array"),
                used)) static void (*const before_libraries)(int, char **, char **) = start;
+
+/* Numbers have a decimal point, also where a library has taken the locale of the user. */
+__attribute__((constructor)) static void set_locale(void) {
+  setlocale(LC_ALL, "C");
+}

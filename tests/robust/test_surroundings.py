@@ -1,10 +1,12 @@
-"""robust.surroundings: disks that are full, standard descriptors that are closed.
+"""robust.surroundings: full disks, closed descriptors, locales, odd names, files that are none.
 
-Usage: test_surroundings.py FOLDER_OF_PROGRAMS CASE_FOLDER [SCENE]...
-Exit code 77: h5py is missing.
+Usage: test_surroundings.py FOLDER_OF_PROGRAMS LIBRARY CASE_FOLDER [SCENE]...
+LIBRARY is locale.c, which takes the locale of the user. Exit code 77: h5py is missing.
 """
 import os
+import re
 import resource
+import shutil
 import subprocess
 import sys
 import time
@@ -17,24 +19,34 @@ except ImportError:
 sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), '../support'))
 from blade import BLADE
 from programs import ENVIRONMENT, bring_your_own, run, write
-from results import content
+from results import content, table
 
-BIN, CASES = (os.path.abspath(word) for word in sys.argv[1:3])
+BIN, LIBRARY, CASES = (os.path.abspath(word) for word in sys.argv[1:4])
 SHROUDHB = os.path.join(BIN, 'shroudhb')
 ENVIRONMENT.update(OPENBLAS_NUM_THREADS='1', OMP_NUM_THREADS='2')
 STUDY = 'name: study\ncase: case.yaml\nvary: {contact.mu: [0.3, 0.4]}\n'
 
 
-def attempt(*words, before=None, closed=(), seconds=120):
-    """Exit code of a run and the lines that it said."""
+RESULTS = ['three_degree.' + kind for kind in ('response.h5', 'svg', 'csv')]
+
+
+def short_case():
+    """One preload, three harmonics: a second."""
+    run(sys.executable, 'write_modal.py')
+    text = re.sub(r'n0: .*', 'n0: [0.3 N]', open('case.yaml').read())
+    write('case.yaml', re.sub(r'harmonics: .*', 'harmonics: 3', text))
+
+
+def attempt(*words, before=None, closed=(), seconds=120, more=()):
+    """Exit code of a run and the lines that it said. more: of the environment."""
     def prepare():
         if before:
             before()
         for number in closed:
             os.close(number)
-    done = subprocess.run([SHROUDHB, *words], env=ENVIRONMENT, capture_output=True, text=True,
-                          stdin=subprocess.DEVNULL, errors='replace', timeout=seconds,
-                          preexec_fn=prepare)
+    done = subprocess.run([SHROUDHB, *words], env=dict(ENVIRONMENT, **dict(more)),
+                          capture_output=True, text=True, stdin=subprocess.DEVNULL,
+                          errors='replace', timeout=seconds, preexec_fn=prepare)
     return done.returncode, (done.stdout + done.stderr).splitlines()
 
 
@@ -90,7 +102,123 @@ def closed_descriptors():
     print('closed descriptors: results alike')
 
 
-SCENES = {'full_disk': full_disk, 'closed_descriptors': closed_descriptors}
-for scene in sys.argv[3:] or SCENES:
+def read_results(folder):
+    """What the results of the case hold."""
+    return [(table if name.endswith('.csv') else content)(os.path.join(folder, name))
+            for name in RESULTS]
+
+
+def locale():
+    """Numbers are read and written with a point, also where the locale has a comma."""
+    write('blade.yaml', BLADE.replace('SIZE', '14 mm'))
+    names = ['blade.msh', 'blade.modal.h5', 'blade.response.h5', 'blade.svg']
+    if subprocess.run(['localedef', '-i', 'de_DE', '-f', 'UTF-8', './de_DE.UTF-8'],
+                      capture_output=True).returncode:
+        print('locale: left out, localedef has no de_DE')
+        return
+    german = {'LOCPATH': os.getcwd(), 'LC_ALL': 'de_DE.UTF-8'}
+    preloaded = dict(german, LD_PRELOAD=LIBRARY)
+    comma = subprocess.run(['/usr/bin/printf', '%.1f', '1'], env=dict(os.environ, **german),
+                           capture_output=True, text=True).stdout
+    assert comma == '1,0', comma
+    whole = None
+    for more in {}, german, preloaded:
+        code, said = attempt('run', '--quiet', '--force', 'blade.yaml', more=more)
+        found = [content(name) for name in names]
+        whole = whole or found
+        assert code == 0 and not said and found == whole, (more, code, said)
+    print('locale with a comma: results alike')
+
+
+def odd_names():
+    """Blanks, other letters, a leading dash, symbolic links: results as ever, at their place."""
+    short_case()
+    assert attempt('run', '--quiet', 'case.yaml') == (0, [])
+    expected = read_results('.')
+    os.mkdir('real')
+    os.symlink('real', 'link')
+    for into in 'a b', 'ä€', '-x', "it's", 'link':
+        assert attempt('run', '--quiet', '--into', into, 'case.yaml') == (0, []), into
+        assert read_results(into) == expected, into
+    assert os.path.islink('link') and sorted(os.listdir('real')) == sorted(
+        [*RESULTS, 'three_degree.html', 'three_degree.summary.json'])
+    for case in '-case.yaml', 'a b ä€.yaml', '-d/case.yaml':
+        os.makedirs(os.path.dirname(case) or '.', exist_ok=True)
+        shutil.copy('case.yaml', case)
+        if os.path.dirname(case):
+            shutil.copy('three_degree.modal.h5', os.path.dirname(case))
+        assert attempt('run', '--quiet', '--into', 'other', '--', case) == (0, []), case
+        assert read_results('other') == expected, case
+        shutil.rmtree('other')
+    os.symlink('case.yaml', 'linked.yaml')
+    assert attempt('run', '--quiet', '--into', 'other', 'linked.yaml') == (0, [])
+    assert read_results('other') == expected
+    print('odd names: results alike')
+
+
+def refuses(words, text, codes, before=None):
+    """A run ends soon, with a line that says why."""
+    code, said = attempt(*words, before=before)
+    lines = [line for line in said if 'error: ' in line]
+    assert code in codes and len(lines) == 1 and text in lines[0], (words, code, said)
+    assert not [line for line in said if 'warning: ' in line], (words, said)
+
+
+def no_files():
+    """Folders, pipes and devices in the place of files, and a case of 100 MB, are refused."""
+    short_case()
+    for name in RESULTS:
+        os.makedirs(f'into/{name}/inner')
+        refuses(('run', '--quiet', '--into', 'into', 'case.yaml'),
+                f'into/{name}: cannot be written', (4,))
+        shutil.rmtree('into')
+    with open('large.yaml', 'w') as large:
+        large.write('# nothing but a remark\n' * (100 * 10 ** 6 // 23))
+    os.mkfifo('pipe.yaml')
+    for command in 'run', 'check', 'study', 'contact':
+        refuses((command, 'large.yaml'), 'larger than 1 MiB', (2,))
+        for path in 'pipe.yaml', '/dev/zero', '/dev/tty':
+            refuses((command, path), f'{path}: is a pipe or a device, not a file', (4,))
+    given = open('case.yaml').read()
+    brought = re.sub(r'(?s)mesh:.*?SIZE', 'mesh: {file: FILE}', BLADE)
+    for key, name in ('mesh', 'pipe.msh'), ('mesh', 'pipe.inp'), ('modal', 'pipe.h5'):
+        os.mkfifo(name)
+        text = given.replace('three_degree.modal.h5', name)
+        write('of_pipe.yaml', brought.replace('FILE', name) if key == 'mesh' else text)
+        refuses(('run', '--quiet', 'of_pipe.yaml'),
+                f'{key}.file: {name}: is a pipe or a device, not a file', (4,))
+    for command in 'post', 'inspect', 'field':
+        refuses((command, 'pipe.h5'), 'not a file', (4,))
+    print('no files: one line, exit code')
+
+
+def as_nobody():
+    """Root may write everywhere."""
+    if os.geteuid() == 0:
+        os.setgroups([])
+        os.setgid(65534)
+        os.setuid(65534)
+
+
+def read_only():
+    """Where nothing may be written it is told, and nothing changes."""
+    short_case()
+    os.chmod('.', 0o755)
+    os.mkdir('fixed')
+    os.chmod('fixed', 0o555)
+    refuses(('run', '--quiet', '--into', '/proc/self', 'case.yaml'), 'cannot be written', (4,))
+    refuses(('run', '--quiet', '--into', '/proc/new', 'case.yaml'), 'cannot be made', (4,))
+    reachable = subprocess.run([SHROUDHB, '--version'], preexec_fn=as_nobody, env=ENVIRONMENT,
+                               stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+    if reachable.returncode == 0:
+        refuses(('run', '--quiet', '--into', 'fixed', 'case.yaml'), 'cannot be written', (4,),
+                before=as_nobody)
+    assert not os.listdir('fixed')
+    print('read-only folder: one line, exit code 4')
+
+
+SCENES = {'full_disk': full_disk, 'closed_descriptors': closed_descriptors, 'locale': locale,
+          'odd_names': odd_names, 'no_files': no_files, 'read_only': read_only}
+for scene in sys.argv[4:] or SCENES:
     with bring_your_own(CASES):
         SCENES[scene]()
