@@ -20,6 +20,7 @@
 #include "mesh/gmsh/export.h"
 #include "mesh/gmsh/import.h"
 #include "mesh/gmsh/session.h"
+#include "mesh/gmsh/size_estimate.h"
 
 static const char *const case_key = "mesh.blade";
 
@@ -66,31 +67,32 @@ static shb_status check_foot(const mesh_blade *blade) {
   return SHB_OK;
 }
 
+/* 12 nodes in a cube of the element size: about 8.5 tetrahedra with 1.4 nodes each. */
+static shb_status check_nodes(const char *key, double size, double volume) {
+  const double most = mesh_estimate_most_nodes(), nodes = 12 * volume / pow(size, 3);
+  SHB_CHECK(nodes < most, SHB_ERR_INPUT,
+            "mesh.blade.%s: %g mm would give about %.2g nodes; give at least %.2g mm, which gives "
+            "%.2g, the most that the free memory holds or can be computed with",
+            key, 1e3 * size, nodes, 1e3 * cbrt(12 * volume / most), most);
+  return SHB_OK;
+}
+
 static shb_status check_size(const mesh_blade *blade) {
-  enum { MOST = 3000000 };
   SHB_CHECK(blade->size > 0 && isfinite(blade->size), SHB_ERR_INPUT,
             "mesh.blade.size: %g mm; it must be positive", 1e3 * blade->size);
   SHB_CHECK(blade->shroud_size >= 0 && isfinite(blade->shroud_size), SHB_ERR_INPUT,
             "mesh.blade.shroud_size: %g mm; it must be positive (0: as mesh.blade.size)",
             1e3 * blade->shroud_size);
-  /* 12 nodes in a cube of the element size: about 8.5 tetrahedra with 1.4 nodes each */
   double volume =
       blade->root_length * blade->root_width * blade->root_height + mesh_disc_volume(blade);
   for (int i = 1; i < blade->n_sections; i++) {
     const mesh_section *a = &blade->section[i - 1], *b = &blade->section[i];
     volume += 0.7 * (b->radius - a->radius) * a->chord * a->thickness;
   }
-  double nodes = 12 * volume / pow(blade->size, 3);
-  SHB_CHECK(nodes < MOST, SHB_ERR_INPUT,
-            "mesh.blade.size: %g mm would give about %.2g nodes; give at least %.2g mm",
-            1e3 * blade->size, nodes, 1e3 * cbrt(12 * volume / MOST));
+  SHB_TRY(check_nodes("size", blade->size, volume));
   double ring = blade->shroud_length * blade->shroud_thickness * SHB_TWO_PI / blade->blades *
                 (blade->section[blade->n_sections - 1].radius + blade->shroud_thickness / 2);
-  nodes = blade->shroud_size > 0 ? 12 * ring / pow(blade->shroud_size, 3) : 0;
-  SHB_CHECK(nodes < MOST, SHB_ERR_INPUT,
-            "mesh.blade.shroud_size: %g mm would give about %.2g nodes; give at least %.2g mm",
-            1e3 * blade->shroud_size, nodes, 1e3 * cbrt(12 * ring / MOST));
-  return SHB_OK;
+  return blade->shroud_size > 0 ? check_nodes("shroud_size", blade->shroud_size, ring) : SHB_OK;
 }
 
 static shb_status check(const mesh_blade *blade) {

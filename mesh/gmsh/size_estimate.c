@@ -2,9 +2,9 @@
 
 #include <gmshc.h>
 #include <math.h>
-#include <stdio.h>
 #include <stdlib.h>
 
+#include "mesh/base/memory.h"
 #include "mesh/base/vec3.h"
 #include "mesh/gmsh/session.h"
 
@@ -27,13 +27,7 @@ double mesh_estimate_size(const mesh_extent *extent, double nodes) {
 }
 
 double mesh_estimate_most_nodes(void) {
-  double kilobytes = 0;
-  FILE  *info      = fopen("/proc/meminfo", "r");
-  char   line[256];
-  while (info && kilobytes == 0 && fgets(line, sizeof line, info))
-    if (sscanf(line, "MemAvailable: %lf", &kilobytes) != 1) kilobytes = 0;
-  if (info) fclose(info);
-  return kilobytes > 0 ? fmin(MOST, 1e3 * kilobytes / BYTES_EACH) : MOST;
+  return fmin(MOST, shb_memory_available() / BYTES_EACH);
 }
 
 /* Length, area or volume of an entity: exact from OpenCASCADE, else estimated from its box. */

@@ -16,6 +16,7 @@ except ImportError:
     sys.exit(77)
 
 sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), '../support'))
+from blade import BLADE
 from programs import ENVIRONMENT, bring_your_own, run, write
 
 BIN, SCENE = (os.path.abspath(word) for word in sys.argv[1:3])
@@ -81,7 +82,23 @@ def refused_integration():
     return int(found[1])
 
 
+def refused_mesh():
+    """The mesh size, mm, that fits into a small address space. No mesh is begun."""
+    limit = 1400 << 20
+    done = subprocess.run([os.path.join(BIN, 'shroudhb-mesh'), '--quiet',
+                           write('blade.yaml', BLADE.replace('SIZE', '0.8 mm'))], env=ENVIRONMENT,
+                          capture_output=True, text=True, timeout=60,
+                          preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_AS, (limit, limit)))
+    assert done.returncode == 2 and len(done.stderr.splitlines()) == 1, done
+    found = re.search(r'mesh.blade.size: 0.8 mm would give about [\d.e+]+ nodes; give at least '
+                      r'([\d.]+) mm, which gives [\d.e+]+, the most that the free memory holds',
+                      done.stderr)
+    assert found and not os.path.exists('blade.msh'), done.stderr
+    return float(found[1])
+
+
 with bring_your_own(SCENE):
+    assert 0.8 < refused_mesh() < 5
     run(sys.executable, 'write_modal.py')
     needed, left, fits = refused(200)
     assert needed > left and 100 < fits < 200, (needed, left, fits)
