@@ -133,7 +133,7 @@ bool study_key_number(case_issues *issues, const study_key *key, const case_node
 static bool take_values(case_issues *issues, const case_node *node, study_key *key, int n) {
   key->n     = n;
   key->value = calloc((size_t)n + 1, sizeof *key->value);
-  if (!key->value) fault(issues, node, key->path, "out of memory");
+  if (!key->value) case_issues_no_memory(issues);
   return key->value != NULL;
 }
 

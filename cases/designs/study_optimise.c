@@ -190,7 +190,7 @@ void study_optimise_starts(case_issues *issues, const case_node *at, const study
   }
   double *u = calloc((size_t)rows * (size_t)d + 1, sizeof *u);
   if (!u || plan_latin_hypercube(o->starts, d, o->seed, u + 2 * d) != SHB_OK) {
-    case_issue_add(issues, at->line, at->column, "optimise", "out of memory");
+    case_issues_no_memory(issues);
     free(u);
     return;
   }

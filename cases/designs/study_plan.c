@@ -131,7 +131,7 @@ static bool take(case_issues *issues, const case_node *at, double n, int n_keys,
                    STUDY_MOST_DESIGNS);
   if (issues->n > 0) return false;
   *design = calloc((size_t)n * (size_t)n_keys + 1, sizeof **design);
-  if (!*design) fault(issues, at, "vary", "out of memory");
+  if (!*design) case_issues_no_memory(issues);
   return *design != NULL;
 }
 
@@ -242,7 +242,7 @@ static double *make_group(case_issues *issues, const case_node *at, const study_
   double    *u = calloc((size_t)n * (size_t)d + 1, sizeof *u);
   shb_status status;
   if (!u) {
-    fault(issues, at, "uncertain", "out of memory");
+    case_issues_no_memory(issues);
     return NULL;
   }
   status = study_plan_has_blocks(plan, keys) ? plan_saltelli(blocks(plan), d, plan->sample_seed, u)

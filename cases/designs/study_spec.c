@@ -3,6 +3,8 @@
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/stat.h>
+#include <unistd.h>
 
 #include "cases/designs/digest.h"
 #include "cases/designs/refusals.h"
@@ -202,10 +204,14 @@ static void check_designs(reading *r, const case_node *root, const case_node *at
   for (int d = 0; s->digest && d < s->n_designs; d++) {
     const double *value    = s->design + (size_t)d * (size_t)s->keys.n;
     char         *messages = NULL;
-    if (!digest_values(s, value, s->digest[d], &messages))
-      refusals_take(&refused, &s->keys, d, messages ? messages : "", s->case_path);
+    const bool    good     = digest_values(s, value, s->digest[d], &messages);
+    if (!good && messages && messages[0])
+      refusals_take(&refused, &s->keys, d, messages, s->case_path);
+    else if (!good)
+      case_issues_no_memory(&r->issues); /* nothing else is refused without a word */
     free(messages);
   }
+  if (!s->digest) case_issues_no_memory(&r->issues);
   refusals_report(&refused, &s->keys, s->design, root, at, &r->issues);
 }
 
@@ -229,14 +235,22 @@ static bool read_case(reading *r, const case_node *root, FILE *errors) {
     return false;
   }
   r->spec->case_path = beside(r->spec->folder, node->text);
-  if (!r->spec->case_path) return false;
-  if (case_read(r->spec->case_path, STAGES, errors, &r->spec->base) == SHB_OK) {
+  if (!r->spec->case_path) {
+    case_issues_no_memory(&r->issues);
+    return false;
+  }
+  const shb_status status = case_read(r->spec->case_path, STAGES, errors, &r->spec->base);
+  if (status == SHB_OK) {
     if (r->spec->base.mhb.parameter != MHB_IN_FREQUENCY)
       fault(r, node, "case", "the case follows mhb.vary; a study needs a case over the frequency");
     if (digest_inputs(&r->spec->base, &r->spec->inputs) == SHB_OK) return true;
     fault(r, node, "case", shb_message());
     return false;
   }
+  struct stat about; /* of a file that can be read: then memory was short */
+  if (status == SHB_ERR_IO && shb_message()[0] && access(r->spec->case_path, R_OK) == 0 &&
+      stat(r->spec->case_path, &about) == 0 && S_ISREG(about.st_mode))
+    case_issues_no_memory(&r->issues);
   case_issue_add(&r->issues, node->line, node->column, "case", "%s",
                  shb_message()[0] ? shb_message() : "the case has errors; see above");
   return false;
@@ -262,6 +276,7 @@ static void read_document(reading *r, bool check, FILE *errors) {
   }
   refuse_unknown(r, root);
   read_name(r, case_node_find(root, "name"));
+  if (!r->spec->name) case_issues_no_memory(&r->issues);
   if (read_case(r, root, errors)) {
     read_outputs(r, case_node_find(root, "outputs"), root);
     const case_node *place = make_designs(r, root);
