@@ -6,6 +6,7 @@
 #include <unistd.h>
 
 #include "cases/commands/stage.h"
+#include "cases/front/claim.h"
 #include "cases/parse/damping.h"
 #include "cases/schema/case.h"
 #include "cases/schema/case_paths.h"
@@ -69,14 +70,16 @@ static shb_status run_stages(const case_file *file, const command_options *optio
 shb_status run_case(const command_options *options) {
   case_file file;
   SHB_TRY(command_read(options, RUN_ALL, &file));
-  int               code;
+  int               claim, code = SHB_OK;
   subprocess_result result[N_STAGES] = {{0}};
-  shb_status        status           = run_stages(&file, options, &code, result);
+  shb_status        status           = claim_results(&file, &claim);
+  if (status == SHB_OK) status = run_stages(&file, options, &code, result);
   if (options->verbose && !options->quiet) print_times(result);
   bool done = status == SHB_OK && result[N_STAGES - 1].seconds > 0 &&
               (code == SHB_OK || code == SHB_NOT_CONVERGED);
   if (done && !options->quiet) print_results(&file, options->no_report, code);
   case_free(&file);
+  if (claim >= 0) close(claim);
   if (status != SHB_OK) return status;
   return code == SHB_OK ? SHB_OK : shb_fail((shb_status)code, __FILE__, __LINE__, "%s", "");
 }
