@@ -216,6 +216,48 @@ static void slipping_contacts(void **state) {
   }
 }
 
+/* Motion of an open contact at the start of a run from rest, and after a period.
+ *   with  in  Coriolis terms */
+static void open_motion(bool with, double scale, double start[3], double end[3]) {
+  mhb_settings    s = ground_settings(0.4, 0.8, 0.5, 0.3, 4);
+  modal_model     model;
+  mhb_integrator *g;
+  coupled_model(1, 0, &model);
+  if (!with) {
+    free(model.coriolis);
+    model.coriolis = NULL;
+  }
+  s.n0[0] = -1000; /* a gap that never closes */
+  s.scale = scale;
+  assert_ok(mhb_integrator_create(&model, &s, 4, &g));
+  mhb_integrator_set(g, 1.13, s.n0[0], 32);
+  mhb_integrator_rest(g);
+  for (int c = 0; c < 3; c++) start[c] = g->point[0].u[c];
+  assert_true(mhb_integrator_period(g));
+  for (int c = 0; c < 3; c++) end[c] = g->point[0].u[c];
+  mhb_integrator_destroy(g);
+  modal_model_free(&model);
+}
+
+/* A run from rest begins at rest whatever the scale of the excitation, and grows with it. */
+static void rest_knows_the_scale(void **state) {
+  (void)state;
+  for (int with = 0; with < 2; with++) {
+    double start[2][3], end[2][3], size = 0;
+    open_motion(with, 1, start[0], end[0]);
+    open_motion(with, 2.385, start[1], end[1]);
+    for (int c = 0; c < 3; c++) size = fmax(size, fabs(end[0][c]));
+    assert_true(size > 0.01);
+    for (int c = 0; c < 3; c++) {
+      print_message("%s %d: at rest %.1e, after a period %.6g, scaled %.6g\n",
+                    with ? "Coriolis" : "plain", c, start[1][c], end[0][c], end[1][c]);
+      assert_near(start[0][c], 0, 1e-14);
+      assert_near(start[1][c], 0, 1e-14);
+      assert_near(end[1][c], 2.385 * end[0][c], 1e-12 * size);
+    }
+  }
+}
+
 /* Modes in place of residual inertia are beside the Coriolis terms. */
 static void residual_inertia_is_not_coupled(void **state) {
   modal_model model, wide;
@@ -239,6 +281,7 @@ int main(void) {
       cmocka_unit_test(strong_damping_is_refused),
       cmocka_unit_test(order_of_stuck_contacts),
       cmocka_unit_test(slipping_contacts),
+      cmocka_unit_test(rest_knows_the_scale),
       cmocka_unit_test(residual_inertia_is_not_coupled),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
