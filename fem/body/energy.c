@@ -95,24 +95,47 @@ static double centrifugal(const fem_body *body, double rho, const double x[][3],
   return sum;
 }
 
-void fem_tangent_energies(const fem_body *body, const double *state, int n, const double *u,
-                          double *energy) {
+/* Energies of the elements begin .. end - 1.
+ *   u       in   [n <= FEM_FIELDS][n_nodes][3]
+ *   energy  out  [n] */
+static void sum_elements(const fem_body *body, const double *state, int begin, int end, int n,
+                         const double *u, double *energy) {
   const size_t stride = 3 * (size_t)body->mesh->n_nodes;
   memset(energy, 0, (size_t)n * sizeof *energy);
-  for (int e = 0; e < body->mesh->n_elements; e++) {
+  for (int e = begin; e < end; e++) {
     double              x[MESH_NODES][3], at[MESH_NODES][3], by[FEM_FIELDS][MESH_NODES][3];
     const fem_material *own = fem_material_at(body->material, body->mesh, e);
     if (state) fem_body_element(body, e, state, x, at);
-    for (int first = 0; first < n; first += FEM_FIELDS) {
-      const int count = n - first < FEM_FIELDS ? n - first : FEM_FIELDS;
-      for (int i = 0; i < count; i++)
-        fem_body_element(body, e, u + (size_t)(first + i) * stride, x, by[i]);
-      add_stored(body->element, own, (const double(*)[3])x, state ? (const double(*)[3])at : NULL,
-                 count, (const double(*)[MESH_NODES][3])by, energy + first);
-      for (int i = 0; i < count && body->rotation.speed != 0; i++)
-        energy[first + i] -=
-            centrifugal(body, own->rho, (const double(*)[3])x, (const double(*)[3])by[i]);
-    }
+    for (int i = 0; i < n; i++) fem_body_element(body, e, u + (size_t)i * stride, x, by[i]);
+    add_stored(body->element, own, (const double(*)[3])x, state ? (const double(*)[3])at : NULL, n,
+               (const double(*)[MESH_NODES][3])by, energy);
+    for (int i = 0; i < n && body->rotation.speed != 0; i++)
+      energy[i] -= centrifugal(body, own->rho, (const double(*)[3])x, (const double(*)[3])by[i]);
+  }
+}
+
+/* Parts of the elements are summed apart, on all threads, then together in their order. */
+static void sum_parts(const fem_body *body, const double *state, int n, const double *u,
+                      double *energy) {
+  enum { PARTS = 64 };
+  const int each = body->mesh->n_elements / PARTS + 1, all = body->mesh->n_elements;
+  double    part[PARTS][FEM_FIELDS] = {{0}};
+#pragma omp parallel for schedule(dynamic, 1)
+  for (int k = 0; k < PARTS; k++) {
+    const int begin = k * each, end = begin + each < all ? begin + each : all;
+    if (begin < end) sum_elements(body, state, begin, end, n, u, part[k]);
+  }
+  memset(energy, 0, (size_t)n * sizeof *energy);
+  for (int k = 0; k < PARTS; k++)
+    for (int i = 0; i < n; i++) energy[i] += part[k][i];
+}
+
+void fem_tangent_energies(const fem_body *body, const double *state, int n, const double *u,
+                          double *energy) {
+  const size_t stride = 3 * (size_t)body->mesh->n_nodes;
+  for (int first = 0; first < n; first += FEM_FIELDS) {
+    const int count = n - first < FEM_FIELDS ? n - first : FEM_FIELDS;
+    sum_parts(body, state, count, u + (size_t)first * stride, energy + first);
   }
   for (int i = 0; i < n; i++) energy[i] += fem_pressure_energy(body, state, u + (size_t)i * stride);
 }

@@ -12,7 +12,7 @@ enum { FEM_FIELDS = 10 }; /* fields that share the shape gradients of an element
  * Rotation subtracts Omega^2 u^T M P u; the pressure adds its term. Quadrature is as in
  * fem_element_stiffness. A product with the assembled K loses log10(lambda_max / lambda) digits, as
  * the rigid motion of each element cancels. Strains do not, so Rayleigh quotients keep about 13
- * digits.
+ * digits. On all threads, whose number changes no bit.
  *   state   in   [n_nodes][3] m, zero at clamped nodes; NULL: at rest
  *   u       in   [n][n_nodes][3] m, zero at clamped nodes
  *   energy  out  [n] J */

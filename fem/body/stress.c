@@ -5,6 +5,8 @@
 
 #include "fem/body/pressure.h"
 #include "fem/element/finite_strain.h"
+#include "fem/solver/hot.h"
+#include "fem/solver/large_pages.h"
 #include "mesh/base/vec3.h"
 
 /* Extrapolation from the points of a rule to the nodes by a linear function of the reference
@@ -217,8 +219,8 @@ static void gather(const fem_body *body, const int *node, int n, const double *m
 }
 
 /* Changes of stress at a point of the rule. */
-static void change_at(int n, const double D[6][9], const double g[][3], const lanes v[][3],
-                      lanes stress[FEM_STRESSES]) {
+FEM_HOT static void change_at(int n, const double D[6][9], const double g[][3], const lanes v[][3],
+                              lanes stress[FEM_STRESSES]) {
   lanes H[9] = {{0}};
   for (int i = 1; i < n; i++)
     for (int a = 0; a < 3; a++)
@@ -228,6 +230,14 @@ static void change_at(int n, const double D[6][9], const double g[][3], const la
   for (int c = 0; c < FEM_STRESSES; c++)
     for (int h = 0; h < 9; h++)
       for (int l = 0; l < LANES; l++) stress[c][l] += D[c][h] * H[h][l];
+}
+
+/* sum += the stresses at the points times their weights at a node. */
+FEM_HOT static void add_to_node(int points, const double *weight, double volume,
+                                lanes stress[][FEM_STRESSES], lanes sum[FEM_STRESSES]) {
+  for (int p = 0; p < points; p++)
+    for (int c = 0; c < FEM_STRESSES; c++)
+      for (int l = 0; l < LANES; l++) sum[c][l] += volume * weight[p] * stress[p][c][l];
 }
 
 /* Add an element's volume times its nodal stresses to the sums of the nodes. */
@@ -255,11 +265,7 @@ static void add_changes(const fem_body *body, int e, const double *u, int n, con
   for (int i = 0; i < nodes; i++) {
     if (!counts(r, mesh, e, node[i])) continue;
     r->volume[node[i]] += volume;
-    for (int p = 0; p < rule->n; p++) {
-      const double weight = volume * to->at[i][p];
-      for (int c = 0; c < FEM_STRESSES; c++)
-        for (int l = 0; l < LANES; l++) sum[node[i]][c][l] += weight * stress[p][c][l];
-    }
+    add_to_node(rule->n, to->at[i], volume, stress, sum[node[i]]);
   }
 }
 
@@ -294,7 +300,7 @@ static bool change_few(const fem_body *body, const double *u, int n, const doubl
                        float *stress) {
   const size_t nodes        = (size_t)body->mesh->n_nodes;
   recovery    *r            = recovery_create(body);
-  lanes(*sum)[FEM_STRESSES] = malloc(nodes * sizeof *sum);
+  lanes(*sum)[FEM_STRESSES] = fem_large_malloc(nodes * sizeof *sum);
   const bool made           = r && sum;
   if (made) sum_changes(body, u, 1, n, motion, r, sum);
   for (int l = 0; made && l < n; l++) {
@@ -308,19 +314,31 @@ static bool change_few(const fem_body *body, const double *u, int n, const doubl
   return made;
 }
 
-PetscErrorCode fem_nodal_stress_change(const fem_body *body, const double *u, int n,
-                                       const double *motion, float *stress) {
-  const size_t nodes = (size_t)body->mesh->n_nodes;
-  bool         good  = true;
+PetscErrorCode fem_nodal_stress_changes(const fem_body *body, const double *u, int n_sets,
+                                        const fem_motions *set) {
+  const size_t nodes  = (size_t)body->mesh->n_nodes;
+  int          groups = 0;
+  bool         good   = true;
   PetscFunctionBeginUser;
+  for (int s = 0; s < n_sets; s++) groups += (set[s].n + LANES - 1) / LANES;
 #pragma omp parallel for schedule(dynamic, 1) reduction(&& : good)
-  for (int first = 0; first < n; first += LANES) {
+  for (int g = 0; g < groups; g++) {
+    int s = 0, first = LANES * g;
+    for (; first >= set[s].n; s++) first -= (set[s].n + LANES - 1) / LANES * LANES;
     const size_t at = nodes * (size_t)first;
-    good            = change_few(body, u, PetscMin(LANES, n - first), motion + 3 * at,
-                                 stress + FEM_STRESSES * at) &&
+    good            = change_few(body, u, PetscMin(LANES, set[s].n - first), set[s].motion + 3 * at,
+                                 set[s].stress + FEM_STRESSES * at) &&
            good;
   }
   PetscCheck(good, PETSC_COMM_SELF, PETSC_ERR_MEM, "no memory for nodal stresses");
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode fem_nodal_stress_change(const fem_body *body, const double *u, int n,
+                                       const double *motion, float *stress) {
+  const fem_motions all = {n, motion, stress};
+  PetscFunctionBeginUser;
+  PetscCall(fem_nodal_stress_changes(body, u, 1, &all));
   PetscFunctionReturn(0);
 }
 
@@ -353,7 +371,7 @@ shb_status fem_nodal_stress_wave(const fem_body *body, const double *u, double c
   const size_t    nodes = (size_t)body->mesh->n_nodes;
   const wave_work w     = {.r    = recovery_create(body),
                            .part = malloc(LANES * 3 * nodes * sizeof *w.part),
-                           .sum  = malloc(nodes * sizeof *w.sum)};
+                           .sum  = fem_large_malloc(nodes * sizeof *w.sum)};
   const bool      made  = w.r && w.part && w.sum;
   for (int first = 0; made && first < n; first += LANES / 2) {
     const int    count = n - first < LANES / 2 ? n - first : LANES / 2;

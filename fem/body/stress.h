@@ -32,6 +32,17 @@ PetscErrorCode fem_nodal_stress(const fem_body *body, const double *u,
 PetscErrorCode fem_nodal_stress_change(const fem_body *body, const double *u, int n,
                                        const double *motion, float *stress);
 
+/* Some motions and where their stresses go, as above. */
+typedef struct {
+  int           n;
+  const double *motion;
+  float        *stress;
+} fem_motions;
+
+/* The same for several sets of motions. Eight motions are a piece of work for a thread. */
+PetscErrorCode fem_nodal_stress_changes(const fem_body *body, const double *u, int n_sets,
+                                        const fem_motions *set);
+
 /* The same of motions of a sector at one nodal diameter, the right side e^(-j theta) T times the
  * left. Free of PETSc: several threads may each work on a nodal diameter.
  *   phase   in   e^(-j theta) (fem/body/sector.h)

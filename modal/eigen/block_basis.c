@@ -5,8 +5,11 @@
 #include <string.h>
 
 #include "fem/body/mass_product.h"
+#include "fem/solver/large_pages.h"
 #include "modal/common/random_vector.h"
 #include "modal/eigen/block_products.h"
+
+enum { SLAB = 8 }; /* blocks that share memory: a block alone is too small for large pages */
 
 static const PetscScalar one = 1;
 
@@ -32,7 +35,7 @@ PetscErrorCode modal_block_basis_create(Mat M, KSP ksp, int p, int capacity, mod
 
 PetscErrorCode modal_block_basis_destroy(modal_block_basis *b) {
   PetscFunctionBeginUser;
-  for (int k = 0; k < b->n; k++) free(b->Q[k]);
+  for (int k = 0; k < b->n; k += SLAB) free(b->Q[k]);
   PetscCall(PetscFree5(b->Q, b->D, b->B, b->H, b->theta));
   PetscCall(MatDestroy(&b->W));
   PetscCall(MatDestroy(&b->MW));
@@ -164,7 +167,9 @@ PetscErrorCode modal_block_basis_append(modal_block_basis *b) {
   const double *W;
   const size_t  size = (size_t)b->rows * (size_t)b->p;
   PetscFunctionBeginUser;
-  b->Q[b->n] = malloc((size + 1) * sizeof(double));
+  const int slab = b->capacity - b->n < SLAB ? b->capacity - b->n : SLAB;
+  b->Q[b->n]     = b->n % SLAB ? b->Q[b->n - 1] + size
+                               : fem_large_malloc(((size_t)slab * size + 1) * sizeof(double));
   PetscCheck(b->Q[b->n], PETSC_COMM_SELF, PETSC_ERR_MEM, "no memory for the Lanczos basis");
   PetscCall(MatDenseGetArrayRead(b->W, &W));
   memcpy(b->Q[b->n++], W, size * sizeof *W);

@@ -49,13 +49,11 @@ static shb_status find_stresses(const mesh_fe *mesh, const modal_settings *setti
   of->residual_stress = malloc((size_t)columns * each + 1);
   SHB_CHECK(of->stress && of->residual_stress, SHB_ERR_IO,
             "out of memory for the stresses of %d modes", modes);
-  shb_status status = modal_body_create(mesh, settings, &body);
+  shb_status        status = modal_body_create(mesh, settings, &body);
+  const fem_motions set[]  = {{modes, of->shape, of->stress},
+                              {columns, result->residual.shape, of->residual_stress}};
   if (status == SHB_OK)
-    status =
-        fem_petsc_status(fem_nodal_stress_change(&body->body, state, modes, of->shape, of->stress));
-  if (status == SHB_OK && columns > 0)
-    status = fem_petsc_status(fem_nodal_stress_change(&body->body, state, columns,
-                                                      result->residual.shape, of->residual_stress));
+    status = fem_petsc_status(fem_nodal_stress_changes(&body->body, state, 2, set));
   free(body);
   return status;
 }
