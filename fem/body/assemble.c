@@ -1,7 +1,10 @@
 #include "fem/body/assemble.h"
 
+#include <omp.h>
+#include <stdlib.h>
 #include <string.h>
 
+#include "fem/body/element_sums.h"
 #include "fem/body/partition.h"
 
 /* Elements around each block row r of this rank: element[start[r - first]] .. element[start[r -
@@ -145,50 +148,140 @@ static PetscErrorCode count_blocks(const mesh_fe *mesh, const fem_system *system
   PetscFunctionReturn(0);
 }
 
-static PetscErrorCode create_matrix(const fem_system *system, const PetscInt *diagonal,
-                                    const PetscInt *off_diagonal, Mat *A) {
+static PetscErrorCode create_matrix(const fem_system *system, Mat *A) {
   const PetscInt n_own = 3 * (system->last - system->first), n = 3 * system->n_free;
   PetscFunctionBeginUser;
   PetscCall(MatCreate(system->comm, A));
   PetscCall(MatSetSizes(*A, n_own, n_own, n, n));
   PetscCall(MatSetType(*A, MATSBAIJ));
-  PetscCall(MatSeqSBAIJSetPreallocation(*A, 3, 0, diagonal));
-  PetscCall(MatMPISBAIJSetPreallocation(*A, 3, 0, diagonal, 0, off_diagonal));
-  PetscCall(MatSetOption(*A, MAT_IGNORE_LOWER_TRIANGULAR, PETSC_TRUE));
-  PetscCall(MatSetOption(*A, MAT_NO_OFF_PROC_ENTRIES, PETSC_TRUE));
-  PetscCall(MatSetOption(*A, MAT_SPD, PETSC_TRUE));
+  PetscFunctionReturn(0);
+}
+
+/* After the preallocation: on several ranks the options are those of its parts. */
+static PetscErrorCode set_options(Mat A) {
+  PetscFunctionBeginUser;
+  PetscCall(MatSetOption(A, MAT_IGNORE_LOWER_TRIANGULAR, PETSC_TRUE));
+  PetscCall(MatSetOption(A, MAT_NO_OFF_PROC_ENTRIES, PETSC_TRUE));
+  PetscCall(MatSetOption(A, MAT_SPD, PETSC_TRUE));
   PetscFunctionReturn(0);
 }
 
 /* Mass between nodes, one number a pair. */
-static PetscErrorCode create_mass(const fem_system *system, const PetscInt *diagonal,
-                                  const PetscInt *off_diagonal, Mat *m) {
+static PetscErrorCode create_mass(const fem_system *system, Mat *m) {
   const PetscInt n_own = system->last - system->first;
   PetscFunctionBeginUser;
   PetscCall(MatCreate(system->comm, m));
   PetscCall(MatSetSizes(*m, n_own, n_own, system->n_free, system->n_free));
   PetscCall(MatSetType(*m, MATAIJ));
-  PetscCall(MatSeqAIJSetPreallocation(*m, 0, diagonal));
-  PetscCall(MatMPIAIJSetPreallocation(*m, 0, diagonal, 0, off_diagonal));
-  PetscCall(MatSetOption(*m, MAT_NO_OFF_PROC_ENTRIES, PETSC_TRUE));
   PetscFunctionReturn(0);
 }
 
-static PetscErrorCode create_matrices(const mesh_fe *mesh, fem_system *system, Mat *mass) {
+/* Rows of all blocks, or of those of the upper triangle.
+ *   start   out  [n_own + 1]
+ *   column  out  [start[n_own]] ascending in a row */
+typedef struct {
+  PetscInt *start, *column;
+} pattern;
+
+static PetscErrorCode list_columns(const mesh_fe *mesh, const fem_system *system,
+                                   const incidence *around, const PetscInt *count, pattern *out) {
+  const int      each = mesh_topology_of(mesh->kind)->nodes;
+  const PetscInt n    = system->n_free;
+  PetscInt      *seen;
+  PetscFunctionBeginUser;
+  PetscCall(PetscCalloc1(n, &seen));
+  PetscCall(PetscCalloc1(n + 1, &out->start));
+  for (PetscInt r = 0; r < n; r++) out->start[r + 1] = out->start[r] + count[r];
+  PetscCall(PetscMalloc1(out->start[n], &out->column));
+  for (PetscInt r = 0; r < n; r++) {
+    PetscInt at = out->start[r];
+    for (int k = around->start[r]; k < around->start[r + 1]; k++)
+      for (int i = 0; i < each; i++) {
+        const PetscInt column = system->row[mesh->connectivity[each * around->element[k] + i]];
+        if (column < 0 || seen[column] == r + 1) continue;
+        seen[column]      = r + 1;
+        out->column[at++] = column;
+      }
+    PetscCall(PetscSortInt(count[r], out->column + out->start[r]));
+  }
+  PetscCall(PetscFree(seen));
+  PetscFunctionReturn(0);
+}
+
+/* The blocks at and above the diagonal. */
+static PetscErrorCode take_upper(PetscInt n, const pattern *all, pattern *out) {
+  PetscInt at = 0;
+  PetscFunctionBeginUser;
+  PetscCall(PetscMalloc1(n + 1, &out->start));
+  PetscCall(PetscMalloc1((all->start[n] + n) / 2, &out->column));
+  for (PetscInt r = 0; r < n; r++) {
+    out->start[r] = at;
+    for (PetscInt k = all->start[r]; k < all->start[r + 1]; k++)
+      if (all->column[k] >= r) out->column[at++] = all->column[k];
+  }
+  out->start[n] = at;
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode pattern_free(pattern *p) {
+  PetscFunctionBeginUser;
+  PetscCall(PetscFree(p->start));
+  PetscCall(PetscFree(p->column));
+  PetscFunctionReturn(0);
+}
+
+/* On one rank: K and M with their patterns and zeros. */
+static PetscErrorCode create_zero(const mesh_fe *mesh, const incidence *around, PetscInt *count,
+                                  PetscInt *none, fem_system *system, Mat *mass) {
+  pattern all, upper;
+  PetscFunctionBeginUser;
+  PetscCall(count_blocks(mesh, system, around, true, count, none));
+  PetscCall(list_columns(mesh, system, around, count, &all));
+  PetscCall(take_upper(system->n_free, &all, &upper));
+  PetscCall(create_matrix(system, &system->K));
+  PetscCall(MatSeqSBAIJSetPreallocationCSR(system->K, 3, upper.start, upper.column, NULL));
+  PetscCall(set_options(system->K));
+  if (system->turned) {
+    PetscCall(create_matrix(system, mass));
+    PetscCall(MatSeqSBAIJSetPreallocationCSR(*mass, 3, upper.start, upper.column, NULL));
+    PetscCall(set_options(*mass));
+  } else {
+    PetscCall(create_mass(system, mass));
+    PetscCall(MatSeqAIJSetPreallocationCSR(*mass, all.start, all.column, NULL));
+    PetscCall(MatSetOption(*mass, MAT_NO_OFF_PROC_ENTRIES, PETSC_TRUE));
+  }
+  PetscCall(pattern_free(&upper));
+  PetscCall(pattern_free(&all));
+  PetscFunctionReturn(0);
+}
+
+/* On several ranks: K and M with room for their numbers. */
+static PetscErrorCode create_room(const mesh_fe *mesh, const incidence *around, PetscInt *diagonal,
+                                  PetscInt *off_diagonal, fem_system *system, Mat *mass) {
+  PetscFunctionBeginUser;
+  PetscCall(count_blocks(mesh, system, around, false, diagonal, off_diagonal));
+  PetscCall(create_matrix(system, &system->K));
+  PetscCall(MatMPISBAIJSetPreallocation(system->K, 3, 0, diagonal, 0, off_diagonal));
+  PetscCall(set_options(system->K));
+  PetscCall(count_blocks(mesh, system, around, true, diagonal, off_diagonal));
+  PetscCall(create_mass(system, mass));
+  PetscCall(MatMPIAIJSetPreallocation(*mass, 0, diagonal, 0, off_diagonal));
+  PetscCall(MatSetOption(*mass, MAT_NO_OFF_PROC_ENTRIES, PETSC_TRUE));
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode create_matrices(const mesh_fe *mesh, bool one_rank, fem_system *system,
+                                      Mat *mass) {
   const PetscInt n_own = system->last - system->first;
   incidence      around;
   PetscInt      *diagonal, *off_diagonal;
   PetscFunctionBeginUser;
   PetscCall(find_incidence(mesh, system, &around));
   PetscCall(PetscMalloc2(n_own, &diagonal, n_own, &off_diagonal));
-  PetscCall(count_blocks(mesh, system, &around, false, diagonal, off_diagonal));
-  PetscCall(create_matrix(system, diagonal, off_diagonal, &system->K));
-  if (system->turned)
-    PetscCall(create_matrix(system, diagonal, off_diagonal, mass));
-  else {
-    PetscCall(count_blocks(mesh, system, &around, true, diagonal, off_diagonal));
-    PetscCall(create_mass(system, diagonal, off_diagonal, mass));
-  }
+  if (one_rank)
+    PetscCall(create_zero(mesh, &around, diagonal, off_diagonal, system, mass));
+  else
+    PetscCall(create_room(mesh, &around, diagonal, off_diagonal, system, mass));
   PetscCall(PetscFree2(diagonal, off_diagonal));
   PetscCall(PetscFree(around.start));
   PetscCall(PetscFree(around.element));
@@ -207,6 +300,14 @@ bool fem_system_rows(const mesh_fe *mesh, const fem_system *system, int element,
   return touches;
 }
 
+/* What the matrices of an element need. */
+typedef struct {
+  const mesh_fe      *mesh;
+  const fem_material *material;
+  const fem_element  *element;
+  const fem_system   *system;
+} source;
+
 /* The mass of a sector is no multiple of the identity between a turned node and another.
  *   M  out  [3n][3n] */
 static void spread_mass(const fem_system *system, int n, const int *node, const double *m,
@@ -218,29 +319,102 @@ static void spread_mass(const fem_system *system, int n, const int *node, const 
   fem_system_turn(system, n, node, M);
 }
 
-static PetscErrorCode add_elements(const mesh_fe *mesh, const fem_material *material,
-                                   const fem_element *element, const fem_system *system, Mat mass) {
-  const int n = element->n;
-  PetscFunctionBeginUser;
-  for (int e = 0; e < mesh->n_elements; e++) {
-    PetscInt   rows[MESH_NODES], columns[MESH_NODES];
-    double     x[MESH_NODES][3], K[FEM_DOFS * FEM_DOFS];
-    double     m[MESH_NODES * MESH_NODES];
-    const int *node = mesh->connectivity + n * (size_t)e;
+/* fem_elements.compute */
+static void compute(const void *context, int e, double *K, double *M) {
+  const source       *from = context;
+  const int           n    = from->element->n;
+  const int          *node = from->mesh->connectivity + n * (size_t)e;
+  const fem_material *own  = fem_material_at(from->material, from->mesh, e);
+  double              x[MESH_NODES][3], m[MESH_NODES * MESH_NODES];
+  for (int i = 0; i < n; i++)
+    memcpy(x[i], from->mesh->coordinates + 3 * (size_t)node[i], sizeof x[i]);
+  fem_element_stiffness(from->element, own, (const double(*)[3])x, K);
+  fem_element_mass(from->element, own->rho, (const double(*)[3])x, m);
+  fem_system_turn(from->system, n, node, K);
+  if (from->system->turned)
+    spread_mass(from->system, n, node, m, M);
+  else
+    memcpy(M, m, (size_t)(n * n) * sizeof *M);
+}
 
-    const fem_material *own = fem_material_at(material, mesh, e);
-    if (!fem_system_rows(mesh, system, e, rows, columns)) continue;
-    for (int i = 0; i < n; i++) memcpy(x[i], mesh->coordinates + 3 * (size_t)node[i], sizeof x[i]);
-    fem_element_stiffness(element, own, (const double(*)[3])x, K);
-    fem_element_mass(element, own->rho, (const double(*)[3])x, m);
-    fem_system_turn(system, n, node, K);
-    PetscCall(MatSetValuesBlocked(system->K, n, rows, n, columns, K, ADD_VALUES));
-    if (system->turned) {
-      spread_mass(system, n, node, m, K);
-      PetscCall(MatSetValuesBlocked(mass, n, rows, n, columns, K, ADD_VALUES));
-    } else
-      PetscCall(MatSetValues(mass, n, rows, n, columns, m, ADD_VALUES));
+/* On several ranks; there are no sectors. */
+static PetscErrorCode add_elements(const source *from, Mat mass) {
+  const int n = from->element->n;
+  PetscFunctionBeginUser;
+  for (int e = 0; e < from->mesh->n_elements; e++) {
+    PetscInt rows[MESH_NODES], columns[MESH_NODES];
+    double   K[FEM_DOFS * FEM_DOFS], m[MESH_NODES * MESH_NODES];
+    if (!fem_system_rows(from->mesh, from->system, e, rows, columns)) continue;
+    compute(from, e, K, m);
+    PetscCall(MatSetValuesBlocked(from->system->K, n, rows, n, columns, K, ADD_VALUES));
+    PetscCall(MatSetValues(mass, n, rows, n, columns, m, ADD_VALUES));
   }
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode borrow(Mat A, bool blocks, fem_row_values *out) {
+  PetscInt  n;
+  PetscBool done;
+  PetscFunctionBeginUser;
+  PetscCall(MatGetRowIJ(A, 0, PETSC_FALSE, blocks, &n, &out->start, &out->column, &done));
+  PetscCheck(done, PETSC_COMM_SELF, PETSC_ERR_SUP, "no rows");
+  if (blocks)
+    PetscCall(MatSeqSBAIJGetArray(A, &out->value));
+  else
+    PetscCall(MatSeqAIJGetArray(A, &out->value));
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode give_back(Mat A, bool blocks, fem_row_values *from) {
+  PetscInt  n;
+  PetscBool done;
+  PetscFunctionBeginUser;
+  if (blocks)
+    PetscCall(MatSeqSBAIJRestoreArray(A, &from->value));
+  else
+    PetscCall(MatSeqAIJRestoreArray(A, &from->value));
+  PetscCall(MatRestoreRowIJ(A, 0, PETSC_FALSE, blocks, &n, &from->start, &from->column, &done));
+  PetscFunctionReturn(0);
+}
+
+/* Add the elements on all threads but the first one, which works beside them. */
+static PetscErrorCode add_and_work(const fem_elements *elements, const fem_system *system,
+                                   const fem_beside *beside, const fem_sums *sums) {
+  const int      threads = omp_get_max_threads(), levels = omp_get_max_active_levels();
+  PetscErrorCode error = 0;
+  bool           made  = false;
+  PetscFunctionBeginUser;
+  if (beside && threads > 1) {
+    omp_set_max_active_levels(2);
+#pragma omp parallel num_threads(2)
+    {
+      if (omp_get_thread_num() == 0) error = beside->run(system, beside->context);
+      if (omp_get_thread_num() == omp_get_num_threads() - 1)
+        made = fem_element_sums_add(elements, threads - 1, sums);
+    }
+    omp_set_max_active_levels(levels);
+  } else {
+    if (beside) error = beside->run(system, beside->context);
+    made = fem_element_sums_add(elements, threads, sums);
+  }
+  PetscCall(error);
+  PetscCheck(made, PETSC_COMM_SELF, PETSC_ERR_MEM, "no memory for matrices of elements");
+  PetscFunctionReturn(0);
+}
+
+/* On one rank. */
+static PetscErrorCode add_on_threads(const source *from, const fem_beside *beside, Mat mass) {
+  const fem_system  *system   = from->system;
+  const mesh_fe     *mesh     = from->mesh;
+  const fem_elements elements = {mesh->n_elements, from->element->n, mesh->connectivity,
+                                 system->row,      compute,          from};
+  fem_sums           sums     = {.blocks = system->turned != NULL};
+  PetscFunctionBeginUser;
+  PetscCall(borrow(system->K, true, &sums.stiffness));
+  PetscCall(borrow(mass, sums.blocks, &sums.mass));
+  PetscCall(add_and_work(&elements, system, beside, &sums));
+  PetscCall(give_back(mass, sums.blocks, &sums.mass));
+  PetscCall(give_back(system->K, true, &sums.stiffness));
   PetscFunctionReturn(0);
 }
 
@@ -251,29 +425,44 @@ static PetscErrorCode finish(Mat A) {
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode fem_system_create(MPI_Comm comm, const mesh_fe *mesh, const fem_material *material,
-                                 fem_rules rules, fem_system *system) {
+PetscErrorCode fem_system_create_beside(MPI_Comm comm, const mesh_fe *mesh,
+                                        const fem_material *material, fem_rules rules,
+                                        const fem_beside *beside, fem_system *system) {
   fem_element *element;
   Mat          mass;
+  int          ranks;
 
   PetscFunctionBeginUser;
   memset(system, 0, sizeof *system);
   system->comm    = comm;
   system->n_nodes = mesh->n_nodes;
+  PetscCallMPI(MPI_Comm_size(comm, &ranks));
   PetscCall(number_nodes(mesh, system));
-  PetscCall(create_matrices(mesh, system, &mass));
+  PetscCall(create_matrices(mesh, ranks == 1, system, &mass));
   PetscCall(PetscNew(&element));
   PetscCall(fem_element_create(mesh->kind, rules, element));
-  PetscCall(add_elements(mesh, material, element, system, mass));
+  const source from = {mesh, material, element, system};
+  if (ranks == 1)
+    PetscCall(add_on_threads(&from, beside, mass));
+  else
+    PetscCall(add_elements(&from, mass));
   PetscCall(PetscFree(element));
   PetscCall(finish(system->K));
   PetscCall(finish(mass));
+  if (ranks > 1 && beside) PetscCall(beside->run(system, beside->context));
   if (system->turned) {
     system->M = mass;
     PetscFunctionReturn(0);
   }
   PetscCall(MatCreateMAIJ(mass, 3, &system->M));
   PetscCall(MatDestroy(&mass));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode fem_system_create(MPI_Comm comm, const mesh_fe *mesh, const fem_material *material,
+                                 fem_rules rules, fem_system *system) {
+  PetscFunctionBeginUser;
+  PetscCall(fem_system_create_beside(comm, mesh, material, rules, NULL, system));
   PetscFunctionReturn(0);
 }
 

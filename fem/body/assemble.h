@@ -33,6 +33,18 @@ typedef struct {
 PetscErrorCode fem_system_create(MPI_Comm comm, const mesh_fe *mesh, const fem_material *material,
                                  fem_rules rules, fem_system *system);
 
+/* Work that needs the pattern of K and not its numbers. */
+typedef struct {
+  PetscErrorCode (*run)(const fem_system *system, void *context);
+  void *context;
+} fem_beside;
+
+/* The same; on one rank the calling thread works beside, while others compute the elements.
+ *   beside  in  NULL: nothing */
+PetscErrorCode fem_system_create_beside(MPI_Comm comm, const mesh_fe *mesh,
+                                        const fem_material *material, fem_rules rules,
+                                        const fem_beside *beside, fem_system *system);
+
 /* A = K - shift M, in the format of K; the caller destroys it. */
 PetscErrorCode fem_system_shifted(const fem_system *system, double shift, Mat *A);
 

@@ -101,6 +101,12 @@ static double extra_memory(const fem_system *system, int modes) {
   return 8. * 3. * (double)system->n_free * (8. * modes + 60.);
 }
 
+PetscErrorCode modal_eigen_analyse(const fem_system *system, int modes, fem_factor **factor) {
+  PetscFunctionBeginUser;
+  PetscCall(fem_factor_create(system->K, extra_memory(system, modes), factor));
+  PetscFunctionReturn(0);
+}
+
 static PetscErrorCode factorise(const fem_system *system, const modal_eigen_settings *settings,
                                 modal_eigen *eigen) {
   bool definite = false;
@@ -108,7 +114,11 @@ static PetscErrorCode factorise(const fem_system *system, const modal_eigen_sett
 
   PetscFunctionBeginUser;
   PetscCall(create_shifted(system, settings->shift, &A));
-  PetscCall(fem_factor_create(A, extra_memory(system, settings->modes), &eigen->factor));
+  if (settings->factor && *settings->factor) {
+    eigen->factor     = *settings->factor;
+    *settings->factor = NULL;
+  } else
+    PetscCall(fem_factor_create(A, extra_memory(system, settings->modes), &eigen->factor));
   modal_phase(system->comm, settings->progress, "analysis", "%s, %.3g GB foreseen",
               fem_factor_program(eigen->factor), 1e-9 * fem_factor_bytes(eigen->factor));
   PetscCall(fem_factor_update(eigen->factor, A, &definite));

@@ -17,6 +17,7 @@ typedef struct {
   double           tolerance; /* of the eigensolver; 0: 1e-10 */
   shb_progress    *progress;  /* or NULL */
   modal_check_kind check;
+  fem_factor     **factor; /* analysed for the pattern of K, taken over; NULL: it is made */
 } modal_eigen_settings;
 
 /* The residual of an eigenpair is |phi - (lambda - shift) (K - shift M)^-1 M phi| in the M norm,
@@ -32,6 +33,9 @@ typedef struct {
   EPS         eps;
   modal_check check;
 } modal_eigen;
+
+/* Order and analyse the pattern of K for that many modes. */
+PetscErrorCode modal_eigen_analyse(const fem_system *system, int modes, fem_factor **factor);
 
 /* Solve, and check that no mode below the last one is missing. A missing mode has more copies than
  * the block has columns, or hardly any component in the start block. The solver then repeats with

@@ -169,24 +169,41 @@ static PetscErrorCode refine(const fem_body *body, const double *state, const fe
   PetscFunctionReturn(0);
 }
 
-/* Assemble the matrices of the body, at its equilibrium if it rotates. */
+/* The analysis of K, made beside its numbers. */
+typedef struct {
+  int         modes;
+  fem_factor *factor;
+} analysis;
+
+static PetscErrorCode analyse(const fem_system *system, void *context) {
+  analysis *own = context;
+  PetscFunctionBeginUser;
+  PetscCall(modal_eigen_analyse(system, own->modes, &own->factor));
+  PetscFunctionReturn(0);
+}
+
+/* Assemble the matrices of the body, at its equilibrium if it rotates. Only a body at rest has the
+ * factor analysed beside. */
 static shb_status assemble(MPI_Comm comm, const fem_body *body, const modal_condensation *to,
-                           shb_progress *progress, modal_result *result) {
+                           shb_progress *progress, analysis *own, modal_result *result) {
+  const bool       at_rest = body->rotation.speed == 0 && body->pressure == 0;
+  const fem_beside beside  = {analyse, own};
   shb_progress_show(progress, 5, "assembling %d elements", body->mesh->n_elements);
-  FEM_PETSC(
-      fem_system_create(comm, body->mesh, body->material, body->element->rules, &result->system));
+  FEM_PETSC(fem_system_create_beside(comm, body->mesh, body->material, body->element->rules,
+                                     at_rest ? &beside : NULL, &result->system));
   modal_phase(comm, progress, "assembly", "%d elements, %d dofs", body->mesh->n_elements,
               (int)(3 * result->system.n_free));
-  if (body->rotation.speed == 0 && body->pressure == 0) return SHB_OK;
+  if (at_rest) return SHB_OK;
   return modal_deflection_solve(body, &result->system, to, &result->patches, progress,
                                 &result->deflection);
 }
 
 /* Compute that many modes and condense. */
 static shb_status find_modes(const fem_body *body, const modal_settings *settings,
-                             const modal_condensation *to, int modes, shb_progress *progress,
-                             modal_result *result) {
-  modal_eigen_settings eigen = {.modes = modes, .progress = progress, .check = settings->check};
+                             const modal_condensation *to, fem_factor **factor, int modes,
+                             shb_progress *progress, modal_result *result) {
+  modal_eigen_settings eigen = {
+      .modes = modes, .progress = progress, .check = settings->check, .factor = factor};
   FEM_PETSC(modal_eigen_solve(&result->system, &eigen, &result->eigen));
   SHB_CHECK(result->eigen.n > 0, SHB_INTERRUPTED, "interrupted");
   FEM_PETSC(refine(body, result->deflection.at.displacement, &result->system, &result->eigen));
@@ -200,13 +217,13 @@ static shb_status find_modes(const fem_body *body, const modal_settings *setting
 
 /* Double the number of modes until the tolerance is met; then keep the fewest that meet it. */
 static shb_status find_enough(const fem_body *body, const modal_settings *settings,
-                              const modal_condensation *to, shb_progress *progress,
-                              modal_result *result) {
+                              const modal_condensation *to, fem_factor **factor,
+                              shb_progress *progress, modal_result *result) {
   const int most  = (int)PetscMin(MOST_MODES, 3 * result->system.n_free);
   int       modes = PetscMin(FIRST_MODES, most), enough = 0;
   double    error = 0;
   for (;; modes = PetscMin(2 * modes, most)) {
-    SHB_TRY(find_modes(body, settings, to, modes, progress, result));
+    SHB_TRY(find_modes(body, settings, to, factor, modes, progress, result));
     SHB_TRY(
         modal_select_modes(&result->model, settings->band, settings->tolerance, &enough, &error));
     if (enough > 0) break;
@@ -239,17 +256,28 @@ static shb_status add_coriolis(const fem_body *body, const modal_settings *setti
   return SHB_OK;
 }
 
+/* The matrices, and the modes that they have. */
+static shb_status assemble_and_find(MPI_Comm comm, const fem_body *body,
+                                    const modal_settings *settings, const modal_condensation *to,
+                                    shb_progress *progress, modal_result *result) {
+  const int  modes  = settings->modes > 0 ? settings->modes : FIRST_MODES;
+  analysis   own    = {.modes = modes};
+  shb_status status = assemble(comm, body, to, progress, &own, result);
+  if (status == SHB_OK && settings->modes > 0)
+    status = find_modes(body, settings, to, &own.factor, modes, progress, result);
+  else if (status == SHB_OK)
+    status = find_enough(body, settings, to, &own.factor, progress, result);
+  (void)fem_factor_destroy(&own.factor);
+  return status;
+}
+
 static shb_status solve(MPI_Comm comm, const fem_body *body, const modal_settings *settings,
                         const modal_condensation *to, shb_progress *progress,
                         modal_result *result) {
   SHB_CHECK(settings->modes > 0 || to->n_pairs > 0, SHB_ERR_INPUT,
             "modal.modes: auto goes by the receptance at the contact, and there is no contact; "
             "give a number");
-  SHB_TRY(assemble(comm, body, to, progress, result));
-  if (settings->modes > 0)
-    SHB_TRY(find_modes(body, settings, to, settings->modes, progress, result));
-  else
-    SHB_TRY(find_enough(body, settings, to, progress, result));
+  SHB_TRY(assemble_and_find(comm, body, settings, to, progress, result));
   SHB_TRY(add_coriolis(body, settings, result));
   SHB_TRY(modal_participation_create(body, result->deflection.at.displacement, &result->system,
                                      &result->eigen, &result->participation));
