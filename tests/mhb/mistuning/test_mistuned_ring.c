@@ -66,7 +66,13 @@ static void what_cannot_be_is_refused(void **state) {
                  "the deviation of blade 2 is -0.5");
   assert_refused(mhb_mistuned_ring_create(&alone, &s, zero, 1, &ring), SHB_ERR_INPUT,
                  "no /contact/left");
-  s.to_ground = true;
+  blade.coriolis = calloc((size_t)(blade.n_modes * blade.n_modes), sizeof *blade.coriolis);
+  assert_refused(mhb_mistuned_ring_create(&blade, &s, zero, 1, &ring), SHB_ERR_INPUT,
+                 "rotor.mistuning does not go with Coriolis terms (/modes/coriolis of the modal "
+                 "file); give rotor.coriolis: no");
+  free(blade.coriolis);
+  blade.coriolis = NULL;
+  s.to_ground    = true;
   assert_refused(mhb_mistuned_ring_create(&blade, &s, zero, 1, &ring), SHB_ERR_INPUT,
                  "contact.to is ground");
   modal_model_free(&blade);
