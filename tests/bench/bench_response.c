@@ -7,6 +7,7 @@
  *   bench_response --harmonics H  the beam's rows of H harmonics alone, against themselves
  *   bench_response --precision    error against seconds alone (precision.h)
  *   bench_response --faces FILE...   contact faces of modal files (contact_faces.h)
+ *   bench_response --stiff FILE...   whole curves of these faces with stiff contact (stiff_faces.h)
  *   bench_response --blade FILE N0 FROM TO   the same of a modal file: contact to the neighbour,
  *                                 preload N, range Hz
  *
@@ -29,6 +30,7 @@
 #include "mhb/continuation/first_solution.h"
 #include "precision.h"
 #include "shroud_face.h"
+#include "stiff_faces.h"
 #include "tests/support/main_curve.h"
 #include "tests/support/three_degree.h"
 
@@ -406,6 +408,8 @@ int main(int argc, char **argv) {
     status = precision(&failed);
   } else if (argc > 2 && !strcmp(argv[1], "--faces")) {
     status = bench_contact_faces(argv + 2, argc - 2, &failed);
+  } else if (argc > 2 && !strcmp(argv[1], "--stiff")) {
+    status = bench_stiff_faces(argv + 2, argc - 2, &failed);
   } else if (argc == 6 && !strcmp(argv[1], "--blade")) {
     status = blade(argv + 2, &failed);
   } else if (pairs > 0) {
@@ -416,7 +420,7 @@ int main(int argc, char **argv) {
     fprintf(stderr,
             "bench_response: usage: bench_response [--quick | --pairs N | --harmonics H | "
             "--precision | "
-            "--faces FILE... | --blade FILE N0 FROM TO]\n");
+            "--faces FILE... | --stiff FILE... | --blade FILE N0 FROM TO]\n");
     return SHB_ERR_INPUT;
   }
   if (status != SHB_OK) {

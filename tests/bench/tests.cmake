@@ -8,7 +8,7 @@ endfunction()
 
 shb_bench(contact method.c baseline.c march.c summary.c work_precision.c)
 target_link_libraries(bench_contact PRIVATE shb_post tests_motions)
-shb_bench(response child.c contact_faces.c precision.c shroud_face.c)
+shb_bench(response child.c contact_faces.c precision.c shroud_face.c stiff_faces.c)
 target_link_libraries(bench_response PRIVATE tests_models)
 shb_bench(stability z_notch_settings.c)
 target_link_libraries(bench_stability PRIVATE tests_models OpenMP::OpenMP_C)
