@@ -9,6 +9,7 @@
 #include "mesh/base/constants.h"
 #include "mhb/low_rank/smooth_span.h"
 #include "mhb/numerics/blas_room.h"
+#include "mhb/numerics/thin_product.h"
 
 /* ---- the smooth part ---- */
 
@@ -137,19 +138,25 @@ static void take_own(mhb_receptance_product *p, int t, const double *stiffness) 
   for (size_t i = 0; p->coarse[t] && i < n * n; i++) p->coarse[t][i] = (float)p->own[t][i];
 }
 
+/* Numbers of a force in groups of columns. */
+static size_t room_of(const mhb_receptance_product *p, int width) {
+  return (size_t)p->n * (size_t)(width * mhb_thin_groups(p->nb, width));
+}
+
 static void take_arrays(mhb_receptance_product *p) {
   size_t n = (size_t)p->n, K = (size_t)p->m + 1, nb = (size_t)p->nb, s = (size_t)p->n_smooth;
   for (int i = 0; i < MHB_PRODUCTS; i++)
     p->pole[i] = shb_arena_take(&p->arena, K * (size_t)p->n_poles, sizeof(double complex));
-  p->weight        = shb_arena_take(&p->arena, K * MODAL_TERMS * MHB_PRODUCTS, sizeof(double));
-  p->turned        = shb_arena_take(&p->arena, s * nb, sizeof(double));
-  p->weighted      = shb_arena_take(&p->arena, n * nb, sizeof(double));
-  p->coefficient   = shb_arena_take(&p->arena, s * nb, sizeof(double));
-  p->response      = shb_arena_take(&p->arena, s * nb, sizeof(double));
-  p->force         = shb_arena_take(&p->arena, n + MHB_BLAS_ROOM, sizeof(double complex));
-  p->motion        = shb_arena_take(&p->arena, n, sizeof(double complex));
-  p->coarse_force  = shb_arena_take(&p->arena, n * nb, sizeof(float));
-  p->coarse_motion = shb_arena_take(&p->arena, n * nb, sizeof(float));
+  p->weight      = shb_arena_take(&p->arena, K * MODAL_TERMS * MHB_PRODUCTS, sizeof(double));
+  p->turned      = shb_arena_take(&p->arena, s * nb, sizeof(double));
+  p->coefficient = shb_arena_take(&p->arena, s * nb, sizeof(double));
+  p->response    = shb_arena_take(&p->arena, s * nb, sizeof(double));
+  p->force       = shb_arena_take(&p->arena, n + MHB_BLAS_ROOM, sizeof(double complex));
+  p->motion      = shb_arena_take(&p->arena, n, sizeof(double complex));
+  for (int i = 0; i < 2; i++)
+    p->weighted[i] = shb_arena_take(&p->arena, room_of(p, MHB_THIN_COLUMNS), sizeof(double));
+  p->coarse_force  = shb_arena_take(&p->arena, room_of(p, MHB_THIN_COLUMNS_SINGLE), sizeof(float));
+  p->coarse_motion = shb_arena_take(&p->arena, room_of(p, MHB_THIN_COLUMNS_SINGLE), sizeof(float));
   p->wave_force    = shb_arena_take(&p->arena, s + MHB_BLAS_ROOM, sizeof(double complex));
   p->wave_motion   = shb_arena_take(&p->arena, s + MHB_BLAS_ROOM, sizeof(double complex));
   p->amplitude =
@@ -245,40 +252,49 @@ static double column_weight(const mhb_receptance_product *p, const double *weigh
   return weight[p->first ? p->first + j / 2 : (j + 1) / 2];
 }
 
+/* Place of row i, column j in groups of columns. */
+static size_t place_in_groups(const mhb_receptance_product *p, int width, int i, int j) {
+  return (size_t)(j / width * p->n + i) * (size_t)width + (size_t)(j % width);
+}
+
 /* out += own (weight p) in single precision. */
 static void add_own_single(mhb_receptance_product *p, int t, const double *weight,
                            const double *force, double *out) {
+  enum { WIDTH = MHB_THIN_COLUMNS_SINGLE };
   const int n = p->n, nb = p->nb;
-  float    *from = p->coarse_force, *to = p->coarse_motion;
+  for (int j = 0; j < nb; j++) {
+    const double by = column_weight(p, weight, j);
+    for (int i = 0; i < n; i++)
+      p->coarse_force[place_in_groups(p, WIDTH, i, j)] = (float)(by * force[i * nb + j]);
+  }
+  mhb_thin_product_single(n, mhb_thin_groups(nb, WIDTH), p->coarse[t], p->coarse_force,
+                          p->coarse_motion);
   for (int i = 0; i < n; i++)
     for (int j = 0; j < nb; j++)
-      from[i * nb + j] = (float)(column_weight(p, weight, j) * force[i * nb + j]);
-  cblas_sgemm(CblasRowMajor, CblasNoTrans, CblasNoTrans, n, nb, n, 1, p->coarse[t], n, from, nb, 0,
-              to, nb);
-  for (int i = 0; i < n * nb; i++) out[i] += to[i];
+      out[i * nb + j] += p->coarse_motion[place_in_groups(p, WIDTH, i, j)];
 }
 
 /* out += own (weight p) */
 static void add_own(mhb_receptance_product *p, int t, mhb_product_kind kind, double negligible,
                     const double *force, double *out) {
-  const double *weight = weights_of(p, kind, t), *from = force;
-  int           n = p->n, nb = p->nb, plain = 1;
+  enum { WIDTH = MHB_THIN_COLUMNS };
+  const double *weight = weights_of(p, kind, t);
+  const int     n = p->n, nb = p->nb;
   double        most = 0;
-  for (int k = p->first; k <= p->m; k++) {
-    most = fmax(most, fabs(weight[k]));
-    plain &= weight[k] == 1;
-  }
+  for (int k = p->first; k <= p->m; k++) most = fmax(most, fabs(weight[k]));
   if (!p->own[t] || most == 0 || most * p->own_size[t] < negligible) return;
   if (p->coarse[t] && most * p->own_size[t] * FLT_EPSILON < negligible) {
     add_own_single(p, t, weight, force, out);
     return;
   }
-  for (int i = 0; i < n && !plain; i++)
-    for (int j = 0; j < nb; j++)
-      p->weighted[i * nb + j] = column_weight(p, weight, j) * force[i * nb + j];
-  if (!plain) from = p->weighted;
-  cblas_dgemm(CblasRowMajor, CblasNoTrans, CblasNoTrans, n, nb, n, 1, p->own[t], n, from, nb, 1,
-              out, nb);
+  for (int j = 0; j < nb; j++) {
+    const double by = column_weight(p, weight, j);
+    for (int i = 0; i < n; i++)
+      p->weighted[0][place_in_groups(p, WIDTH, i, j)] = by * force[i * nb + j];
+  }
+  mhb_thin_product(n, mhb_thin_groups(nb, WIDTH), p->own[t], p->weighted[0], p->weighted[1]);
+  for (int i = 0; i < n; i++)
+    for (int j = 0; j < nb; j++) out[i * nb + j] += p->weighted[1][place_in_groups(p, WIDTH, i, j)];
 }
 
 /* Columns of U that are larger than this. */

@@ -42,11 +42,11 @@ typedef struct {
   double         *weight;             /* [kind][term][k] of the residual terms */
   double complex *pole[MHB_PRODUCTS]; /* [k][poles] */
 
-  double         *weighted;    /* [n][2m+1] */
+  double         *weighted[2]; /* [group][n][columns] a force in groups, its product with own */
   double         *coefficient; /* [smooth][2m+1] U^T p */
   double         *turned;      /* [smooth][2m+1] the same with weight and phase of a term */
   double         *response;    /* [smooth][2m+1] */
-  float          *coarse_force, *coarse_motion; /* [n][2m+1] */
+  float          *coarse_force, *coarse_motion; /* the same in single precision */
   double complex *force, *motion;               /* [n] */
   double complex *amplitude;                    /* [poles] */
   double complex *wave_force, *wave_motion;     /* [smooth] */

@@ -88,11 +88,36 @@ MHB_HOT void mhb_cyclic_flexibility_add(const mhb_cyclic_flexibility *f, double 
                  cimag(R[i]) - im * f->odd_coupling[i]);
 }
 
-double complex mhb_cyclic_flexibility_row(const mhb_cyclic_flexibility *f, double complex phase,
-                                          int i, const double complex *p) {
-  size_t at = (size_t)i * (size_t)f->n;
-  double re = 0, im = 0;
-  for (int j = 0; j < f->n; j++) {
+/* What flexibility adds to a row's sums from column j on: numbers of self - Re e even and of
+ * - Im e odd. */
+typedef struct {
+  mhb_half_lanes re, im;
+} row_part;
+
+MHB_INLINE row_part part_at(const mhb_cyclic_flexibility *f, double complex phase, size_t at) {
+  row_part part = {half_lanes_load(f->self + at), {0}};
+  if (!f->even_coupling) return part;
+  part.re -= creal(phase) * half_lanes_load(f->even_coupling + at);
+  part.im = -cimag(phase) * half_lanes_load(f->odd_coupling + at);
+  return part;
+}
+
+MHB_HOT double complex mhb_cyclic_flexibility_row(const mhb_cyclic_flexibility *f,
+                                                  double complex phase, int i,
+                                                  const double complex *p) {
+  const size_t   at     = (size_t)i * (size_t)f->n;
+  const int      whole  = f->n / MHB_HALF_LANES * MHB_HALF_LANES;
+  mhb_half_lanes sum_re = {0}, sum_im = {0};
+  for (int j = 0; j < whole; j += MHB_HALF_LANES) {
+    const row_part part = part_at(f, phase, at + (size_t)j);
+    const double  *q    = (const double *)(p + j);
+    mhb_half_lanes re = {q[0], q[2], q[4], q[6]}, im = {q[1], q[3], q[5], q[7]};
+    sum_re += part.re * re - part.im * im;
+    sum_im += part.re * im + part.im * re;
+  }
+  double re = (sum_re[0] + sum_re[1]) + (sum_re[2] + sum_re[3]);
+  double im = (sum_im[0] + sum_im[1]) + (sum_im[2] + sum_im[3]);
+  for (int j = whole; j < f->n; j++) {
     double a = f->self[at + (size_t)j], b = 0;
     if (f->even_coupling) {
       a -= creal(phase) * f->even_coupling[at + (size_t)j];

@@ -5,7 +5,7 @@ function(shb_counts_allocations target)
     LINKER:--wrap=malloc,--wrap=calloc,--wrap=realloc,--wrap=aligned_alloc)
 endfunction()
 
-foreach(noun block_cyclic extent fourier lu)
+foreach(noun block_cyclic extent fourier lu thin_product)
   shb_test(mhb/numerics ${noun} shb_mhb_numerics)
 endforeach()
 foreach(noun transitions slip slip_onset static_friction slider sensitivity dense_output)
