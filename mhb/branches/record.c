@@ -25,6 +25,13 @@ static void record_signals(mhb_response *response, mhb_branch *branch, int point
   }
 }
 
+/* A pair that sticks has a mean friction only where it reaches the friction limit. */
+static bool is_at_limit(const mhb_balance *b, int a) {
+  const mhb_contact_info *info = &b->eval->info[a];
+  const double           *p    = b->eval->p + 3 * (size_t)a * (size_t)b->nb;
+  return info->share[MHB_STICK] == 1 && info->undetermined && (p[b->nb] != 0 || p[2 * b->nb] != 0);
+}
+
 static void record_states(mhb_branch *branch, int point, const mhb_balance *b) {
   double worst = 0;
   for (int a = 0; a < b->n_pairs; a++) {
@@ -32,6 +39,7 @@ static void record_states(mhb_branch *branch, int point, const mhb_balance *b) {
     memcpy(branch->state + 3 * at, b->eval->info[a].share, sizeof b->eval->info[a].share);
     branch->dissipation[at] = b->eval->info[a].dissipation;
     worst                   = fmax(worst, b->eval->info[a].error);
+    if (branch->at_limit) branch->at_limit[point] += is_at_limit(b, a);
   }
   branch->error_sampling[point] = worst;
 }

@@ -58,6 +58,9 @@ const mhb_field mhb_fields[] = {
      "modulated: 2 flip (beyond -1), 3 Neimark-Sacker (a pair)"},
     {"multipliers", "f", MHB_COMPLEX, AT(multipliers), "-",
      "largest Floquet multipliers by falling modulus; 0: not computed, or there are no more"},
+    {"at_limit", "", MHB_INT, AT(at_limit), "-",
+     "contact pairs that stick all the time and reach the friction limit; the multipliers hold for "
+     "disturbances that do not make them slip"},
     {"lasting/mean", "", MHB_DOUBLE, AT(lasting_mean), "-",
      "motion that lasts: a period's peak of the output, mean over blades and time, over that of "
      "the wave; 0: not computed"},
@@ -95,7 +98,7 @@ const mhb_field mhb_fields[] = {
      "lines of the contact motion where it does not repeat, largest first; 0: none"},
     {"spectrum/amplitude", "l", MHB_DOUBLE, AT(line_amplitude), "m", "amplitude of the line"},
 };
-enum { N_TRACKED = 1, N_LATER = 18, N_INTEGRATION = 5 };
+enum { N_TRACKED = 1, N_LATER = 19, N_INTEGRATION = 5 };
 _Static_assert(sizeof mhb_fields / sizeof *mhb_fields == MHB_N_FIELDS, "MHB_N_FIELDS counts them");
 
 size_t mhb_field_bytes(mhb_number kind) {

@@ -197,6 +197,7 @@ typedef struct {
   int            *judged;      /* [point] MHB_NOT_JUDGED ... */
   int            *loss;        /* [point] MHB_NO_LOSS ... */
   double complex *multipliers; /* [point][n_multipliers] the largest, by falling modulus; 0: none */
+  int            *at_limit;    /* [point] pairs that stick and reach the friction limit */
   int            *harmonics;   /* [point] of the balance, at most n_harmonics; 0: not known */
   int            *truncation_kind; /* [point] mhb_truncation_kind */
   double         *error_spatial;   /* [point] by the number of contact pairs; -1: not judged */

@@ -87,6 +87,29 @@ static void put_verdicts(const tally *t, bool lacks_diameters, post_buffer *out)
              t->points[POST_VERDICT_NOT_JUDGED], t->total);
 }
 
+/* Where contacts stick at the friction limit the map of disturbances has another derivative to
+ * either side. */
+static void put_at_limit(const post_analysis *analysis, post_buffer *out) {
+  int points = 0, judged = 0, most = 0;
+  for (int b = 0; b < analysis->response->n_branches; b++) {
+    const mhb_branch *branch = &analysis->response->branch[b];
+    if (branch->kind != MHB_BRANCH_NONLINEAR) continue;
+    for (int p = 0; p < branch->n_points; p++) {
+      if (branch->judged[p] != MHB_BY_MULTIPLIERS && branch->judged[p] != MHB_JUDGED_MARGINAL)
+        continue;
+      judged++;
+      points += branch->at_limit[p] > 0;
+      if (branch->at_limit[p] > most) most = branch->at_limit[p];
+    }
+  }
+  if (points == 0) return;
+  post_put(out,
+           "<li><b>At the friction limit</b>: at %d of %d points with multipliers, up to %d "
+           "contact%s and reach%s the limit. They count as stuck. A disturbance may make "
+           "them slip: the multipliers there hold for those that do not.</li>\n",
+           points, judged, most, most > 1 ? "s stick" : " sticks", most > 1 ? "" : "es");
+}
+
 /* ---- the motion that lasts ---- */
 
 static const char *kind_name(int kind) {
@@ -165,6 +188,7 @@ void post_stability_findings(const post_analysis *analysis, post_buffer *out) {
   tally t = count(analysis);
   if (t.total == 0) return;
   put_verdicts(&t, analysis->response->lacks_diameters, out);
+  put_at_limit(analysis, out);
   put_lasting(analysis, out);
   put_not_computed(analysis, out);
 }

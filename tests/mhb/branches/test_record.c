@@ -65,14 +65,17 @@ static void a_point_arrives_with_all_its_figures(void **state) {
     assert_int_equal(b->truncation_kind[i], 2);
     assert_true(b->error_newton[i] == 1e-11 && b->error_truncation[i] == 2e-3);
     assert_true(b->error_modal[i] == 3e-4);
-    double worst = 0;
+    double worst    = 0;
+    int    at_limit = 0;
     for (int a = 0; a < PAIRS; a++) {
+      at_limit += f.balance->eval->kind[a] == MHB_PAIR_AT_LIMIT;
       const double *share = b->state + 3 * (i * PAIRS + a);
       assert_near(share[0] + share[1] + share[2], 1, 1e-12);
       assert_true(b->dissipation[i * PAIRS + a] == f.balance->eval->info[a].dissipation);
       worst = fmax(worst, f.balance->eval->info[a].error);
     }
     assert_true(b->error_sampling[i] == worst);
+    assert_int_equal(b->at_limit[i], at_limit);
   }
   tear_down(&f);
 }

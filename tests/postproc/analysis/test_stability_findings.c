@@ -82,6 +82,31 @@ static void verdicts_are_told_apart(void **state) {
   tear_down(&f);
 }
 
+/* Multipliers hold to one side where contacts stick at the friction limit; other points of the
+ * kind are not counted. */
+static void contacts_at_the_limit_are_counted(void **state) {
+  (void)state;
+  peak f;
+  set_up(&f);
+  mhb_branch *b  = f.branch;
+  b->at_limit[0] = 5; /* not judged by multipliers */
+  b->judged[0]   = MHB_BY_NEIGHBOURS;
+  b->judged[1] = b->judged[2] = MHB_BY_MULTIPLIERS;
+  char *text                  = findings(&f);
+  assert_has_not(text, "At the friction limit");
+  free(text);
+  b->at_limit[1] = 1;
+  text           = findings(&f);
+  assert_has(text, "at 1 of 2 points with multipliers, up to 1 contact sticks and reaches the");
+  free(text);
+  b->judged[3]   = MHB_JUDGED_MARGINAL;
+  b->at_limit[3] = 4;
+  text           = findings(&f);
+  assert_has(text, "at 2 of 3 points with multipliers, up to 4 contacts stick and reach the limit");
+  free(text);
+  tear_down(&f);
+}
+
 /* A stable wave needs no words. */
 static void a_stable_wave_says_nothing(void **state) {
   (void)state;
@@ -181,6 +206,7 @@ static void what_is_missing_is_said(void **state) {
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(verdicts_are_told_apart),
+      cmocka_unit_test(contacts_at_the_limit_are_counted),
       cmocka_unit_test(a_stable_wave_says_nothing),
       cmocka_unit_test(the_headline_says_what_lasts),
       cmocka_unit_test(what_is_missing_is_said),
