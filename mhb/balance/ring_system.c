@@ -76,20 +76,21 @@ static void conjugate(int n, double complex *x) {
 /* ---- factors ---- */
 
 /* Columns of a pair in a block: rows R[n][n] of harmonic k, from the pair's first, times its dp. */
-static void add_harmonic(mhb_ring_system *s, int pair, int k, const double complex *R, double *to) {
-  const int n = s->linear->n, nb = s->balance->nb, size = s->blocks->size;
-  to += (k ? 2 * k - 1 : 0) * size;
-  for (int row = 0; row < n; row++, R += n, to += nb * size)
-    mhb_balance_row_times_dp(s->balance, R, pair, k, to, to + size);
+static void add_harmonic(mhb_ring_system *s, int pair, int k, const double complex *R,
+                         mhb_cyclic_block block) {
+  const int n = s->linear->n, nb = s->balance->nb, stride = block.stride;
+  double   *to = block.at + (k ? 2 * k - 1 : 0) * stride;
+  for (int row = 0; row < n; row++, R += n, to += nb * stride)
+    mhb_balance_row_times_dp(s->balance, R, pair, k, to, to + stride);
 }
 
-/* The block of R D with the row contact b and the column contact c, both left, into
- * block[s][s]. */
-static void add_block(mhb_ring_system *s, int b, int c, double complex *R, double *block) {
+/* The block of R D with the row contact b and the column contact c, both left, is added to
+ * block. */
+static void add_block(mhb_ring_system *s, int b, int c, double complex *R, mhb_cyclic_block block) {
   const int P = s->linear->n / 3, axes = 3 * s->balance->nb;
   for (int j = 0; j < P; j++) {
-    const int pair = c * P + j;
-    double   *to   = block + j * axes;
+    const int              pair = c * P + j;
+    const mhb_cyclic_block to   = {block.at + j * axes, block.stride};
     if (s->kind[pair] == MHB_PAIR_OPEN) continue;
     for (int k = 0; k <= s->balance->m; k++)
       add_harmonic(s, pair, k, mhb_ring_condensation_at(s->linear, R, k, b) + 3 * (size_t)j, to);
@@ -101,13 +102,14 @@ static void assemble(mhb_ring_system *s) {
   const mhb_ring_condensation *l = s->linear;
   const int                    N = l->n_left;
   for (int i = 0; i < N; i++) {
-    const int b   = l->left[i];
-    double   *own = mhb_block_cyclic_at(f, f->own, i);
+    const int              b   = l->left[i];
+    const mhb_cyclic_block own = mhb_block_cyclic_at(f, MHB_BLOCK_OWN, i);
     add_block(s, b, b, l->own, own);
-    for (int j = 0; j < f->size; j++) own[j * (f->size + 1)] += 1;
+    for (int j = 0; j < f->size; j++) own.at[j * (own.stride + 1)] += 1;
     if (N == 1) continue;
-    add_block(s, b, l->left[(i + N - 1) % N], l->to_before, mhb_block_cyclic_at(f, f->before, i));
-    add_block(s, b, l->left[(i + 1) % N], l->to_after, mhb_block_cyclic_at(f, f->after, i));
+    add_block(s, b, l->left[(i + N - 1) % N], l->to_before,
+              mhb_block_cyclic_at(f, MHB_BLOCK_BEFORE, i));
+    add_block(s, b, l->left[(i + 1) % N], l->to_after, mhb_block_cyclic_at(f, MHB_BLOCK_AFTER, i));
   }
 }
 

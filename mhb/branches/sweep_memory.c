@@ -76,11 +76,11 @@ static double of_balance(const mhb_sweep_size *z) {
          terms * (matrices(n, m) + matrices(n, top));
 }
 
-/* A ring's system is factored by blocks of a contact (mhb/numerics/block_cyclic). A row has three
- * blocks, their factors with the columns in common, and what is eliminated below. Beside it are the
- * receptances of each blade and contact, and one condensed by harmonics. */
+/* A ring's system is factored by blocks of a contact (mhb/numerics/block_cyclic). A row has a block
+ * with the columns in common, and what is eliminated below. Beside it are the receptances of each
+ * blade and contact, and one condensed by harmonics. */
 static double ring_system(const mhb_sweep_size *z, int m) {
-  enum { BLOCKS = 3 + 3 + 2, WORK = 6, BY_HARMONIC = 6 + 3 + 4 };
+  enum { BLOCKS = 3 + 2, WORK = 6, BY_HARMONIC = 6 + 3 + 4 };
   const double N = z->blades, n = 3. * z->pairs, block = n * mhb_real_size(m);
   return real * square(block) * (BLOCKS * N + WORK) + N * BY_HARMONIC * matrices(n, m) +
          derivatives(N * z->pairs, m);

@@ -28,6 +28,22 @@ typedef long long mhb_lanes_bits __attribute__((vector_size(64)));
 #define MHB_HOT
 #endif
 
+/* A function for registers of eight numbers, where mhb_has_wide(). It may have running sums of
+ * eight. */
+#if defined(__x86_64__) && defined(__GNUC__)
+#define MHB_HAS_WIDE
+#define MHB_WIDE __attribute__((target("avx512f,avx512dq,avx512vl,avx512bw,fma")))
+#endif
+
+static inline int mhb_has_wide(void) {
+#ifdef MHB_HAS_WIDE
+  return __builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512dq") &&
+         __builtin_cpu_supports("avx512vl") && __builtin_cpu_supports("avx512bw");
+#else
+  return 0;
+#endif
+}
+
 /* The smaller and the larger of two numbers, without a call; b if a is not a number. */
 MHB_INLINE double mhb_least(double a, double b) {
   return a < b ? a : b;
