@@ -103,8 +103,7 @@ static double solve_by_system(const mhb_balance *b, mhb_truncation *t, double si
       du[(size_t)i * (size_t)larger->nb + (size_t)(2 * k)]     = cimag(e[k * n + i]);
     }
   if (du && mhb_truncation_solve(t, du)) length = mhb_norm(du, larger->n);
-  /* in a ring the system with twice the harmonics would have to be factored for that */
-  if (length > LONG * size && !b->receptance->ring) length *= fmin(1, mhb_truncation_part(t, du));
+  if (length > LONG * size) length *= fmin(1, mhb_truncation_part(t, du));
   free(du);
   return length;
 }
