@@ -3,10 +3,8 @@
 #include <math.h>
 #include <string.h>
 
-/* Chord steps: from this residual on, and only as long as each gains a decade. From CHORD_TO levels
- * of round-off on there are none. The law with and without derivative differs by its tolerance, and
- * a chord step ends at the residual of the latter. Newton's step alone is exact there. */
-static const double CHORD_FROM = 1e-2, CHORD_TO = 10, CHORD_GAIN = 0.1, PROMISE = 3;
+/* Chord steps: from this residual on, and only as long as each gains a decade. */
+static const double CHORD_FROM = 1e-2, CHORD_GAIN = 0.1, PROMISE = 3;
 /* Of a costly system the first two corrections, and any three, gain this at least. Else the step is
  * given up. Of 86 steps that failed on a ring of 40 blades the first two tell 77, and stop 16 of
  * 1360 that would have converged. */
@@ -105,23 +103,26 @@ static int correct(mhb_arclength *curve, const double *normal, double clip,
                    mhb_curve_point *point) {
   double unit = mhb_arclength_unit(curve), before = INFINITY, cut = 0;
   double seen[MAX_CORRECTIONS + 1];
+  bool   chord = false; /* the last correction ended with chord steps */
   for (point->iterations = 0; point->iterations <= MAX_CORRECTIONS; point->iterations++) {
     if (!measure_damped(curve, before, cut, unit, point)) return 0;
     point->near = true;
     if (point->residual <= curve->tolerance) return 1;
-    bool stagnates = point->residual > 0.5 * before;
-    if (stagnates && point->residual < curve->roundoff_level) return 1;
+    /* The law with and without derivative differs within its tolerance. A chord step ends at the
+     * residual of the latter; a Newton step alone tells this from round-off. */
+    bool rounded = point->residual > 0.5 * before && point->residual < curve->roundoff_level;
+    if (rounded && !chord) return 1;
     before = seen[point->iterations] = point->residual;
-    if (curve->system->costly && gains_little(seen, point->iterations)) return 0;
-    if (alternates(seen, point->iterations)) return 0;
+    if (!rounded && curve->system->costly && gains_little(seen, point->iterations)) return 0;
+    if (!rounded && alternates(seen, point->iterations)) return 0;
     if (point->iterations == MAX_CORRECTIONS || !factor_bordered(curve, unit, normal, point) ||
         !solve_for_correction(curve, unit, point))
-      return 0;
+      return rounded;
     double length = mhb_norm(curve->delta, curve->n + 1);
     cut           = length > clip ? clip / length : 1;
     move(curve, cut, unit, point);
-    if (cut == 1 && before < CHORD_FROM && before > CHORD_TO * curve->roundoff_level)
-      chord_steps(curve, unit, point);
+    chord = cut == 1 && before < CHORD_FROM && !rounded;
+    if (chord) chord_steps(curve, unit, point);
     if (!(point->value >= curve->system->least)) return 0;
   }
   return 0;
