@@ -47,7 +47,7 @@ set(INTEGRATION_TESTS cases.study.study cases.study.samples cases.study.eval
   mhb.tracking.tracked_multiplier mhb.branches.mistuned_sweep bench.tracking
   robust.same_bits robust.not_finite robust.fail_nth_integrate robust.fail_nth_study
   robust.fail_nth_mesh mesh.blade.shroud_angle cases.converge.points_ladder
-  robust.memory
+  robust.memory robust.numbers
   cases.commands.contact_points modal.hdf5.stamp)
 if(SHROUDHB_CHROMIUM AND SHROUDHB_PYTHON)
   list(APPEND INTEGRATION_TESTS postproc.study.page_script postproc.report.page_script)
@@ -61,7 +61,8 @@ set(SLOW_TESTS
   fuzz.libfuzzer mhb.tracking.tracked_response
   robust.fail_nth robust.fail_nth_motion robust.kills robust.damaged robust.surroundings)
 
-set(NIGHTLY_TESTS robust.fail_nth_all robust.kills_many robust.damaged_many robust.sanitizers)
+set(NIGHTLY_TESTS robust.fail_nth_all robust.numbers_all robust.kills_many robust.damaged_many
+  robust.sanitizers)
 
 if(TARGET repeated_sweep)
   list(APPEND INTEGRATION_TESTS robust.repeated)

@@ -11,6 +11,9 @@
 
 enum { LENGTH, MASS, TIME, ANGLE, N_DIMENSIONS, LONGEST = 80 };
 
+/* Products of two smaller numbers, such as friction times preload, may vanish. */
+static const double SMALLEST = 1e-100;
+
 /* A named unit: factor 10^power in SI. */
 typedef struct {
   const char *name, *prefixes;
@@ -188,6 +191,11 @@ bool case_quantity(const char *text, const char *unit, double *value, char why[C
     return false;
   }
   if (given.factor != 1) *value *= given.factor;
+  if (*value != 0 && fabs(*value) < SMALLEST) {
+    snprintf(why, CASE_WHY, "'%.80s' is too small to compute with; give 0, or at least %g", text,
+             SMALLEST);
+    return false;
+  }
   if (isfinite(*value)) return true;
   snprintf(why, CASE_WHY, "'%.80s' is out of the range of a number", text);
   return false;

@@ -16,8 +16,9 @@ enum { CASE_WHY = 256 };
  *   why    out  on failure: the reason, one line without the key
  *
  * Refused: nan, inf, hexadecimal, decimal commas, overflow, an unknown unit, a unit of another
- * dimension, and text after the unit. Units are products and quotients (kg/m3, N/mm, rad/s) of m g
- * t s N Pa bar Hz rad deg rev rpm %. The prefixes n u m c k M G are allowed where customary. */
+ * dimension, text after the unit. A number below 1e-100 in size is refused unless it is 0. Units
+ * are products and quotients (kg/m3, N/mm, rad/s) of m g t s N Pa bar Hz rad deg rev rpm %. The
+ * prefixes n u m c k M G are allowed where customary. */
 bool case_quantity(const char *text, const char *unit, double *value, char why[CASE_WHY]);
 
 /* Read a decimal integer. Everything else is refused. */

@@ -213,7 +213,7 @@ static shb_status halve_steps(work *w, fine_branch *b) {
     s->place = 0.5 * (low.place + high.place);
     SHB_TRY(halve(w, b, &low, &high, s));
   }
-  qsort(b->list, (size_t)b->n, sizeof *b->list, by_place);
+  if (b->n > 0) qsort(b->list, (size_t)b->n, sizeof *b->list, by_place);
   return SHB_OK;
 }
 

@@ -9,7 +9,7 @@ Exit code 77: no h5py.
 A run must end with a code of its own and say why, or publish what it would have published.
 A result of another run lies in its way: it must be untouched, or replaced by a whole one. A sweep
 of more than a second may have replaced it by the curves that it had then. A study may end with a
-whole table in which failed designs have their reason.
+whole table in which failed designs have their reason, also if its page cannot be written then.
 """
 import collections
 import csv
@@ -121,7 +121,7 @@ def verdict(call, code, said, name, old, whole):
         return 'the result cannot be read'
     if code == 0 and now != whole:
         return 'exit code 0, but another result'
-    if code == 3 and tells_failed_designs(name):
+    if code in (3, 4) and tells_failed_designs(name):
         return ''
     if code and now not in (old, whole) and not is_under_way(name):
         return 'a result that is neither the earlier one nor whole'

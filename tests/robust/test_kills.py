@@ -11,6 +11,7 @@ import shutil
 import signal
 import subprocess
 import sys
+import tempfile
 import time
 
 try:
@@ -47,14 +48,17 @@ def program(stage):
 def stopped(words, name, seconds):
     """Stop a run by a random signal at a random moment; its exit code."""
     which = DICE.choice((signal.SIGKILL, signal.SIGTERM, signal.SIGINT))
-    process = subprocess.Popen(words, env=ENVIRONMENT, start_new_session=True,
-                               stdout=subprocess.DEVNULL, stderr=subprocess.PIPE)
-    time.sleep(DICE.uniform(0, seconds))
-    try:
-        os.killpg(process.pid, which)
-    except ProcessLookupError:
-        pass
-    said = process.communicate(timeout=60)[1].decode(errors='replace')
+    with tempfile.TemporaryFile() as errors: # a pipe would be held open by the daemon of MPI
+        process = subprocess.Popen(words, env=ENVIRONMENT, start_new_session=True,
+                                   stdout=subprocess.DEVNULL, stderr=errors)
+        time.sleep(DICE.uniform(0, seconds))
+        try:
+            os.killpg(process.pid, which)
+        except ProcessLookupError:
+            pass
+        process.wait(timeout=60)
+        errors.seek(0)
+        said = errors.read().decode(errors='replace')
     if process.returncode == 1 and any(text in said for text in MPI): # its daemon was stopped too
         return 1
     # before its handlers are set, and in libraries at start, a signal ends the process at once

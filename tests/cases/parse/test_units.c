@@ -57,7 +57,8 @@ static void powers_of_ten_are_exact(void **state) {
               {"20 mrad", "rad", 0.02},
               {"100 rad/s", "rad/s", 100},
               {"2 kg*m/s2", "N", 2},
-              {"1e-320 m", "m", 1e-320}};
+              {"-1e-100 m", "m", -1e-100},
+              {"0e-320 m", "m", 0}};
   for (size_t i = 0; i < COUNT(rows); i++) {
     double value         = -1;
     char   why[CASE_WHY] = "";
@@ -131,6 +132,9 @@ static void refuses(void **state) {
               {"1e400", "", "out of the range"},
               {"1e99999999999999999999", "", "out of the range"},
               {"1e-400", "", "out of the range"},
+              {"1e-308", "", "too small to compute with"},
+              {"-5e-324 m", "m", "too small to compute with"},
+              {"9e-99 cm", "m", "too small to compute with"},
               {"1e308 kN", "N", "out of the range"},
               {"1e308 rev", "rad", "out of the range"}};
   for (size_t i = 0; i < COUNT(rows); i++) {
