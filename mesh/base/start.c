@@ -1,5 +1,5 @@
 /* What must be in order before the program runs: standard descriptors and address space before the
- * start of every library, the locale after it. The former by system calls only: a sanitizer, which
+ * start of every library, the locale and the environment of MPI after it. The former by system calls only: a sanitizer, which
  * replaces functions, may not be there yet. */
 #define _GNU_SOURCE /* syscall */
 #include <fcntl.h>
@@ -89,4 +89,10 @@ __attribute__((section(".preinit_array"),
 /* Numbers have a decimal point, also where a library has taken the locale of the user. */
 __attribute__((constructor)) static void set_locale(void) {
   setlocale(LC_ALL, "C");
+}
+
+/* Without mpiexec Open MPI starts a daemon for processes that the program may add. There are none.
+ * The daemon costs a third of a second, and outlives a program that is killed. */
+__attribute__((constructor)) static void start_no_daemon(void) {
+  setenv("OMPI_MCA_ess_singleton_isolated", "1", 0);
 }
