@@ -1,6 +1,6 @@
-/* What must be in order before the program runs: standard descriptors and address space before the
- * start of every library, the locale and the environment of MPI after it. The former by system calls only: a sanitizer, which
- * replaces functions, may not be there yet. */
+/* What must be in order before the program runs. Standard descriptors and address space are checked
+ * before the start of every library. This is done by system calls only: a sanitizer, which replaces
+ * functions, may not be there yet. The locale and the environment of MPI are set after it. */
 #define _GNU_SOURCE /* syscall */
 #include <fcntl.h>
 #include <locale.h>
