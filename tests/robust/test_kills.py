@@ -45,6 +45,16 @@ def program(stage):
         os.path.join(BIN, f'shroudhb-{stage}')]
 
 
+def wait_for_group(group):
+    """Stages of a run that was killed may live a moment longer, with their temporary files."""
+    for _ in range(600):
+        try:
+            os.killpg(group, 0)
+        except ProcessLookupError:
+            return
+        time.sleep(0.05)
+
+
 def stopped(words, name, seconds):
     """Stop a run by a random signal at a random moment; its exit code."""
     which = DICE.choice((signal.SIGKILL, signal.SIGTERM, signal.SIGINT))
@@ -57,6 +67,7 @@ def stopped(words, name, seconds):
         except ProcessLookupError:
             pass
         process.wait(timeout=60)
+        wait_for_group(process.pid)
         errors.seek(0)
         said = errors.read().decode(errors='replace')
     if process.returncode == 1 and any(text in said for text in MPI): # its daemon was stopped too
