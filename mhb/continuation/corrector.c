@@ -113,8 +113,9 @@ static int correct(mhb_arclength *curve, const double *normal, double clip,
     bool rounded = point->residual > 0.5 * before && point->residual < curve->roundoff_level;
     if (rounded && !chord) return 1;
     before = seen[point->iterations] = point->residual;
-    if (!rounded && curve->system->costly && gains_little(seen, point->iterations)) return 0;
-    if (!rounded && alternates(seen, point->iterations)) return 0;
+    bool hopeless                    = alternates(seen, point->iterations) ||
+                    (curve->system->costly && gains_little(seen, point->iterations));
+    if (hopeless && !rounded) return 0;
     if (point->iterations == MAX_CORRECTIONS || !factor_bordered(curve, unit, normal, point) ||
         !solve_for_correction(curve, unit, point))
       return rounded;

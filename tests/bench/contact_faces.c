@@ -34,7 +34,7 @@ static double processor_ms(void) {
   return 1e3 * shb_processor_seconds();
 }
 
-static mhb_settings face_settings(void) {
+mhb_settings contact_faces_settings(void) {
   return (mhb_settings){.blades       = 40,
                         .engine_order = 5,
                         .mu           = .3,
@@ -154,7 +154,7 @@ static shb_status walk(mhb_arclength *path, mhb_truncation *truncation, face_row
 
 static shb_status run_face(const char *file, face_row *row) {
   modal_model     model;
-  mhb_settings    s = face_settings();
+  mhb_settings    s = contact_faces_settings();
   mhb_balance    *b;
   mhb_arclength  *path;
   mhb_truncation *truncation;

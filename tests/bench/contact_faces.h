@@ -6,6 +6,10 @@
 #define BENCH_CONTACT_FACES_H
 
 #include "mesh/base/status.h"
+#include "mhb/problem/settings.h"
+
+/* Contact of cases/z_notch_blade at 100 N, 200 to 262 Hz, with 7 harmonics. */
+mhb_settings contact_faces_settings(void);
 
 /* A row a file, each in a process of its own. Goals have verdicts. *failed counts residuals above
  * 1e-8 and dense steps that lead elsewhere, never times. */

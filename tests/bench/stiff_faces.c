@@ -8,6 +8,7 @@
 #include <string.h>
 
 #include "child.h"
+#include "contact_faces.h"
 #include "mesh/base/clock.h"
 #include "mesh/base/constants.h"
 #include "mhb/balance/newton.h"
@@ -32,19 +33,14 @@ typedef struct {
 } stiff_row;
 
 static mhb_settings stiff_settings(double stiffness) {
-  return (mhb_settings){.blades       = 40,
-                        .engine_order = 5,
-                        .mu           = .3,
-                        .kv           = .8e6 * stiffness,
-                        .ku           = {.5e6 * stiffness, 0, .5e6 * stiffness},
-                        .n_preloads   = 1,
-                        .n0           = {10},
-                        .frequency    = {600, 1200},
-                        .harmonics    = 7,
-                        .subharmonics = 1,
-                        .scale        = 1,
-                        .tolerance    = 1e-8,
-                        .max_points   = MOST_POINTS};
+  mhb_settings s = contact_faces_settings();
+  s.kv *= stiffness;
+  for (int i = 0; i < 3; i++) s.ku[i] *= stiffness;
+  s.n0[0]        = 10;
+  s.frequency[0] = 600;
+  s.frequency[1] = 1200;
+  s.max_points   = MOST_POINTS;
+  return s;
 }
 
 /* States that a pair passes in a period: a bit each. */
