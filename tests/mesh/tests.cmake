@@ -28,4 +28,4 @@ target_compile_definitions(test_mesh_blade_scene PRIVATE
   SCENE="${PROJECT_SOURCE_DIR}/cases/z_notch_blade/case.yaml")
 add_test(NAME mesh.blade.command
   COMMAND sh ${CMAKE_CURRENT_SOURCE_DIR}/mesh/blade/test_command.sh $<TARGET_FILE:shroudhb-mesh>
-          ${PROJECT_SOURCE_DIR}/cases/z_notch_blade/case.yaml)
+          ${PROJECT_SOURCE_DIR}/cases/z_notch_blade/case.yaml $<BOOL:${SHROUDHB_SANITIZE}>)

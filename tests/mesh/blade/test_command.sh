@@ -4,6 +4,7 @@
 set -u
 program=$1
 scene=$2
+sanitized=${3:-0} # a sanitizer reports crashes in place of the program
 damaged=$(dirname "$0")/../io/damaged
 work=$(mktemp -d) || exit 1
 trap 'rm -rf "$work"' EXIT
@@ -217,7 +218,7 @@ done
 rm "$work/dir/sector.geo" "$work/dir/solid.yaml" "$work/dir/solid.msh"
 
 # Damaged meshes over which gmsh crashes: one line.
-for name in segmentation_fault assertion; do
+[ "$sanitized" = 1 ] || for name in segmentation_fault assertion; do
   cp "$damaged/$name.msh" "$work/dir"
   sed "s/^mesh:.*/mesh: {file: $name.msh}/; /^  blade:/,/^    size:/d" "$scene" \
     >"$work/dir/damaged.yaml"
@@ -226,7 +227,7 @@ for name in segmentation_fault assertion; do
   says "shroudhb: error: $name.msh: is damaged: gmsh crashed while it was read; mesh or copy it"
   rm "$work/dir/$name.msh"
 done
-rm "$work/dir/damaged.yaml"
+rm -f "$work/dir/damaged.yaml"
 
 left=$(ls -A "$work/home" | grep -v -e '^.fltk$')
 [ -z "$left" ] || fail "something was written to HOME: $left"
