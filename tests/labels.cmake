@@ -59,10 +59,11 @@ set(SLOW_TESTS
   bench.elements cases.scenes.optimum_preload cases.scenes.tracked_peaks
   mhb.tracking.corner_pairs
   fuzz.libfuzzer mhb.tracking.tracked_response
-  robust.fail_nth robust.fail_nth_motion robust.kills robust.damaged robust.surroundings)
+  robust.fail_nth robust.fail_nth_motion robust.kills robust.kills_ring
+  robust.damaged robust.surroundings)
 
-set(NIGHTLY_TESTS robust.fail_nth_all robust.numbers_all robust.kills_many robust.damaged_many
-  robust.sanitizers)
+set(NIGHTLY_TESTS robust.fail_nth_all robust.numbers_all robust.kills_many
+  robust.kills_ring_many robust.damaged_many robust.sanitizers)
 
 if(TARGET repeated_sweep)
   list(APPEND INTEGRATION_TESTS robust.repeated)

@@ -51,12 +51,10 @@ static shb_status add_peaks(const mhb_settings *settings, const mhb_sampling *sa
   for (int i = 0; i < preloads && 2 + i < response->n_branches; i++)
     if (tuned[i].worst > 0 && response->branch[2 + i].n_points > 0)
       set(response, &response->branch[2 + i], &tuned[i]);
-  if (sampling && sampling->n > 0) {
-    response->unfinished = true;
+  if (sampling && sampling->n > 0)
     status = mhb_ring_samples(ring->tuned, settings, sampling, tuned, path, provenance, progress,
                               response);
-    response->unfinished = status != SHB_OK;
-  }
+  response->unfinished = status != SHB_OK;
   if (path) SHB_TRY(mhb_response_write(response, path, provenance));
   return status;
 }
@@ -68,11 +66,13 @@ shb_status mhb_ring_response(const mhb_settings *settings, const mhb_sampling *s
       sampling && sampling->n > 0 ? earlier_samples(settings, path, provenance) : NULL;
   const shb_status found =
       mhb_forced_response(&settings->ring->whole, settings, path, provenance, progress, out);
-  if (!*out || (found != SHB_OK && found != SHB_NOT_CONVERGED)) {
+  if (!*out) {
     mhb_samples_destroy(samples);
     return found;
   }
   (*out)->samples = samples;
+  if (samples && path) SHB_TRY(mhb_response_write(*out, path, provenance)); /* the sweep has none */
+  if (found != SHB_OK && found != SHB_NOT_CONVERGED) return found;
   SHB_TRY(add_peaks(settings, sampling, path, provenance, progress, *out));
   return found;
 }

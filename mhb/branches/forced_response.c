@@ -537,7 +537,7 @@ shb_status mhb_forced_response(const modal_model *model, const mhb_settings *ask
   if (status == SHB_OK) status = linear_limits(model, settings, s.response);
   if (status == SHB_OK) status = all_preloads(&s, model);
   if (status == SHB_OK) status = lasting_motion(&s, model);
-  if (status == SHB_OK) s.response->unfinished = shb_interrupted();
+  if (status == SHB_OK) s.response->unfinished = shb_interrupted() || settings->ring;
   if (status == SHB_OK) status = take_curves(&s);
   if (status == SHB_OK) status = mhb_modal_motion_keep(model, settings, s.response);
   if (status == SHB_OK && settings->face) {

@@ -15,7 +15,8 @@
  * settings->motion_tolerance > 0: harmonics are chosen at each point (harmonic_selection.h), and
  * settings->harmonics is not used. settings->resume: complete branches of an earlier file of the
  * same settings are not computed again.
- *   response  out  the caller destroys it (NULL on error)
+ *   response  out  the caller destroys it (NULL on error); unfinished after an interruption, and
+ *                  with settings->ring, to which mhb_ring_response adds its peaks
  * Returns SHB_OK, or SHB_NOT_CONVERGED if a branch ended before the range was covered, or
  * SHB_INTERRUPTED, or SHB_ERR_*. */
 shb_status mhb_forced_response(const modal_model *model, const mhb_settings *settings,

@@ -1,6 +1,7 @@
 /* The response of a mistuned ring: factors of its peaks, samples, an interrupted run taken up. */
 #include <math.h>
 #include <setjmp.h>
+#include <signal.h>
 #include <stdarg.h>
 #include <stddef.h>
 #include <stdint.h>
@@ -11,6 +12,7 @@
 
 #include "mesh/base/constants.h"
 #include "mhb/amplification/ring_response.h"
+#include "mhb/branches/forced_response.h"
 #include "mhb/mistuning/deviations.h"
 #include "mhb/mistuning/mistuned_ring.h"
 #include "tests/support/check.h"
@@ -97,8 +99,68 @@ static void samples_are_taken_up(void **state) {
   modal_model_free(&blade);
 }
 
+/* The blade, deviations and settings of a ring whose blades differ; its owner destroys it. */
+static mhb_mistuned_ring *drawn_ring(modal_model *blade, double deviation[N], mhb_settings *s) {
+  mhb_mistuned_ring *ring;
+  random_model(1, WITH_LEFT, 3, blade);
+  *s = ring_settings();
+  assert_ok(mhb_deviations_random(SAMPLING.deviation, SAMPLING.seed, 0, N, deviation));
+  assert_ok(mhb_mistuned_ring_create(blade, s, deviation, 1, &ring));
+  s->ring = ring;
+  return ring;
+}
+
+/* A run that is killed before it adds its peaks has more to do. */
+static void a_sweep_without_its_peaks_is_unfinished(void **state) {
+  double             deviation[N];
+  modal_model        blade;
+  mhb_settings       s;
+  mhb_response      *r;
+  mhb_mistuned_ring *ring  = drawn_ring(&blade, deviation, &s);
+  shb_progress       quiet = shb_progress_start("test", true, false);
+  (void)state;
+  assert_ok(mhb_forced_response(&ring->whole, &s, scratch("sweep.h5"), &NONE, &quiet, &r));
+  mhb_response_destroy(r);
+  assert_ok(mhb_response_read(scratch("sweep.h5"), &r));
+  assert_int_equal(r->unfinished, 1);
+  mhb_response_destroy(r);
+  mhb_mistuned_ring_destroy(ring);
+  mhb_response_destroy(solve(&blade, deviation, NULL, scratch("sweep.h5")));
+  assert_ok(mhb_response_read(scratch("sweep.h5"), &r));
+  assert_int_equal(r->unfinished, 0);
+  assert_true(r->branch[2].amplification.factor > 1);
+  mhb_response_destroy(r);
+  modal_model_free(&blade);
+}
+
+/* Interrupted before its samples, a run keeps those of the file. The last test: the mark of the
+ * interruption stays. */
+static void samples_outlive_an_interruption(void **state) {
+  double             deviation[N];
+  modal_model        blade;
+  mhb_settings       s;
+  mhb_response      *r;
+  mhb_mistuned_ring *ring  = drawn_ring(&blade, deviation, &s);
+  shb_progress       quiet = shb_progress_start("test", true, false);
+  (void)state;
+  mhb_response_destroy(solve(&blade, deviation, &SAMPLING, scratch("kept.h5")));
+  shb_interrupt_catch();
+  raise(SIGINT);
+  assert_int_equal(mhb_ring_response(&s, &SAMPLING, scratch("kept.h5"), &NONE, &quiet, &r),
+                   SHB_INTERRUPTED);
+  mhb_response_destroy(r);
+  assert_ok(mhb_response_read(scratch("kept.h5"), &r));
+  assert_int_equal(r->unfinished, 1);
+  assert_int_equal(mhb_samples_done(r->samples, 0), SAMPLES);
+  mhb_response_destroy(r);
+  mhb_mistuned_ring_destroy(ring);
+  modal_model_free(&blade);
+}
+
 int main(void) {
   const struct CMUnitTest tests[] = {cmocka_unit_test(equal_blades_have_the_factor_one),
-                                     cmocka_unit_test(samples_are_taken_up)};
+                                     cmocka_unit_test(samples_are_taken_up),
+                                     cmocka_unit_test(a_sweep_without_its_peaks_is_unfinished),
+                                     cmocka_unit_test(samples_outlive_an_interruption)};
   return cmocka_run_group_tests(tests, scratch_make, scratch_remove);
 }
