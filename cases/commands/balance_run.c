@@ -7,6 +7,7 @@
 #include "cases/schema/case.h"
 #include "cases/schema/case_paths.h"
 #include "mesh/base/progress.h"
+#include "mesh/base/publish.h"
 #include "mhb/amplification/ring_response.h"
 #include "mhb/branches/forced_response.h"
 #include "mhb/tracking/tracked_response.h"
@@ -126,7 +127,8 @@ shb_status balance_run(const case_file *file, const command_options *options,
     if (!options->force && up_to_date(output, settings, file->mistuning.samples)) {
       shb_progress_note(&progress, "%s is up to date", output);
     } else {
-      status = solve(file, modal, settings, output, crew, &progress);
+      status = shb_publish_check(output);
+      if (status == SHB_OK) status = solve(file, modal, settings, output, crew, &progress);
     }
   }
   free(modal);

@@ -182,7 +182,8 @@ static shb_status run(const case_file *file, const command_options *options) {
     if (!options->force && up_to_date(output, settings)) {
       shb_progress_note(&progress, "%s is up to date", output);
     } else {
-      status = solve(file, modal, balance, settings, output, &progress);
+      status = shb_publish_check(output);
+      if (status == SHB_OK) status = solve(file, modal, balance, settings, output, &progress);
     }
   }
   mhb_response_destroy(balance);

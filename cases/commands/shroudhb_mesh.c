@@ -184,6 +184,7 @@ static shb_status make_at(const case_file *file, const command_options *options,
     shb_progress_note(progress, "%s is up to date", output);
     return SHB_OK;
   }
+  SHB_TRY(shb_publish_check(output));
   shb_provenance provenance = command_provenance(file, settings, "shroudhb-mesh");
   return file->mesh_file ? make_from_file(file, output, &provenance, progress)
                          : make_blade(file, output, &provenance, progress);

@@ -205,6 +205,7 @@ static shb_status decide(const case_file *file, bool force, const char *mesh, co
   if (rank == 0) {
     answer[0] = up_to_date_settings(file, CASE_MODAL, mesh, settings);
     if (answer[0] == SHB_OK) answer[1] = (int)task_of(file, force, output, *settings, revision);
+    if (answer[0] == SHB_OK && answer[1] != NOTHING) answer[0] = (int)shb_publish_check(output);
   }
   MPI_Bcast(answer, 2, MPI_INT, 0, PETSC_COMM_WORLD);
   *what = (task)answer[1];

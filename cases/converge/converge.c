@@ -197,7 +197,9 @@ static bool in_doubt(const post_convergence *result) {
 }
 
 static shb_status run_study(convergence_study *s) {
-  shb_status status = prepare(s);
+  static const char *const suffix[] = {".converge.h5", ".converge.csv", ".converge.svg"};
+  shb_status               status   = case_output_check(s->file, 3, suffix);
+  if (status == SHB_OK) status = prepare(s);
   if (status == SHB_OK) status = ladders_run(s);
   shb_progress_clear(&s->progress);
   if (status != SHB_OK && status != SHB_INTERRUPTED) return status;

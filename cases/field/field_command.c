@@ -3,6 +3,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "mesh/base/publish.h"
 #include "modal/hdf5/h5.h"
 #include "postproc/analysis/file_origin.h"
 #include "postproc/field/field_grid.h"
@@ -237,6 +238,8 @@ static shb_status publish(const field_options *o, const material *m, FILE *out) 
                                      "shroudhb-field"};
   output_path(o, &m->period, "vtkhdf", grid);
   output_path(o, &m->period, "glb", picture);
+  SHB_TRY(shb_publish_check(grid));
+  SHB_TRY(shb_publish_check(picture));
   shb_status status = post_field_scene(&m->period, steps, o->ring, o->scale, &note, &glb);
   if (status == SHB_OK) status = post_field_grid(&m->period, steps, o->ring, &provenance, grid);
   if (status == SHB_OK) status = post_buffer_publish(&glb, picture);

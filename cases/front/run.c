@@ -10,6 +10,7 @@
 #include "cases/parse/damping.h"
 #include "cases/schema/case.h"
 #include "cases/schema/case_paths.h"
+#include "mesh/base/publish.h"
 
 enum { N_STAGES = 4 };
 
@@ -52,6 +53,19 @@ static bool goes_on(int stage, int code) {
   return code == SHB_OK || (code == SHB_NOT_CONVERGED && strcmp(stage_name[stage], "mhb") == 0);
 }
 
+/* What killed runs left, of stages that may have nothing to do now. */
+static void clear_temporaries(const case_file *file) {
+  char *stem = case_output(file, "");
+  if (stem) shb_publish_clear(stem);
+  free(stem);
+}
+
+/* The results of post, which comes after hours. Each stage looks at its own. */
+static shb_status check_outputs(const case_file *file, bool no_report) {
+  static const char *const suffix[] = {".csv", ".summary.json", ".html", ".svg"};
+  return case_output_check(file, no_report ? 2 : 4, suffix);
+}
+
 /* Runs the stages in turn.
  *   *code  out  exit code of the stage that ended the run; else 3 if the response has not converged
  *               everywhere; else 0 */
@@ -73,6 +87,8 @@ shb_status run_case(const command_options *options) {
   int               claim, code = SHB_OK;
   subprocess_result result[N_STAGES] = {{0}};
   shb_status        status           = claim_results(&file, &claim);
+  if (status == SHB_OK) clear_temporaries(&file);
+  if (status == SHB_OK) status = check_outputs(&file, options->no_report);
   if (status == SHB_OK) status = run_stages(&file, options, &code, result);
   if (options->verbose && !options->quiet) print_times(result);
   bool done = status == SHB_OK && result[N_STAGES - 1].seconds > 0 &&

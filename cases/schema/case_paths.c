@@ -4,6 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "mesh/base/publish.h"
 #include "mesh/core/file_format.h"
 
 char *case_output(const case_file *file, const char *suffix) {
@@ -14,6 +15,17 @@ char *case_output(const case_file *file, const char *suffix) {
   if (path)
     snprintf(path, size, "%s%s%s%s", here ? "" : folder, here ? "" : "/", file->name, suffix);
   return path;
+}
+
+shb_status case_output_check(const case_file *file, int n, const char *const *suffix) {
+  for (int i = 0; i < n; i++) {
+    char *path = case_output(file, suffix[i]);
+    SHB_CHECK(path, SHB_ERR_IO, "out of memory");
+    const shb_status status = shb_publish_check(path);
+    free(path);
+    SHB_TRY(status);
+  }
+  return SHB_OK;
 }
 
 bool case_mesh_is_made(const case_file *file) {

@@ -5,9 +5,12 @@
 #include <stdbool.h>
 
 #include "cases/parse/case_file.h"
+#include "mesh/base/status.h"
 
 /* folder/NAME + suffix, with a suffix such as ".modal.h5"; malloc'ed. */
 char *case_output(const case_file *file, const char *suffix);
+/* May folder/NAME + suffix be written? For each of n suffixes. SHB_ERR_IO. */
+shb_status case_output_check(const case_file *file, int n, const char *const *suffix);
 /* Is mesh.file converted to NAME.msh first? True for solids, for other units than m, and for groups
  * by rule. */
 bool case_mesh_is_made(const case_file *file);

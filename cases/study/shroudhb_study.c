@@ -13,6 +13,7 @@
 #include "cases/study/design_process.h"
 #include "cases/study/study_run.h"
 #include "mesh/base/progress.h"
+#include "mesh/base/publish.h"
 #include "postproc/study/study_file.h"
 #include "postproc/summary/summary.h"
 
@@ -163,6 +164,19 @@ static shb_status manage(const study_spec *spec, const command_options *options,
   return status;
 }
 
+/* May the results of the study be written? */
+static shb_status check_outputs(const study_spec *spec) {
+  static const char *const suffix[] = {".study.h5", ".study.csv", ".study.html", ".study.svg"};
+  for (size_t i = 0; i < sizeof suffix / sizeof *suffix; i++) {
+    char *path = study_path(spec, suffix[i]);
+    SHB_CHECK(path, SHB_ERR_IO, "out of memory");
+    const shb_status status = shb_publish_check(path);
+    free(path);
+    SHB_TRY(status);
+  }
+  return SHB_OK;
+}
+
 /* All ranks: the manager reads and checks, the workers need the numbers of keys and outputs. */
 static int work(const command_options *options) {
   study_spec spec = {0};
@@ -171,6 +185,7 @@ static int work(const command_options *options) {
   shb_status status  = SHB_OK;
   MPI_Comm_rank(MPI_COMM_WORLD, &rank);
   if (rank == 0) status = study_spec_read(options->path, true, stderr, &spec);
+  if (rank == 0 && status == SHB_OK) status = check_outputs(&spec);
   if (rank == 0 && status == SHB_OK) status = design_memory_check(&spec, sharing);
   go[0] = (int)status;
   go[1] = spec.keys.n;

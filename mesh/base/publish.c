@@ -1,3 +1,4 @@
+#define _GNU_SOURCE /* O_TMPFILE */
 #include "mesh/base/publish.h"
 
 #include <dirent.h>
@@ -16,7 +17,7 @@
 
 enum { MAX_TEMPORARY = 8 };
 
-static const char MSH[] = ".msh";
+static const char MSH[] = ".msh", TEMPORARY[] = ".tmp.";
 
 /* Names of temporary files that may exist. Names of published or removed files do no harm. Longer
  * names are not registered. */
@@ -46,38 +47,54 @@ static int is_distributed(void) {
   return (all && here && strcmp(all, here) != 0) || (nodes && strcmp(nodes, "1") != 0);
 }
 
-/* Remove PATH.tmp.PID and PATH.tmp.PID.msh of processes that are gone, such as killed ones. */
-static void remove_orphans(const char *path) {
+long shb_publish_owner(const char *name, size_t *length) {
+  const char *mark = NULL;
+  for (const char *at = name; (at = strstr(at, TEMPORARY)) != NULL; at++) mark = at;
+  if (!mark) return 0;
+  char      *end;
+  const long process = strtol(mark + strlen(TEMPORARY), &end, 10);
+  *length            = (size_t)(mark - name);
+  return process > 0 && process <= INT_MAX && (!*end || strcmp(end, MSH) == 0) ? process : 0;
+}
+
+/* Is it the temporary file of a process that is gone, such as a killed one?
+ *   stem  0: that of leaf; else that of any name that begins with leaf and a point */
+static bool is_orphan(const char *name, const char *leaf, bool stem) {
+  const size_t n       = strlen(leaf);
+  size_t       length  = 0;
+  const long   process = shb_publish_owner(name, &length);
+  if (!process || strncmp(name, leaf, n) != 0) return false;
+  if (stem ? length <= n || name[n] != '.' : length != n) return false;
+  return kill((pid_t)process, 0) != 0 && errno == ESRCH;
+}
+
+static void remove_orphans(const char *path, bool stem) {
   if (is_distributed()) return;
-  const char  *slash  = strrchr(path, '/');
-  const char  *leaf   = slash ? slash + 1 : path;
-  const size_t n      = strlen(leaf);
-  char        *folder = slash ? strndup(path, (size_t)(slash - path) + 1) : strdup(".");
-  DIR         *list   = folder ? opendir(folder) : NULL;
-  for (struct dirent *entry; list && (entry = readdir(list)) != NULL;) {
-    if (strncmp(entry->d_name, leaf, n) != 0 || strncmp(entry->d_name + n, ".tmp.", 5) != 0)
-      continue;
-    char      *end;
-    const long process = strtol(entry->d_name + n + 5, &end, 10);
-    const bool ours    = process > 0 && process <= INT_MAX && (!*end || strcmp(end, MSH) == 0);
-    if (!ours || kill((pid_t)process, 0) == 0 || errno != ESRCH) continue;
-    unlinkat(dirfd(list), entry->d_name, 0);
-  }
+  const char *slash  = strrchr(path, '/');
+  char       *folder = slash ? strndup(path, (size_t)(slash - path) + 1) : strdup(".");
+  DIR        *list   = folder ? opendir(folder) : NULL;
+  for (struct dirent *entry; list && (entry = readdir(list)) != NULL;)
+    if (is_orphan(entry->d_name, slash ? slash + 1 : path, stem))
+      unlinkat(dirfd(list), entry->d_name, 0);
   if (list) closedir(list);
   free(folder);
+}
+
+void shb_publish_clear(const char *stem) {
+  remove_orphans(stem, true);
 }
 
 static char *temporary_name(const char *path, const char *ending) {
   size_t size = strlen(path) + 36;
   char  *name = malloc(size);
-  if (name) snprintf(name, size, "%s.tmp.%ld%s", path, (long)getpid(), ending);
+  if (name) snprintf(name, size, "%s%s%ld%s", path, TEMPORARY, (long)getpid(), ending);
   if (name) register_temporary(name);
   return name;
 }
 
 char *shb_publish_temporary(const char *path) {
   signal(SIGXFSZ, SIG_IGN); /* a write beyond the file size limit is then an error */
-  remove_orphans(path);
+  remove_orphans(path, false);
   return temporary_name(path, "");
 }
 
@@ -109,16 +126,47 @@ static void sync_folder(const char *path) {
 }
 
 /* A rename would replace a device, a pipe or a link. */
-static int can_be_replaced(const char *path) {
+static shb_status check_kind(const char *path) {
   struct stat about;
-  return lstat(path, &about) != 0 || S_ISREG(about.st_mode) || S_ISDIR(about.st_mode);
+  const bool  there = lstat(path, &about) == 0;
+  SHB_CHECK(!there || S_ISREG(about.st_mode) || S_ISDIR(about.st_mode), SHB_ERR_IO,
+            "%s: is a link, a device or a pipe, not a file that can be replaced", path);
+  return SHB_OK;
+}
+
+/* Writes a block into a file without a name. Returns 0, or what failed. */
+static int write_block(const char *folder) {
+  static const char block[4096];
+  signal(SIGXFSZ, SIG_IGN);
+  const int file = open(folder, O_TMPFILE | O_WRONLY, 0600);
+  if (file < 0 && (errno == EOPNOTSUPP || errno == EISDIR || errno == EINVAL)) /* no such files */
+    return access(folder, W_OK | X_OK) == 0 ? 0 : errno;
+  if (file < 0) return errno;
+  errno           = ENOSPC; /* of a short write */
+  const int wrong = write(file, block, sizeof block) == (ssize_t)sizeof block ? 0 : errno;
+  close(file);
+  return wrong;
+}
+
+shb_status shb_publish_check(const char *path) {
+  struct stat about;
+  const char *slash = strrchr(path, '/');
+  SHB_TRY(check_kind(path));
+  SHB_CHECK(stat(path, &about) != 0 || !S_ISDIR(about.st_mode), SHB_ERR_IO,
+            "%s: cannot be written: %s", path, strerror(EISDIR));
+  char *folder = slash ? strndup(path, (size_t)(slash - path) + 1) : strdup(".");
+  SHB_CHECK(folder, SHB_ERR_IO, "%s: out of memory", path);
+  const int wrong = write_block(folder);
+  free(folder);
+  SHB_CHECK(!wrong, SHB_ERR_IO, "%s: cannot be written: %s", path, strerror(wrong));
+  return SHB_OK;
 }
 
 shb_status shb_publish(const char *temporary, const char *path) {
-  if (!can_be_replaced(path)) {
+  const shb_status kind = check_kind(path);
+  if (kind != SHB_OK) {
     unlink(temporary);
-    SHB_FAIL(SHB_ERR_IO, "%s: is a link, a device or a pipe, not a file that can be replaced",
-             path);
+    return kind;
   }
   if (sync_path(temporary, O_RDWR) != 0 || rename(temporary, path) != 0) {
     int why = errno;

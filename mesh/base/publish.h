@@ -2,6 +2,8 @@
 #ifndef MESH_BASE_PUBLISH_H
 #define MESH_BASE_PUBLISH_H
 
+#include <stddef.h>
+
 #include "mesh/base/status.h"
 
 /* Origin of a result, written into every output file. The caller owns the strings. */
@@ -12,12 +14,23 @@ typedef struct {
   const char *command;   /* e.g. "shroudhb-modal" */
 } shb_provenance;
 
+/* May a result be written to path? Told before the work: is there a folder that takes a block of
+ * bytes, and no folder, link, device or pipe at path itself? Leaves nothing behind. SHB_ERR_IO. */
+shb_status shb_publish_check(const char *path);
+
 /* Name of a temporary file beside path; malloc'ed, NULL when out of memory. Those of processes that
  * are gone are removed, unless the run is spread over several machines. */
 char *shb_publish_temporary(const char *path);
 
+/* The process whose temporary file this is; 0: it is no such name.
+ *   length  out  of PATH in the name; set where the process is */
+long shb_publish_owner(const char *name, size_t *length);
+
 /* Another one whose name ends in .msh, for gmsh, which chooses the format by the ending. */
 char *shb_publish_temporary_msh(const char *path);
+
+/* Remove the temporary files of all results STEM.* whose process is gone, likewise. */
+void shb_publish_clear(const char *stem);
 
 /* Remove the temporary files that are not published yet. Safe in a signal handler. */
 void shb_publish_abandon(void);

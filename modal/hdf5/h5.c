@@ -43,11 +43,10 @@ void h5_reason(char *out, size_t size) {
   snprintf(out, size, "%s", *text ? text : "unknown HDF5 error");
 }
 
-/* Remove the suffix ".tmp.PID": messages name the published file. */
+/* Messages name the published file. */
 static void cut_temporary(char *path) {
-  char *mark = strstr(path, ".tmp.");
-  for (char *next = mark; next; next = strstr(next + 1, ".tmp.")) mark = next;
-  if (mark && mark[5] && strspn(mark + 5, "0123456789") == strlen(mark + 5)) *mark = '\0';
+  size_t length;
+  if (shb_publish_owner(path, &length)) path[length] = '\0';
 }
 
 const char *h5_label(hid_t at, const char *path, char out[H5_LABEL]) {

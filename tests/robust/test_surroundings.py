@@ -1,4 +1,4 @@
-"""robust.surroundings: full disks, closed descriptors, locales, odd names, files that are none.
+"""robust.surroundings: full disks, closed descriptors, leftovers, locales, odd names.
 
 Usage: test_surroundings.py FOLDER_OF_PROGRAMS LIBRARY CASE_FOLDER [SCENE]...
 LIBRARY is locale.c, which takes the locale of the user. Exit code 77: h5py is missing.
@@ -201,20 +201,50 @@ def as_nobody():
 
 
 def read_only():
-    """Where nothing may be written it is told, and nothing changes."""
-    short_case()
+    """Where nothing may be written it is told before any work, and nothing changes."""
     os.chmod('.', 0o755)
     os.mkdir('fixed')
-    os.chmod('fixed', 0o555)
-    refuses(('run', '--quiet', '--into', '/proc/self', 'case.yaml'), 'cannot be written', (4,))
-    refuses(('run', '--quiet', '--into', '/proc/new', 'case.yaml'), 'cannot be made', (4,))
+    write('fixed/blade.yaml', BLADE.replace('SIZE', '14 mm').replace('n0: [20 N]', 'n0: [9 N]') +
+          'integrate: {frequencies: [100 Hz], start: rest}\n')
+    write('fixed/study.yaml', STUDY.replace('case.yaml', 'blade.yaml'))
+    os.chdir('fixed')
+    assert attempt('run', '--quiet', 'blade.yaml') == (0, [])
+    refuses(('run', '--quiet', '--into', '/proc/self', 'blade.yaml'), 'cannot be written', (4,))
+    refuses(('run', '--quiet', '--into', '/proc/new', 'blade.yaml'), 'cannot be made', (4,))
+    there = sorted(os.listdir())
+    os.chmod('.', 0o555)
     reachable = subprocess.run([SHROUDHB, '--version'], preexec_fn=as_nobody, env=ENVIRONMENT,
                                stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
-    if reachable.returncode == 0:
-        refuses(('run', '--quiet', '--into', 'fixed', 'case.yaml'), 'cannot be written', (4,),
-                before=as_nobody)
-    assert not os.listdir('fixed')
-    print('read-only folder: one line, exit code 4')
+    for stage in ('run', 'mesh', 'modal', 'mhb', 'integrate', 'converge', 'study', 'field'):
+        file = {'study': 'study.yaml', 'field': 'blade.response.h5'}.get(stage, 'blade.yaml')
+        if reachable.returncode:
+            break
+        words = (stage, '--quiet' if stage == 'run' else '--verbose', '--force', file)
+        code, said = attempt(*words, before=as_nobody)
+        said = [line for line in said if ' s in all' not in line]
+        assert code == 4 and len(said) == 1 and 'cannot be written: Perm' in said[0], (words, said)
+    assert sorted(os.listdir()) == there, os.listdir()
+    print('read-only folder: one line before any work, exit code 4')
+
+
+def leftovers():
+    """A run without work removes the temporary files of killed stages, not those of others."""
+    write('blade.yaml', BLADE.replace('SIZE', '14 mm'))
+    assert attempt('run', '--quiet', '--into', 'into', 'blade.yaml') == (0, [])
+    killed = subprocess.Popen(['sleep', '100'])
+    killed.kill()
+    killed.wait()
+    kinds = ['msh', 'modal.h5', 'response.h5', 'html', 'csv', 'svg', 'summary.json', 'inp']
+    orphans = [f'blade.{kind}.tmp.{killed.pid}' for kind in kinds]
+    orphans.append(f'blade.msh.tmp.{killed.pid}.msh')
+    others = [f'blade.msh.tmp.{os.getpid()}', f'blades.msh.tmp.{killed.pid}',
+              f'blade.msh.tmp.{killed.pid}.old', 'blade.msh.tmp.', f'blade.tmp.{killed.pid}']
+    before = os.listdir('into')
+    for name in orphans + others:
+        write(os.path.join('into', name), 'half')
+    assert attempt('run', '--quiet', '--into', 'into', 'blade.yaml') == (0, [])
+    assert sorted(os.listdir('into')) == sorted(before + others), os.listdir('into')
+    print('leftovers: removed at the start')
 
 
 def two_runs():
@@ -235,7 +265,7 @@ def two_runs():
     print(f'two runs at a moment: exit codes {codes}, results whole')
 
 
-SCENES = {'two_runs': two_runs,
+SCENES = {'two_runs': two_runs, 'leftovers': leftovers,
           'full_disk': full_disk, 'closed_descriptors': closed_descriptors, 'locale': locale,
           'odd_names': odd_names, 'no_files': no_files, 'read_only': read_only}
 for scene in sys.argv[4:] or SCENES:

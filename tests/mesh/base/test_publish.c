@@ -1,6 +1,9 @@
 /* Published files are whole or absent; temporary files do not stay. */
 #include "mesh/base/publish.h"
 
+#include <dirent.h>
+#include <sys/resource.h>
+#include <sys/stat.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -141,8 +144,77 @@ static void fingerprints_are_fnv_1a(void **state) {
   assert_int_equal(shb_fingerprint(path, hash), SHB_ERR_IO);
 }
 
+static int n_entries(void) {
+  int  n    = 0;
+  DIR *list = opendir(scratch_folder);
+  assert_non_null(list);
+  while (readdir(list)) n++;
+  closedir(list);
+  return n;
+}
+
+static void assert_told(const char *name, const char *why) {
+  assert_int_equal(shb_publish_check(scratch(name)), SHB_ERR_IO);
+  assert_has(shb_message(), scratch(name));
+  assert_has(shb_message(), why);
+}
+
+static void a_folder_that_takes_files_is_left_as_it_was(void **state) {
+  const int before = n_entries();
+  (void)state;
+  assert_ok(shb_publish_check(scratch("result.h5")));
+  assert_int_equal(n_entries(), before);
+}
+
+static void what_is_in_the_way_is_told(void **state) {
+  (void)state;
+  assert_told("absent/result.h5", ": cannot be written: No such file or directory");
+  assert_int_equal(mkdir(scratch("a folder"), 0755), 0);
+  assert_told("a folder", ": cannot be written: Is a directory");
+  assert_int_equal(mkfifo(scratch("pipe"), 0644), 0);
+  assert_told("pipe", ": is a link, a device or a pipe");
+  assert_told("pipe/result.h5", ": cannot be written: Not a directory");
+  assert_int_equal(symlink("a folder", scratch("way")), 0);
+  assert_told("way", ": is a link, a device or a pipe");
+  assert_ok(shb_publish_check(scratch("way/result.h5")));
+}
+
+/* What a process of its own finds: 0, or the exit code. */
+static int found(void (*prepare)(void), const char *why) {
+  int         status;
+  const pid_t child = fork();
+  if (child == 0) {
+    prepare();
+    const shb_status told = shb_publish_check(scratch("result.h5"));
+    _exit(told == SHB_ERR_IO && strstr(shb_message(), why) ? 0 : 1);
+  }
+  waitpid(child, &status, 0);
+  return status;
+}
+
+/* Root may write everywhere. */
+static void as_nobody(void) {
+  if (geteuid() == 0 && setuid(65534) != 0) _exit(2);
+}
+
+static void without_space(void) {
+  const struct rlimit limit = {100, 100};
+  if (setrlimit(RLIMIT_FSIZE, &limit) != 0) _exit(2);
+}
+
+static void no_permission_and_no_space_are_told(void **state) {
+  (void)state;
+  assert_int_equal(chmod(scratch_folder, 0555), 0);
+  assert_int_equal(found(as_nobody, ": cannot be written: Permission denied"), 0);
+  assert_int_equal(chmod(scratch_folder, 0755), 0);
+  assert_int_equal(found(without_space, ": cannot be written: "), 0);
+}
+
 int main(void) {
   const struct CMUnitTest tests[] = {cmocka_unit_test(renames_over_an_earlier_file),
+                                     cmocka_unit_test(a_folder_that_takes_files_is_left_as_it_was),
+                                     cmocka_unit_test(what_is_in_the_way_is_told),
+                                     cmocka_unit_test(no_permission_and_no_space_are_told),
                                      cmocka_unit_test(a_folder_is_made_with_those_above),
                                      cmocka_unit_test(a_link_is_not_replaced),
                                      cmocka_unit_test(a_folder_that_is_absent_is_told),
