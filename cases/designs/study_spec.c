@@ -3,8 +3,6 @@
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
-#include <sys/stat.h>
-#include <unistd.h>
 
 #include "cases/designs/digest.h"
 #include "cases/designs/refusals.h"
@@ -109,6 +107,7 @@ shb_status study_spec_design(const study_spec *s, const double *value, const cha
   snprintf(named, sizeof named, "name=%s", name ? name : "");
   if (name) text[sets++] = named;
   const case_overrides overrides = {sets, text, into};
+  *file                          = (case_file){.no_memory = status != SHB_OK};
   if (status == SHB_OK) status = case_read_with(s->case_path, &overrides, STAGES, errors, file);
   for (int i = 0; i < 2 * STUDY_MAX_KEYS; i++) free(words[i]);
   return status;
@@ -126,8 +125,12 @@ static bool digest_values(const study_spec *s, const double *value, char digest[
   bool good = study_spec_design(s, value, NULL, NULL, into, &file) == SHB_OK;
   if (good) digest_design(&file, s->inputs, s->n_outputs, s->output, digest);
   if (good) case_free(&file);
+  if (!good) fputs(shb_message(), into); /* empty where the faults were printed */
   fclose(into);
-  return good;
+  if (good || !file.no_memory) return good;
+  free(*messages);
+  *messages = NULL;
+  return false;
 }
 
 bool study_spec_digest(const study_spec *s, const double *value, char digest[DIGEST_TEXT],
@@ -205,10 +208,10 @@ static void check_designs(reading *r, const case_node *root, const case_node *at
     const double *value    = s->design + (size_t)d * (size_t)s->keys.n;
     char         *messages = NULL;
     const bool    good     = digest_values(s, value, s->digest[d], &messages);
-    if (!good && messages && messages[0])
+    if (!good && messages)
       refusals_take(&refused, &s->keys, d, messages, s->case_path);
     else if (!good)
-      case_issues_no_memory(&r->issues); /* nothing else is refused without a word */
+      case_issues_no_memory(&r->issues);
     free(messages);
   }
   if (!s->digest) case_issues_no_memory(&r->issues);
@@ -247,10 +250,7 @@ static bool read_case(reading *r, const case_node *root, FILE *errors) {
     fault(r, node, "case", shb_message());
     return false;
   }
-  struct stat about; /* of a file that can be read: then memory was short */
-  if (status == SHB_ERR_IO && shb_message()[0] && access(r->spec->case_path, R_OK) == 0 &&
-      stat(r->spec->case_path, &about) == 0 && S_ISREG(about.st_mode))
-    case_issues_no_memory(&r->issues);
+  if (r->spec->base.no_memory) case_issues_no_memory(&r->issues);
   case_issue_add(&r->issues, node->line, node->column, "case", "%s",
                  shb_message()[0] ? shb_message() : "the case has errors; see above");
   return false;

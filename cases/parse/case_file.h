@@ -149,6 +149,8 @@ typedef struct {
   char  *converge_output;  /* name of a probe or "contact"; NULL: the first */
 
   mhb_integration_settings integrate;
+
+  bool no_memory; /* while it was read; of a case that was refused too */
 } case_file;
 
 #endif

@@ -32,12 +32,17 @@ static int read_bytes(FILE *file, char **bytes, size_t *n) {
   return 0;
 }
 
-shb_status case_text_read(const char *path, char **text, size_t *length) {
+shb_status case_file_kind(const char *path) {
   struct stat about;
-  *text = NULL;
-  /* opening a pipe would wait for its writer; every stage reads the file again */
   SHB_CHECK(stat(path, &about) != 0 || S_ISREG(about.st_mode) || S_ISDIR(about.st_mode), SHB_ERR_IO,
             "%s: is a pipe or a device, not a file", path);
+  return SHB_OK;
+}
+
+shb_status case_text_read(const char *path, char **text, size_t *length) {
+  *text = NULL;
+  errno = 0;
+  SHB_TRY(case_file_kind(path)); /* and every stage reads the file again */
   FILE *file = fopen(path, "rb");
   SHB_CHECK(file, SHB_ERR_IO, "%s: cannot be opened: %s", path, strerror(errno));
   char  *bytes = NULL;
@@ -57,6 +62,7 @@ shb_status case_text_read(const char *path, char **text, size_t *length) {
   }
   if (status != SHB_OK) {
     free(bytes);
+    errno = why;
     return status;
   }
   *text   = bytes;

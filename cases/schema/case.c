@@ -1,5 +1,6 @@
 #include "cases/schema/case.h"
 
+#include <errno.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -115,11 +116,22 @@ static bool read_document(case_issues *issues, const case_overrides *overrides, 
   return lost;
 }
 
+/* The case is freed. */
+static shb_status no_memory(const char *path, case_file *out) {
+  const shb_status status = shb_fail(SHB_ERR_IO, __FILE__, __LINE__, "%s: out of memory", path);
+  case_free(out);
+  out->no_memory = true;
+  return status;
+}
+
 /* The overrides as comments in the text; the folder of the outputs. */
 static shb_status note_overrides(const case_overrides *overrides, case_file *out) {
   char *text  = case_overrides_text(overrides, out->text);
   out->output = overrides->into ? strdup(overrides->into) : NULL;
-  SHB_CHECK(text && (out->output || !overrides->into), SHB_ERR_IO, "%s: out of memory", out->path);
+  if (!text || (overrides->into && !out->output)) {
+    free(text);
+    return no_memory(out->path, out);
+  }
   free(out->text);
   out->text = text;
   return SHB_OK;
@@ -133,20 +145,20 @@ shb_status case_read_with(const char *path, const case_overrides *overrides, int
                           FILE *errors, case_file *out) {
   static const case_overrides none = {0};
   if (!overrides) overrides = &none;
-  *out          = (case_file){0};
-  size_t length = 0;
-  SHB_TRY(case_text_read(path, &out->text, &length));
+  *out                    = (case_file){0};
+  size_t           length = 0;
+  const shb_status found  = case_text_read(path, &out->text, &length);
+  out->no_memory          = found != SHB_OK && errno == ENOMEM;
+  SHB_TRY(found);
   out->path   = strdup(path);
   out->folder = folder_of(path);
   out->name   = out->path && out->folder ? default_name(path, out->folder) : NULL;
-  if (!out->name) {
-    case_free(out);
-    SHB_FAIL(SHB_ERR_IO, "%s: out of memory", path);
-  }
+  if (!out->name) return no_memory(path, out);
   case_issues issues = case_issues_start(path, out->text, length);
   bool        lost   = read_document(&issues, overrides, stages, out);
   int         n      = issues.n;
-  shb_status  status = case_issues_finish(&issues, errors);
+  out->no_memory     = issues.no_memory;
+  shb_status status  = case_issues_finish(&issues, errors);
   if (status == SHB_OK) return note_overrides(overrides, out);
   case_free(out);
   /* where the only error is an input file that cannot be read, the case file itself is in order */

@@ -13,7 +13,8 @@
  *
  *   stages  in  mask of the stages that will run; keys that only others require may be missing
  *
- * Errors: SHB_ERR_INPUT a fault in the file; SHB_ERR_IO the file cannot be opened. */
+ * Errors: SHB_ERR_INPUT a fault in the file; SHB_ERR_IO the file cannot be opened, or memory was
+ * short, which out->no_memory tells. */
 shb_status case_read(const char *path, int stages, FILE *errors, case_file *out);
 /* The same with overrides, which may be NULL. The text of the case then ends with a comment line
  * for each. */

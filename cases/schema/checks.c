@@ -310,16 +310,17 @@ static void check_integrate(case_reader *r) {
 /* Reports an input file that cannot be read. True if so. */
 static bool check_file(case_reader *r, const char *key, const char *path) {
   if (!path || !case_reader_good(r, key)) return false;
+  if (case_file_kind(path) != SHB_OK) {
+    case_reader_issue(r, key, "%s", shb_message());
+    return true;
+  }
   struct stat info;
-  int         fd    = open(path, O_RDONLY | O_NONBLOCK);
-  int         why   = fd < 0 ? errno : 0;
-  const bool  known = fd >= 0 && fstat(fd, &info) == 0;
-  if (known && S_ISDIR(info.st_mode)) why = EISDIR;
+  int         fd  = open(path, O_RDONLY | O_NONBLOCK);
+  int         why = fd < 0 ? errno : 0;
+  if (fd >= 0 && fstat(fd, &info) == 0 && S_ISDIR(info.st_mode)) why = EISDIR;
   if (fd >= 0) close(fd);
   if (why) case_reader_issue(r, key, "%s: cannot be read: %s", path, strerror(why));
-  if (why || !known || S_ISREG(info.st_mode)) return why != 0;
-  case_reader_issue(r, key, "%s: is a pipe or a device, not a file", path);
-  return true;
+  return why != 0;
 }
 
 static void check_extension(case_reader *r) {

@@ -6,10 +6,13 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/resource.h>
+#include <sys/wait.h>
 #include <unistd.h>
 
 #include <cmocka.h>
 
+#include "cases/parse/yaml.h"
 #include "cases/schema/case.h"
 #include "tests/support/scratch.h"
 
@@ -690,8 +693,33 @@ static void a_missing_file_is_told(void **state) {
   assert_int_equal(case_read("/nonexistent/c.yaml", ALL, stderr, &file), SHB_ERR_IO);
   assert_string_equal(shb_message(),
                       "/nonexistent/c.yaml: cannot be opened: No such file or directory");
+  assert_false(file.no_memory);
   assert_int_equal(case_read("/", ALL, stderr, &file), SHB_ERR_IO);
   assert_string_equal(shb_message(), "/: cannot be read: Is a directory");
+  assert_false(file.no_memory);
+}
+
+/* Of a process whose address space cannot grow. */
+static void short_memory_is_no_fault_of_the_file(void **state) {
+  char  folder[SCRATCH_PATH], path[SCRATCH_PATH + 8], *remark = malloc(CASE_MAX_BYTES);
+  int   status;
+  pid_t child;
+  (void)state;
+  memset(remark, '#', CASE_MAX_BYTES);
+  scratch_create(folder);
+  scratch_write(folder, "c.yaml", remark, CASE_MAX_BYTES);
+  snprintf(path, sizeof path, "%s/c.yaml", folder);
+  free(remark);
+  child = fork();
+  if (child == 0) {
+    const struct rlimit limit = {1, 1};
+    case_file           file;
+    if (setrlimit(RLIMIT_AS, &limit) != 0) _exit(1);
+    _exit(case_read(path, ALL, stderr, &file) != SHB_ERR_IO || !file.no_memory);
+  }
+  assert_int_equal(waitpid(child, &status, 0), child);
+  assert_int_equal(status, 0);
+  scratch_remove(folder);
 }
 
 /* Every error of the file, sorted, each with its line and a caret under the place. */
@@ -788,6 +816,7 @@ int main(void) {
                                      cmocka_unit_test(not_yaml),
                                      cmocka_unit_test(strange_files),
                                      cmocka_unit_test(a_missing_file_is_told),
+                                     cmocka_unit_test(short_memory_is_no_fault_of_the_file),
                                      cmocka_unit_test(all_at_once),
                                      cmocka_unit_test(carets_stay_below)};
   return cmocka_run_group_tests(tests, NULL, NULL);
