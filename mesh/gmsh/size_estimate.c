@@ -8,7 +8,8 @@
 #include "mesh/base/vec3.h"
 #include "mesh/gmsh/session.h"
 
-enum { GMSH_LINE = 1, GMSH_TRIANGLE = 2, MOST = 3000000, BYTES_EACH = 1500 };
+/* 550 bytes a node were measured with tetrahedra, 270 with swept hexahedra: docs/user/limits.md. */
+enum { GMSH_LINE = 1, GMSH_TRIANGLE = 2, MOST = 3000000, BYTES_EACH = 700 };
 
 double mesh_estimate_nodes(const mesh_extent *extent, double h) {
   return 2 * extent->length / h + 4.6 * extent->area / (h * h) + 6 * extent->volume / (h * h * h);
@@ -24,6 +25,10 @@ double mesh_estimate_size(const mesh_extent *extent, double nodes) {
       high = middle;
   }
   return high;
+}
+
+double mesh_estimate_bytes(double nodes) {
+  return BYTES_EACH * nodes;
 }
 
 double mesh_estimate_most_nodes(void) {

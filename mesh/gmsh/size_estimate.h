@@ -21,7 +21,10 @@ double mesh_estimate_nodes(const mesh_extent *extent, double h);
 /* Element size that gives this number of nodes. */
 double mesh_estimate_size(const mesh_extent *extent, double nodes);
 
-/* Largest number of nodes: 3 million, or what the free memory holds at 1.5 kB a node. */
+/* Bytes that a mesh takes while gmsh makes it. */
+double mesh_estimate_bytes(double nodes);
+
+/* Largest number of nodes: 3 million, or what the free memory holds. */
 double mesh_estimate_most_nodes(void);
 
 /* Measure the solid in gmsh before it is meshed, and set a least element size, so that the curves

@@ -10,6 +10,8 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/resource.h>
+#include <sys/wait.h>
 #include <unistd.h>
 
 #include <cmocka.h>
@@ -411,6 +413,43 @@ static void nodes_are_foreseen(void **state) {
   assert_source_refused(&source, "many.geo: mesh.size 1e-06 m would give about 2.4e+14 nodes");
 }
 
+/* Nodes and most memory, bytes, of a process of its own that meshes the block. */
+static double memory_of(const mesh_source *source, double h, int *nodes) {
+  int           ends[2], status;
+  struct rusage used;
+  assert_int_equal(pipe(ends), 0);
+  const pid_t child = fork();
+  if (child == 0) {
+    mesh_fe mesh;
+    put_block(source->path, 1e3 * h);
+    if (mesh_source_read(source, NULL, &mesh) != SHB_OK) _exit(1);
+    _exit(write(ends[1], &mesh.n_nodes, sizeof mesh.n_nodes) != sizeof mesh.n_nodes);
+  }
+  assert_int_equal(wait4(child, &status, 0, &used), child);
+  assert_int_equal(status, 0);
+  assert_int_equal(read(ends[0], nodes, sizeof *nodes), sizeof *nodes);
+  close(ends[0]);
+  close(ends[1]);
+  return 1024. * (double)used.ru_maxrss;
+}
+
+/* The memory that is foreseen against that of a mesh. The first test: a heap that other meshes left
+ * would be used again. */
+static void memory_is_foreseen(void **state) {
+  (void)state;
+  mesh_source source            = {.path = scratch("block.geo"), .unit = 1e-3, .axis = MESH_AXIS_X};
+  source.rules.usual[MESH_ROOT] = (mesh_rule){
+      .kind = MESH_RULE_PLANE, .at = {0, 0, .1}, .normal = {0, 0, 1}, .tolerance = 1e-6};
+  int          few, many;
+  const double least = memory_of(&source, 8e-3, &few), most = memory_of(&source, 2e-3, &many);
+  const double told = mesh_estimate_bytes(many) - mesh_estimate_bytes(few);
+  print_message("%d nodes more: told %.1f MB, measured %.1f MB\n", many - few, 1e-6 * told,
+                1e-6 * (most - least));
+#ifndef __SANITIZE_ADDRESS__ /* its heap is larger */
+  assert_true(told > 0.8 * (most - least) && told < 3 * (most - least));
+#endif
+}
+
 static void bad_solids_are_refused(void **state) {
   (void)state;
   mesh_source source = {.path = scratch("bad.step"), .unit = 1, .size = .01};
@@ -433,11 +472,17 @@ static void bad_solids_are_refused(void **state) {
 
 int main(void) {
   const struct CMUnitTest tests[] = {
-      cmocka_unit_test(every_msh_format_is_read),    cmocka_unit_test(what_is_written_comes_back),
-      cmocka_unit_test(rules_find_the_faces),        cmocka_unit_test(curved_faces_are_found),
-      cmocka_unit_test(groups_may_have_other_names), cmocka_unit_test(solids_are_meshed),
-      cmocka_unit_test(sides_are_made_to_match),     cmocka_unit_test(cyclic_sides_of_solids_match),
-      cmocka_unit_test(bad_solids_are_refused),      cmocka_unit_test(groups_that_cannot_be_right),
+      cmocka_unit_test(memory_is_foreseen),
+      cmocka_unit_test(every_msh_format_is_read),
+      cmocka_unit_test(what_is_written_comes_back),
+      cmocka_unit_test(rules_find_the_faces),
+      cmocka_unit_test(curved_faces_are_found),
+      cmocka_unit_test(groups_may_have_other_names),
+      cmocka_unit_test(solids_are_meshed),
+      cmocka_unit_test(sides_are_made_to_match),
+      cmocka_unit_test(cyclic_sides_of_solids_match),
+      cmocka_unit_test(bad_solids_are_refused),
+      cmocka_unit_test(groups_that_cannot_be_right),
       cmocka_unit_test(nodes_are_foreseen),
   };
   return cmocka_run_group_tests_name("mesh.source", tests, scratch_make, scratch_remove);
