@@ -455,10 +455,13 @@ static shb_status lasting_stored(void *context, double share, double n0, double 
 
 /* Integrate the ring where main branches are modulated. */
 static shb_status lasting_motion(sweep *s, const modal_model *model) {
-  const mhb_lasting_host host = {
-      .context = s, .go_on = lasting_goes_on, .lock = lasting_lock, .stored = lasting_stored};
-  int           n = s->settings->n_preloads;
-  mhb_response *curves[n];
+  const mhb_lasting_host host = {.context = s,
+                                 .go_on   = lasting_goes_on,
+                                 .lock    = lasting_lock,
+                                 .stored  = lasting_stored,
+                                 .threads = s->threads};
+  int                    n    = s->settings->n_preloads;
+  mhb_response          *curves[n];
   if (shb_interrupted()) return SHB_OK;
   for (int i = 0; i < n; i++) {
     mhb_response *handed = s->preload[i].handed;

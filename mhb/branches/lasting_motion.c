@@ -73,8 +73,7 @@ static double size_of(const mhb_response *r, const mhb_branch *b, int point) {
   return most;
 }
 
-/* Why nothing is computed for the whole case; NULL: it is. */
-static const char *refusal(const modal_model *model, const mhb_settings *s) {
+const char *mhb_lasting_refusal(const modal_model *model, const mhb_settings *s) {
   if (s->lasting == MHB_LASTING_NEVER) return "not computed: mhb.lasting is never";
   if (model->coriolis) return "not computed: the fast integration knows no Coriolis terms";
   if (s->nodal_diameters)
@@ -90,7 +89,7 @@ static const char *refusal(const modal_model *model, const mhb_settings *s) {
 static shb_status choose(const lasting *l, work *w) {
   const mhb_branch *b    = w->branch;
   double            peak = 0;
-  w->refused             = refusal(l->model, l->settings);
+  w->refused             = mhb_lasting_refusal(l->model, l->settings);
   if (w->refused) return SHB_OK;
   w->size      = calloc((size_t)b->n_points + 1, sizeof *w->size);
   w->asked     = calloc((size_t)b->n_points + 1, sizeof *w->asked);
@@ -319,11 +318,11 @@ static shb_status prepare(lasting *l, mhb_response *const *curves, bool **settle
 
 static shb_status run(lasting *l, mhb_response *const *curves, bool **settle) {
   SHB_TRY(prepare(l, curves, settle));
-#pragma omp parallel for schedule(dynamic, 1)
+#pragma omp parallel for schedule(dynamic, 1) num_threads(l->host->threads)
   for (int i = 0; i < l->n; i++)
     if (settle[i] && goes_on(l)) sweep_branch(l, &l->work[i], settle[i]);
   if (l->status == SHB_OK) SHB_TRY(list_tasks(l, settle));
-#pragma omp parallel for schedule(dynamic, 1)
+#pragma omp parallel for schedule(dynamic, 1) num_threads(l->host->threads)
   for (int i = 0; i < l->n_tasks; i++)
     if (goes_on(l)) settle_point(l, &l->tasks[i]);
   if (l->status != SHB_OK) return shb_fail(l->status, __FILE__, __LINE__, "%s", l->text);

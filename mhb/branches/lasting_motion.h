@@ -22,7 +22,11 @@ typedef struct {
   void (*lock)(void *context, bool locked);
   /* A result was stored in a curve; share: of the work that is done. With the lock held. */
   shb_status (*stored)(void *context, double share, double n0, double frequency);
+  int threads; /* that memory allows */
 } mhb_lasting_host;
+
+/* Why no motion that lasts is computed for the whole case; NULL: it may be. */
+const char *mhb_lasting_refusal(const modal_model *model, const mhb_settings *settings);
 
 /* Fill the lasting motion of branch 0 of curves[n] (NULL: left out). Branches with a text are done.
  * Branches change under the lock only. If stopped, a branch keeps its text NULL.

@@ -8,8 +8,10 @@
 #include "mesh/base/memory.h"
 #include "mhb/balance/truncation_error.h"
 #include "mhb/branches/branch_stability.h"
+#include "mhb/branches/lasting_motion.h"
 #include "mhb/mistuning/mistuned_ring.h"
 #include "mhb/numerics/fourier.h"
+#include "mhb/ring/lasting.h"
 #include "modal/model/residual_series.h"
 
 static const double real = sizeof(double), complex_number = sizeof(double complex);
@@ -34,6 +36,7 @@ mhb_sweep_size mhb_sweep_size_of(const modal_model *model, const mhb_settings *s
                           .disc      = s->nodal_diameters != NULL,
                           .run_up    = s->run_up || s->disc_run_up,
                           .stability = mhb_judges_stability(s),
+                          .lasting   = mhb_lasting_refusal(model, s) == NULL,
                           .points    = POINTS,
                           .sharing   = s->sharing > 1 ? s->sharing : 1};
 }
@@ -101,7 +104,11 @@ double mhb_sweep_bytes(const mhb_sweep_size *z) {
   const double floquet  = z->stability ? mhb_branch_floquet_bytes(mistuned ? z->blades : z->wave,
                                                                  z->pairs, z->modes, mistuned)
                                        : 0;
-  return (z->blades ? of_ring(z) : of_balance(z)) + points + floquet + A_THREAD;
+  const double sweep    = (z->blades ? of_ring(z) : of_balance(z)) + floquet;
+  const double after =
+      z->lasting ? mhb_lasting_bytes(mistuned ? z->blades : z->wave, z->pairs, z->modes, mistuned)
+                 : 0;
+  return fmax(sweep, after) + points + A_THREAD;
 }
 
 /* ---- what fits ---- */

@@ -1,8 +1,9 @@
 /* Memory that the curve of one preload takes, foreseen from sizes; how many preloads fit at a time.
  *
  * Counted are the large arrays of the first level of harmonics and of stability, and a curve of a
- * thousand points. Only as many contact points slip at a time as the estimate takes for moving, so
- * it lies above what most runs take. docs/user/limits.md compares it with measured runs. */
+ * thousand points. The motion that lasts follows the sweep, and counts where it takes more.
+ * Only as many contact points slip at a time as the estimate takes for moving, so it lies above
+ * what most runs take. docs/user/limits.md compares it with measured runs. */
 #ifndef MHB_BRANCHES_SWEEP_MEMORY_H
 #define MHB_BRANCHES_SWEEP_MEMORY_H
 
@@ -18,6 +19,7 @@ typedef struct {
   bool disc;      /* residual terms of each harmonic */
   bool run_up;    /* the model changes with the frequency: no GMRES with many pairs */
   bool stability; /* multipliers are computed */
+  bool lasting;   /* the motion that lasts is integrated */
   int  points;    /* of the curve; 1000 */
   int  sharing;   /* processes that share the memory, each with a curve; at least 1 */
 } mhb_sweep_size;

@@ -282,6 +282,17 @@ static shb_status run(start s[STARTS], const mhb_wave *wave, mhb_go_on go_on, vo
   return describe(&v, &s[v.leader], m->settings.to_ground ? 0 : m->settings.engine_order, result);
 }
 
+double mhb_lasting_bytes(int blades, int pairs, int modes, bool mistuned) {
+  enum { OF_A_PAIR = 9 + 5, OF_OUTPUT = 1 + 6 + 3 + 6, FREE = 12 }; /* numbers a blade */
+  const double most    = modes + 6. * pairs;                        /* with merged ones */
+  const double samples = LINE_PERIODS * MHB_SIDE_SAMPLES * 3, peaks = MOST_BLOCKS * BLOCK;
+  const double state = 4 * most + OF_A_PAIR * pairs + OF_OUTPUT + 3 * MHB_RING_SAMPLES;
+  const double lines = samples + 2 * samples + 2 * LINE_PERIODS; /* in order, spectrum, power */
+  const double model = mistuned ? most * (1 + MHB_RING_LANE_SIZE + MHB_RING_MAP) : 0;
+  return sizeof(double) * mhb_whole_lanes(blades) *
+         (STARTS * (peaks + samples + state) + fmax(2 * peaks, lines) + model + FREE * (pairs + 1));
+}
+
 shb_status mhb_lasting_settle(const modal_model *modal, const mhb_settings *settings,
                               const mhb_wave *wave, mhb_go_on go_on, void *context,
                               mhb_lasting *result) {

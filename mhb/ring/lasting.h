@@ -44,6 +44,9 @@ typedef bool (*mhb_go_on)(void *context);
  * frequency. SHB_ERR_IO: no memory. */
 shb_status mhb_ring_steps(mhb_ring_model *model, double omega, int least, int *steps);
 
+/* Bytes that mhb_lasting_settle takes. modes: of a blade; mistuned: each blade has its own. */
+double mhb_lasting_bytes(int blades, int pairs, int modes, bool mistuned);
+
 /* Settle beside a wave. kind MHB_LASTING_UNKNOWN: the contact is too stiff for the steps, or
  * stopped.
  * Errors: as mhb_ring_model_create. */

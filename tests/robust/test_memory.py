@@ -86,11 +86,11 @@ def refused_mesh():
     """The mesh size, mm, that fits into a small address space. No mesh is begun."""
     limit = 1400 << 20
     done = subprocess.run([os.path.join(BIN, 'shroudhb-mesh'), '--quiet',
-                           write('blade.yaml', BLADE.replace('SIZE', '0.8 mm'))], env=ENVIRONMENT,
+                           write('blade.yaml', BLADE.replace('SIZE', '0.6 mm'))], env=ENVIRONMENT,
                           capture_output=True, text=True, timeout=60,
                           preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_AS, (limit, limit)))
     assert done.returncode == 2 and len(done.stderr.splitlines()) == 1, done
-    found = re.search(r'mesh.blade.size: 0.8 mm would give about [\d.e+]+ nodes; give at least '
+    found = re.search(r'mesh.blade.size: 0.6 mm would give about [\d.e+]+ nodes; give at least '
                       r'([\d.]+) mm, which gives [\d.e+]+, the most that the free memory holds',
                       done.stderr)
     assert found and not os.path.exists('blade.msh'), done.stderr
@@ -98,7 +98,7 @@ def refused_mesh():
 
 
 with bring_your_own(SCENE):
-    assert 0.8 < refused_mesh() < 5
+    assert 0.6 < refused_mesh() < 5
     run(sys.executable, 'write_modal.py')
     needed, left, fits = refused(200)
     assert needed > left and 100 < fits < 200, (needed, left, fits)

@@ -203,8 +203,9 @@ static void an_interrupted_branch_is_completed(void **state) {
   mhb_response          *r = run(&s, NULL), *own = main_curve_of(r);
   mhb_branch            *b   = &own->branch[0];
   counter                few = {.most = 3500}, all = {.most = 1 << 30};
-  const mhb_lasting_host stop = {&few, goes_on, lock, stored}, go = {&all, goes_on, lock, stored};
-  int                    threads = omp_get_max_threads();
+  const mhb_lasting_host stop = {&few, goes_on, lock, stored, 2},
+                         go   = {&all, goes_on, lock, stored, 2};
+  int threads                 = omp_get_max_threads();
   omp_set_num_threads(1);
   model_of(&model);
   assert_ok(mhb_lasting_motion(&model, &s, 1, &own, &stop));
@@ -239,7 +240,7 @@ static void the_sweep_covers_points_that_were_not_judged(void **state) {
   }
   model_of(&model);
   assert_ok(
-      mhb_lasting_motion(&model, &s, 1, &own, &(mhb_lasting_host){&c, goes_on, lock, stored}));
+      mhb_lasting_motion(&model, &s, 1, &own, &(mhb_lasting_host){&c, goes_on, lock, stored, 2}));
   print_message("%d not judged\n", n);
   assert_true(n > 3);
   assert_float_equal(b->lasting_curve.frequency[0], at, 1e-12);

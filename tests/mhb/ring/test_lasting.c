@@ -1,5 +1,9 @@
 /* Settling beside a wave: the rules on made-up series, a modulated ring against slow integration,
  * the rule of pairs, and what is not computed. */
+#include <sys/resource.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
 #include "mesh/base/constants.h"
 #include "mhb/integration/integrator.h"
 #include "mhb/ring/lasting.h"
@@ -262,8 +266,39 @@ static void a_contact_too_stiff_is_not_computed(void **state) {
   destroy(&c);
 }
 
+/* ---- memory ---- */
+
+/* Most memory, bytes, of a process of its own that settles a ring of so many blades. */
+static double memory_of(int blades) {
+  int           status;
+  struct rusage used;
+  const pid_t   child = fork();
+  if (child == 0) {
+    modulated   c;
+    mhb_lasting result;
+    create(&c);
+    c.settings.blades = blades;
+    _exit(mhb_lasting_settle(&c.model, &c.settings, &c.wave, NULL, NULL, &result) != SHB_OK ||
+          result.kind == MHB_LASTING_UNKNOWN);
+  }
+  assert_int_equal(wait4(child, &status, 0, &used), child);
+  assert_int_equal(status, 0);
+  return 1024. * (double)used.ru_maxrss;
+}
+
+/* The memory that is foreseen against that of runs. */
+static void memory_is_foreseen(void **state) {
+  enum { FEW = 6, MANY = 120 };
+  (void)state;
+  const double told = mhb_lasting_bytes(MANY, 1, 6, false) - mhb_lasting_bytes(FEW, 1, 6, false);
+  const double measured = memory_of(MANY) - memory_of(FEW);
+  print_message("%d blades: told %.1f MB, measured %.1f MB\n", MANY, 1e-6 * told, 1e-6 * measured);
+  assert_true(told > 0.8 * measured && told < 3 * measured);
+}
+
 int main(void) {
   const struct CMUnitTest tests[] = {
+      cmocka_unit_test(memory_is_foreseen),
       cmocka_unit_test(the_rules_hold),
       cmocka_unit_test(a_modulated_ring_has_the_statistics_of_slow_integration),
       cmocka_unit_test(side_waves_come_in_pairs),
