@@ -33,13 +33,18 @@ static disc disc_at(const discs *set, int i) {
   return disc_of(set, SHB_TWO_PI * i / n, (double[3]){value[0][i], value[1][i], value[2][i]});
 }
 
+/* Forces are in units of the largest in sight: squares neither overflow nor vanish. */
+static double length_of(double a, double b) {
+  return sqrt(a * a + b * b);
+}
+
 static double violation(const disc *d, const double c[2]) {
-  return hypot(c[0] + d->f[0], c[1] + d->f[1]) - d->r;
+  return length_of(c[0] + d->f[0], c[1] + d->f[1]) - d->r;
 }
 
 /* Nearest point to the origin in one disc. */
 static void nearest_in(const disc *d, double c[2]) {
-  double size = hypot(d->f[0], d->f[1]);
+  double size = length_of(d->f[0], d->f[1]);
   double move = size > d->r ? 1 - d->r / size : 0;
   c[0]        = -d->f[0] * move;
   c[1]        = -d->f[1] * move;
@@ -47,7 +52,7 @@ static void nearest_in(const disc *d, double c[2]) {
 
 /* Nearest point to the origin on both circles. 0: the circles do not meet. */
 static int on_both(const disc *a, const disc *b, double c[2]) {
-  double dx = a->f[0] - b->f[0], dy = a->f[1] - b->f[1], d = hypot(dx, dy);
+  double dx = a->f[0] - b->f[0], dy = a->f[1] - b->f[1], d = length_of(dx, dy);
   if (d == 0 || d > a->r + b->r) return 0;
   double along = (d * d + a->r * a->r - b->r * b->r) / (2 * d), h2 = a->r * a->r - along * along;
   if (h2 < 0) return 0; /* one inside the other */
@@ -76,7 +81,7 @@ static int smallest_in(const disc d[3], int n, double slack, double c[2], int ba
       int other = 3 - i - j;
       if (!on_both(&d[i], &d[j], trial)) continue;
       if (n == 3 && violation(&d[other], trial) > slack) continue;
-      double norm = hypot(trial[0], trial[1]);
+      double norm = length_of(trial[0], trial[1]);
       if (norm >= best) continue;
       best     = norm;
       c[0]     = trial[0];
@@ -118,7 +123,7 @@ MHB_HOT static int worst_on_grid(const discs *set, const double c[2], double *si
 static double rise_in_cell(const discs *set) {
   const mhb_signals *s = set->signals;
   double             h = SHB_TWO_PI / s->n_grid;
-  return h * h / 8 * (hypot(s->bound[1][2], s->bound[2][2]) + set->mu * s->bound[0][2]);
+  return h * h / 8 * (length_of(s->bound[1][2], s->bound[2][2]) + set->mu * s->bound[0][2]);
 }
 
 /* Index and violation of the worst disc of the grid and of the refined times. */
@@ -176,33 +181,47 @@ static double refine(const discs *set, const double c[2], double t, double width
 
 /* The best of some points about a local maximum of the grid. Where n nearly touches zero the
  * maximum is narrower than a cell. */
-static double scan(const discs *set, const double c[2], double t, double width) {
-  enum { POINTS = 3 };
-  double best = -INFINITY, at = t;
-  for (int i = -POINTS; i <= POINTS; i++) {
-    double v[3], dv[3], here = t + width * i / (POINTS + 1);
-    mhb_signals_at(set->signals, here, v, dv, NULL);
-    disc   d = disc_of(set, here, v);
-    double g = violation(&d, c);
-    if (g <= best) continue;
-    best = g;
-    at   = here;
+MHB_HOT static double scan(const discs *set, const double c[2], double t, double width) {
+  const mhb_lanes place = {-3, -2, -1, 0, 1, 2, 3, 0}; /* in quarters of the width */
+  const double   *mean  = set->signals->coefficient;
+  mhb_lanes       here  = t + .25 * width * place, cosine, sine, y[3], dy[3];
+  lanes_cos_sin(here, &cosine, &sine);
+  mhb_signals_at_lanes(set->signals, cosine, sine, y, dy);
+  mhb_lanes a = y[1] + (c[0] - mean[1]), b = y[2] + (c[1] - mean[2]), square = a * a + b * b, over;
+  for (int l = 0; l < MHB_LANES; l++) over[l] = sqrt(square[l]);
+  over -= set->mu * y[0];
+  double best = lanes_top(over);
+  for (int l = 0; l < MHB_LANES; l++)
+    if (over[l] == best) return here[l];
+  return t;
+}
+
+/* over[n_grid + 2] <- violations on the grid, from the last point before it to the first beyond. */
+MHB_HOT static void violations_on_grid(const discs *set, const double c[2], double *over) {
+  const mhb_signals *s  = set->signals;
+  double             a0 = c[0] - s->coefficient[1], b0 = c[1] - s->coefficient[2];
+  int                n = s->n_grid;
+  for (int i = 0; i < n; i += MHB_LANES) {
+    mhb_lanes a = lanes_load(s->value[1] + i) + a0, b = lanes_load(s->value[2] + i) + b0;
+    mhb_lanes square = a * a + b * b, size;
+    for (int l = 0; l < MHB_LANES; l++) size[l] = sqrt(square[l]);
+    lanes_store(over + 1 + i, size - set->mu * lanes_load(s->value[0] + i));
   }
-  return at;
+  over[0]     = over[n];
+  over[n + 1] = over[1];
 }
 
 /* Adds refined times of local maxima that violate. Returns their number. */
 static int add_violated(discs *set, const double c[2]) {
   int    n = set->signals->n_grid, added = 0;
-  double width = SHB_TWO_PI / n, enough = -rise_in_cell(set), most;
+  double width = SHB_TWO_PI / n, enough = -rise_in_cell(set), most, over[n + 2];
   worst_on_grid(set, c, &most);
-  for (int i = 0; i < n && set->n_extra < EXTRA && most >= enough; i++) {
-    disc   mid  = disc_at(set, i);
-    double here = violation(&mid, c);
-    if (here < enough) continue;
-    disc left = disc_at(set, (i + n - 1) % n), right = disc_at(set, (i + 1) % n);
-    if (here < violation(&left, c) || here < violation(&right, c)) continue;
-    double v[3], dv[3], t = refine(set, c, scan(set, c, mid.t, width), .5 * width);
+  if (most < enough) return 0;
+  violations_on_grid(set, c, over);
+  for (int i = 0; i < n && set->n_extra < EXTRA; i++) {
+    double here = over[i + 1];
+    if (here < enough || here < over[i] || here < over[i + 2]) continue;
+    double v[3], dv[3], t = refine(set, c, scan(set, c, width * i, width), .5 * width);
     mhb_signals_at(set->signals, t, v, dv, NULL);
     disc d = disc_of(set, t, v);
     if (violation(&d, c) <= 2e-13 * set->scale) continue;
@@ -221,7 +240,7 @@ static summit summit_at(const discs *set, double t) {
   double v[3], dv[3], ddv[3], mu = set->mu;
   mhb_signals_at(set->signals, t, v, dv, ddv);
   disc   d  = disc_of(set, t, v);
-  summit s  = {.size = hypot(d.f[0], d.f[1]), .r = d.r};
+  summit s  = {.size = length_of(d.f[0], d.f[1]), .r = d.r};
   s.e[0]    = d.f[0] / s.size;
   s.e[1]    = d.f[1] / s.size;
   s.across  = s.e[0] * dv[2] - s.e[1] * dv[1];
@@ -329,7 +348,7 @@ static void two_discs(const discs *set, const mhb_static_friction *stuck, double
     limit[i] = d.r * set->mu;
   }
   double det   = row[0][0] * row[1][1] - row[0][1] * row[1][0];
-  double small = 1e-7 * (hypot(row[0][0], row[0][1]) * hypot(row[1][0], row[1][1]));
+  double small = 1e-7 * (length_of(row[0][0], row[0][1]) * length_of(row[1][0], row[1][1]));
   if (fabs(det) < small) det = copysign(small, det); /* tangent discs: the derivative is capped */
   double inverse[2][2] = {{row[1][1] / det, -row[0][1] / det}, {-row[1][0] / det, row[0][0] / det}};
   for (int k = 0; k < 2; k++)

@@ -87,13 +87,14 @@ shb_status mhb_signals_create(int m, mhb_signals *signals) {
   int grid = grid_of(m), most = MHB_LEAST_GRID << grid, half = most / 2 + 1,
       room = most + MHB_LANES;
   SHB_CHECK(grid < MHB_GRIDS, SHB_ERR_IO, "out of memory for %d harmonics", m);
-  size_t     size       = 3 * (size_t)mhb_real_size(m);
+  size_t     size = 3 * (size_t)mhb_real_size(m), whole = (size_t)mhb_whole_lanes(m);
   shb_arena *arena      = &signals->arena;
   signals->m            = m;
   signals->n_grid       = most;
   signals->largest_grid = most;
   signals->coefficient  = shb_arena_take(arena, size, sizeof(double));
   signals->derivative   = shb_arena_take(arena, size, sizeof(double));
+  signals->by_harmonic  = shb_arena_take(arena, 2 * MHB_LANES * whole, sizeof(double));
   signals->spectrum     = shb_arena_take(arena, 6 * (size_t)half, sizeof(fftw_complex));
   signals->samples      = shb_arena_take(arena, 6 * (size_t)room, sizeof(double));
   signals->wave         = shb_arena_take(arena, 2 * MHB_TABLE * MHB_LEAST_GRID, sizeof(double));
@@ -194,15 +195,21 @@ void mhb_signals_set(mhb_signals *signals, const double *const a[3]) {
   int top = highest_harmonic(signals->m, a), grid = grid_of(top), n = MHB_LEAST_GRID << grid;
   signals->top    = top;
   signals->n_grid = n;
+  memset(signals->by_harmonic + 2 * MHB_LANES * top, 0,
+         sizeof(double) * 2 * MHB_LANES * (size_t)(mhb_whole_lanes(top) - top));
   for (int i = 0; i < 3; i++) {
     double *coefficient = signals->coefficient + i, *rate = signals->derivative + i;
     coefficient[0] = a[i][0];
-    for (int k = 1; k <= top; k++) {
+    double *at     = signals->by_harmonic + i;
+    for (int k = 1; k <= top; k++, at += 2 * MHB_LANES) {
       double even = a[i][2 * k - 1], odd = a[i][2 * k];
-      coefficient[6 * k - 3] = even;
-      coefficient[6 * k]     = odd;
-      rate[6 * k - 3]        = k * even;
-      rate[6 * k]            = k * odd;
+      coefficient[6 * k - 3] = at[0] = even;
+      coefficient[6 * k]             = odd;
+      rate[6 * k - 3]                = k * even;
+      rate[6 * k]                    = k * odd;
+      at[4]                          = -k * odd;
+      at[MHB_LANES]                  = -odd;
+      at[MHB_LANES + 4]              = -k * even;
     }
     set_bounds(signals, i, a[i]);
   }
@@ -217,34 +224,37 @@ void mhb_signals_set(mhb_signals *signals, const double *const a[3]) {
   }
 }
 
-/* cos and sin, faster than the library's where vectors are wide. */
-MHB_INLINE void cos_sin(double t, double *c, double *s) {
-  mhb_lanes cosine, sine;
-  lanes_cos_sin(lanes_all(t), &cosine, &sine);
-  *c = cosine[0];
-  *s = sine[0];
+/* The phase nearest to zero that is the same. */
+MHB_INLINE double least_phase(double t) {
+  const double magic = 6755399441055744.0; /* 1.5 2^52: adding it rounds to an integer */
+  const double turns = (t * (1 / SHB_TWO_PI) + magic) - magic;
+  return (t - turns * 6.28318530717958623200) - turns * 2.44929359829470641435e-16;
 }
 
 MHB_HOT void mhb_signals_at(const mhb_signals *signals, double t, double y[3], double dy[3],
                             double ddy[3]) {
-  double c1, s1, c = 1, s = 0;
-  cos_sin(t, &c1, &s1);
-  const double *a = signals->coefficient;
-  for (int i = 0; i < 3; i++) {
-    y[i]  = a[i];
-    dy[i] = 0;
-    if (ddy) ddy[i] = 0;
-  }
-  for (int k = 1; k <= signals->top; k++) {
-    double next = c * c1 - s * s1;
-    s           = s * c1 + c * s1;
-    c           = next;
-    a += k == 1 ? 3 : 6;
-    for (int i = 0; i < 3; i++) {
-      double even = a[i] * c - a[i + 3] * s;
-      y[i] += even;
-      dy[i] -= k * (a[i] * s + a[i + 3] * c);
-      if (ddy) ddy[i] -= (double)k * k * even;
+  mhb_lanes     order = {1, 2, 3, 4, 5, 6, 7, 8}, c, s, sum[2] = {{0}}, bent[2] = {{0}};
+  const double  phase = least_phase(t);
+  const double *a     = signals->by_harmonic;
+  for (int k = 0; k < signals->top; k += MHB_LANES, order += MHB_LANES) {
+    lanes_cos_sin(order * phase, &c, &s);
+    mhb_lanes square = order * order;
+#pragma GCC unroll 8
+    for (int i = 0; i < MHB_LANES; i++, a += 2 * MHB_LANES) {
+      mhb_lanes even = lanes_load(a) * lanes_pick(c, i);
+      mhb_lanes odd  = lanes_load(a + MHB_LANES) * lanes_pick(s, i);
+      sum[0] += even;
+      sum[1] += odd;
+      if (!ddy) continue;
+      bent[0] += even * lanes_pick(square, i);
+      bent[1] += odd * lanes_pick(square, i);
     }
+  }
+  sum[0] += sum[1];
+  bent[0] += bent[1];
+  for (int i = 0; i < 3; i++) {
+    y[i]  = signals->coefficient[i] + sum[0][i];
+    dy[i] = sum[0][4 + i];
+    if (ddy) ddy[i] = -bent[0][i];
   }
 }

@@ -43,6 +43,7 @@ typedef struct {
   int           largest_grid; /* n_grid for m harmonics */
   double       *coefficient;  /* [2m+1][3] */
   double       *derivative;   /* [2m+1][3], k times that of the same harmonic */
+  double       *by_harmonic;  /* [m, to whole lanes][2][MHB_LANES] of each: see mhb_signals_at */
   double       *value[3];    /* [n_grid + MHB_LANES] at t = 2 pi i/n_grid, continued periodically */
   double       *slope[3];    /* the same */
   double        bound[3][5]; /* [signal][j] = sum_k k^j |A_k| >= |d^j x/dt^j| */
