@@ -376,10 +376,12 @@ int mhb_slider_periodic(mhb_contact_evaluator *c, int near, double z[2]) {
   /* it seldom serves the force alone to a small tolerance: a whole lap of Newton's does */
   if (!near && (wanted == MHB_ALL_COLUMNS || a.tolerance > 1e-4)) a.left = approach(c, z);
   double accept = wanted == MHB_ALL_COLUMNS ? 30 * sharp : 3 * a.tolerance;
-  if (near && wanted == MHB_SLIDER_COLUMN) { /* the lap that it may end with */
+  /* The lap that it may end with. What is left of z is the square of its step. A larger one would
+   * be seen by a Newton step with derivative, which another one would follow. */
+  if (near && wanted == MHB_SLIDER_COLUMN) {
     left    = record_lap(c, wanted, z, &gap, &step);
     a.left  = mhb_least(step * step, FAR);
-    reached = close = left >= 0 && left < accept && step * step < .01 * c->tolerance;
+    reached = close = left >= 0 && left < accept && step * step < 1e-4 * c->tolerance;
   }
   for (int tries = 0; tries < MAX_RECORDS && !close && left >= 0; tries++) {
     reached     = (a.left > 0 && a.left < a.tolerance) || iterate_slider(c, &a, z);

@@ -65,10 +65,15 @@ static void bend(mhb_arclength *curve, double ds) {
   curve->next.value += by * (tangent[curve->n] - former[curve->n]);
 }
 
-/* The curve's step from current to next is accepted. */
-static void note_former(mhb_arclength *curve) {
+/* The curve's step from current to next is accepted. After a step that was refused at first the
+ * next one is not bent, for it passes kinks. Rings are bent all the same. */
+static void note_former(mhb_arclength *curve, bool at_once) {
   double chord[curve->n + 1];
-  if (!curve->system->costly) return;
+  if (!curve->system->bends) return;
+  if (!at_once && !curve->system->costly) {
+    curve->former_step = 0;
+    return;
+  }
   for (int i = 0; i < curve->n; i++) chord[i] = curve->next.x[i] - curve->current.x[i];
   chord[curve->n] = curve->next.value - curve->current.value;
   memcpy(curve->former_tangent, curve->current.tangent, sizeof chord);
@@ -83,7 +88,7 @@ static int attempt(mhb_arclength *curve, double ds, const mhb_curve_point *tried
   const double     *tangent = curve->current.tangent;
   int               found   = 0;
   predict(curve, ds, tangent);
-  if (s->costly && tried == &curve->current) bend(curve, ds);
+  if (s->bends && tried == &curve->current) bend(curve, ds);
   if (s->correct_linear && s->is_linear(s, tried)) {
     found = s->correct_linear(curve, tried, tangent, &curve->next);
     if (!found) predict(curve, ds, tangent);
@@ -228,7 +233,8 @@ static int step_reversed(mhb_arclength *curve) {
 /* A step of curve->step or shorter, and the length of the next one. 0: none converged. */
 static int adaptive_step(mhb_arclength *curve, const mhb_curve_point *tried) {
   double refused = INFINITY; /* the angle at twice this step */
-  for (; curve->step >= SHORTEST_STEP; tried = &curve->next) {
+  bool   at_once = true;
+  for (; curve->step >= SHORTEST_STEP; tried = &curve->next, at_once = false) {
     double ds = curve->step;
     if (!attempt(curve, ds, tried) || (!keeps_orientation(curve) && curve->n_reversed == 0)) {
       curve->step *= 0.3;
@@ -247,7 +253,7 @@ static int adaptive_step(mhb_arclength *curve, const mhb_curve_point *tried) {
     double by_angle = fmax(0.3, kink ? 1 : 0.6 * LARGEST_ANGLE / fmax(angle, 1e-12));
     curve->step     = fmax(fmin(curve->longest, ds * fmin(by_work, by_angle)), 2 * SHORTEST_STEP);
     note_orientation(curve);
-    note_former(curve);
+    note_former(curve, at_once);
     return 1;
   }
   if (curve->system->plain) return 0;

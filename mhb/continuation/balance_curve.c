@@ -154,6 +154,7 @@ shb_status mhb_balance_curve_create(mhb_balance *b, double low, double high, mhb
                                       .relative           = frequency,
                                       .smooth             = b->settings->tolerance <= SMOOTH,
                                       .costly             = b->receptance->ring != NULL,
+                                      .bends              = b->receptance->ring || b->product,
                                       .brief_events       = b->receptance->ring != NULL,
                                       .row_length         = b->nb,
                                       .copies             = mhb_motion_copies(b),

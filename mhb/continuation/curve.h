@@ -35,6 +35,7 @@ struct mhb_curve_system {
   bool   plain;    /* where no ordinary step converges it is the user who tries others */
   bool   smooth;   /* the residual is accurate enough for chord steps */
   bool   costly;   /* a correction that gains little is given up: a shorter step costs less */
+  bool   bends;    /* steps are predicted by a parabola: a correction costs much */
   bool   brief_events; /* events are located to 1e-8 of the value, with few factors */
   int    row_length;   /* x is [n / row_length][row_length]; a finer system of the same curve has as
                       * many rows, longer ones, that begin with the same unknowns */
@@ -98,7 +99,7 @@ struct mhb_arclength {
   mhb_curve_point trial;          /* a point located on it */
   mhb_curve_point bracket[3];     /* of a search on it: both ends, and a former one */
   double         *chord;          /* [n + 1] direction of a step or a search */
-  double         *former_tangent; /* [n + 1] where the last step of a costly system began */
+  double         *former_tangent; /* [n + 1] where the last step began, if steps are bent */
   double          former_step;    /* its length in y; 0: there was none */
   double         *column, *row, *delta; /* [n + 1] of the bordered system */
 };
