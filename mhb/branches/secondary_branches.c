@@ -22,10 +22,14 @@ static const double SAME_VALUE = 2e-3, SAME_MOTION = 3e-2;
 
 enum {
   MAX_SECONDARY    = 24, /* branches beside a main one */
+  RING_POINTS      = 10, /* of all curves that are found in a ring, in those of the main one */
   SEARCH_HARMONICS = 7,  /* times the order, with harmonics: auto */
   N_PLACES         = 6,  /* values searched at, unless given */
+  LEAST_POINTS     = 10, /* fewer tell nothing of a curve */
   MAX_PROBLEMS     = 16  /* orders */
 };
+
+static const char USED_UP[] = "the points of searches are used up: ten times the main curve's";
 
 /* The balance of one order. */
 typedef struct {
@@ -43,6 +47,8 @@ typedef struct {
   mhb_monitor         *monitor;
   int                  n_problems;
   subharmonic_problem *problem[MAX_PROBLEMS];
+  int                  points;   /* traced by searches */
+  int                  untraced; /* motions that were found, whose curves were not traced */
   bool                 go_on;
 } branch_search;
 
@@ -180,10 +186,21 @@ static shb_status append(branch_search *h, const subharmonic_problem *s, mhb_ori
   return SHB_OK;
 }
 
+/* Points that a curve may have. In a ring curves wander from blade to blade, nearly without end.
+ * All that searches find share a budget there. */
+static int points_left(const branch_search *h) {
+  const int most = h->settings->max_points;
+  if (!h->settings->ring) return most;
+  const int left = RING_POINTS * branch_at(h, 0)->n_points - h->points;
+  return left < most ? left : most;
+}
+
 /* Trace a curve both ways from a solution, until it closes, leaves the range or meets one of lower
- * order. From a crossing, trace it one way. *none: there is no such curve. */
+ * order. From a crossing, trace it one way.
+ *   shortened         in   why there are no more points, or NULL
+ *   none              out  there is no such curve */
 static shb_status trace_both_ways(mhb_tracer *tracer, const mhb_seed *seed, mhb_response *response,
-                                  int index, bool *none, bool *interrupted) {
+                                  int index, const char *shortened, bool *none, bool *interrupted) {
   mhb_chain        chain = {0};
   int              up, down;
   mhb_end          end, other = MHB_END_NO_START;
@@ -206,6 +223,8 @@ static shb_status trace_both_ways(mhb_tracer *tracer, const mhb_seed *seed, mhb_
   }
   if (end == MHB_END_LOW) end = MHB_END_HIGH; /* either end of the range will do */
   mhb_completion completion = {.end = end};
+  if (end == MHB_END_MAX_POINTS && response->branch[index].origin == MHB_FROM_SEARCH)
+    completion.other_reason = shortened;
   if (status == SHB_OK) status = mhb_branch_complete(tracer, &chain, response, index, &completion);
   *interrupted = completion.interrupted;
   mhb_chain_free(&chain);
@@ -253,16 +272,24 @@ static shb_status trace(branch_search *h, subharmonic_problem *s, mhb_origin ori
   int         index;
   bool        none = true, interrupted = false, another = false;
   mhb_tracer *tracer;
-  if (h->response->n_branches > MAX_SECONDARY) return SHB_OK;
+  const bool  searched = origin == MHB_FROM_SEARCH;
+  const int   most     = searched ? points_left(h) : h->settings->max_points;
+  if (h->response->n_branches > MAX_SECONDARY || most < LEAST_POINTS) {
+    h->untraced += searched;
+    return SHB_OK;
+  }
+  s->settings.max_points = most;
   SHB_TRY(append(h, s, origin, &index));
   shb_status status = mhb_tracer_create(s->balance, h->response, index, true, h->monitor, &tracer);
   if (status == SHB_OK) {
     tracer->publish = publish;
     tracer->context = h;
-    status          = trace_both_ways(tracer, seed, h->response, index, &none, &interrupted);
+    status          = trace_both_ways(tracer, seed, h->response, index,
+                             most < h->settings->max_points ? USED_UP : NULL, &none, &interrupted);
     mhb_tracer_destroy(tracer);
   }
   if (interrupted) h->go_on = false;
+  if (searched) h->points += branch_at(h, index)->n_points;
   if (status == SHB_OK && !none && h->go_on) status = is_another(h, s, index, &another);
   if (another) branch_at(h, index)->n_points = 0; /* dropped at the end: others keep their places */
   return status;
@@ -360,8 +387,9 @@ static int n_branches(const branch_search *h) {
  *   share  of the work that is done */
 static shb_status search_at(branch_search *h, subharmonic_problem *s, double value, double size,
                             int starts, unsigned long long seed, double share) {
-  static const double sizes[] = {1, 2, 4, 0.5};
-  const int           seeded  = (int)seed;
+  static const double sizes[]  = {1, 2, 4, 0.5};
+  const int           seeded   = (int)seed;
+  const int           untraced = h->untraced;
   int                 before = n_branches(h), done = 0;
   double              x[s->balance->n];
   for (; size > 0 && done < starts && go_on_searching(h, value, share); done++) {
@@ -375,11 +403,12 @@ static shb_status search_at(branch_search *h, subharmonic_problem *s, double val
     /* whether it was traced or not */
     SHB_TRY(mhb_solution_set_add_copies(&s->known, s->balance, x));
   }
-  mhb_search made = {.value  = mhb_parameter_shown(h->settings->parameter, value),
-                     .order  = s->order,
-                     .starts = done,
-                     .seed   = seeded,
-                     .found  = n_branches(h) - before};
+  mhb_search made = {.value    = mhb_parameter_shown(h->settings->parameter, value),
+                     .order    = s->order,
+                     .starts   = done,
+                     .seed     = seeded,
+                     .found    = n_branches(h) - before,
+                     .untraced = h->untraced - untraced};
   return mhb_response_note_search(branch_at(h, 0), &made);
 }
 

@@ -78,14 +78,15 @@ static shb_status write_searches(hid_t group, const mhb_response *response,
   const h5_shape shape = H5_SHAPE((hsize_t)n);
   const char    *units = mhb_parameter_unit(response->parameter);
   double         value[n + 1];
-  int            order[n + 1], starts[n + 1], found[n + 1], seed[n + 1];
+  int            order[n + 1], starts[n + 1], found[n + 1], seed[n + 1], untraced[n + 1];
   if (n == 0) return SHB_OK;
   for (int i = 0; i < n; i++) {
-    value[i]  = branch->search[i].value;
-    order[i]  = branch->search[i].order;
-    starts[i] = branch->search[i].starts;
-    found[i]  = branch->search[i].found;
-    seed[i]   = branch->search[i].seed;
+    value[i]    = branch->search[i].value;
+    order[i]    = branch->search[i].order;
+    starts[i]   = branch->search[i].starts;
+    found[i]    = branch->search[i].found;
+    seed[i]     = branch->search[i].seed;
+    untraced[i] = branch->search[i].untraced;
   }
   SHB_TRY(h5_write_double(group, "search/parameter", shape, value, *units ? units : "-",
                           "value of the parameter at which other curves were searched for"));
@@ -93,7 +94,9 @@ static shb_status write_searches(hid_t group, const mhb_response *response,
                        "periods of the excitation after which the motions searched for repeat"));
   SHB_TRY(h5_write_int(group, "search/starts", shape, starts, "-", "random starts made"));
   SHB_TRY(h5_write_int(group, "search/seed", shape, seed, "-", "seed of their random numbers"));
-  return h5_write_int(group, "search/found", shape, found, "-", "curves found");
+  SHB_TRY(h5_write_int(group, "search/found", shape, found, "-", "curves found"));
+  return h5_write_int(group, "search/untraced", shape, untraced, "-",
+                      "further motions found, whose curves were not traced");
 }
 
 /* Speed of the rotor in a run-up; not read back. */
@@ -382,25 +385,27 @@ static shb_status read_descent(hid_t group, const char *path, int index, mhb_bra
 static shb_status read_searches(hid_t group, const char *path, int index, mhb_branch *branch) {
   h5_shape shape;
   double  *value    = NULL;
-  int     *count[4] = {NULL};
+  int     *count[5] = {NULL};
   if (!h5_exists(group, "search")) return SHB_OK;
   SHB_TRY(h5_shape_of(group, "search/parameter", &shape));
   SHB_CHECK(shape.rank == 1 && shape.dim[0] <= MHB_MOST_ENTRIES, SHB_ERR_INPUT,
             "%s: /branch_%d/search/parameter must be a list of at most %d", path, index,
             MHB_MOST_ENTRIES);
-  static const char *const name[] = {"search/order", "search/starts", "search/found",
-                                     "search/seed"}; /* earlier versions lack the seed */
+  static const char *const name[] = {"search/order", "search/starts", "search/found", "search/seed",
+                                     "search/untraced"}; /* earlier versions lack the last two */
   shb_status               status = h5_read_double(group, "search/parameter", &shape, &value);
-  for (int k = 0; k < 4 && status == SHB_OK; k++)
+  for (int k = 0; k < 5 && status == SHB_OK; k++)
     if (k < 3 || h5_exists(group, name[k])) status = h5_read_int(group, name[k], &shape, &count[k]);
   for (hsize_t i = 0; i < shape.dim[0] && status == SHB_OK; i++)
-    status = mhb_response_note_search(branch, &(mhb_search){.value  = value[i],
-                                                            .order  = count[0][i],
-                                                            .starts = count[1][i],
-                                                            .seed   = count[3] ? count[3][i] : 0,
-                                                            .found  = count[2][i]});
+    status =
+        mhb_response_note_search(branch, &(mhb_search){.value    = value[i],
+                                                       .order    = count[0][i],
+                                                       .starts   = count[1][i],
+                                                       .seed     = count[3] ? count[3][i] : 0,
+                                                       .found    = count[2][i],
+                                                       .untraced = count[4] ? count[4][i] : 0});
   free(value);
-  for (int k = 0; k < 4; k++) free(count[k]);
+  for (int k = 0; k < 5; k++) free(count[k]);
   return status;
 }
 

@@ -64,11 +64,12 @@ enum { MHB_KEPT_MULTIPLIERS = 8 };
 
 /* A search for other branches at one value of the parameter: random starts of the Newton method. */
 typedef struct {
-  double value;  /* as mhb_branch.value */
-  int    order;  /* of the motions searched for */
-  int    starts; /* that were made */
-  int    seed;   /* of their random numbers */
-  int    found;  /* branches that they led to and that were not known */
+  double value;    /* as mhb_branch.value */
+  int    order;    /* of the motions searched for */
+  int    starts;   /* that were made */
+  int    seed;     /* of their random numbers */
+  int    found;    /* branches that they led to and that were not known */
+  int    untraced; /* further motions that they led to, whose curves were not traced */
 } mhb_search;
 
 /* kind of lasting motion, lasting_kind of mhb_branch. */

@@ -427,12 +427,13 @@ static void put_seeds(const mhb_response *r, post_buffer *out) {
 
 /* Where random starts looked for other curves, and what they found. */
 static void put_searches(const post_analysis *analysis, post_buffer *out) {
-  int starts = 0, found = 0, places = 0;
+  int starts = 0, found = 0, untraced = 0, places = 0;
   for (int b = 0; b < analysis->response->n_branches; b++) {
     const mhb_branch *branch = &analysis->response->branch[b];
     for (int i = 0; i < branch->n_searches; i++) {
       starts += branch->search[i].starts;
       found += branch->search[i].found;
+      untraced += branch->search[i].untraced;
     }
     if (branch->n_searches == 0 || ++places > 4) continue;
     char name[64];
@@ -446,6 +447,9 @@ static void put_searches(const post_analysis *analysis, post_buffer *out) {
     post_put(out, ". %d random starts there found %d.", starts, found);
   else if (places > 0)
     post_put(out, ". %d random starts there found none.", starts);
+  if (untraced > 0)
+    post_put(out, " %d more motion%s found, but not followed along a curve.", untraced,
+             untraced > 1 ? "s were" : " was");
   if (places > 0 && analysis->response->ring) put_seeds(analysis->response, out);
   if (places > 0)
     post_put(out, " None was looked for elsewhere (<code>mhb.search</code>).</li>\n");

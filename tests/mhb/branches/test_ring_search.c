@@ -13,11 +13,14 @@
 #include "mesh/base/constants.h"
 #include "mhb/balance/newton.h"
 #include "mhb/branches/forced_response.h"
+#include "mhb/branches/secondary_branches.h"
 #include "mhb/integration/integration_sweep.h"
 #include "mhb/mistuning/dense_ring.h"
 #include "mhb/response/ring_description.h"
 #include "mhb/search/solution_set.h"
 #include "tests/support/check.h"
+#include "tests/support/main_curve.h"
+#include "tests/support/quiet_monitor.h"
 #include "tests/support/random_model.h"
 #include "tests/support/settings.h"
 #include "tests/support/three_degree.h"
@@ -299,10 +302,46 @@ static void many_blades_are_searched_within_bounds(void **state) {
   drop(&g);
 }
 
+/* What searches find has ten times the points of the main curve in all, and what is not traced is
+ * counted. Without that bound a curve goes on to 20000 points, 24 of them together. */
+static void searched_curves_share_their_points(void **state) {
+  enum { BLADES = 40, FEW = 30, POINTS = 20 };
+  double             deviation[BLADES];
+  unsigned long long seed = 1;
+  problem            g;
+  mhb_response      *r       = NULL;
+  quiet_monitor      monitor = quiet_monitor_create(0);
+  (void)state;
+  for (int i = 0; i < BLADES; i++) deviation[i] = 1e-4 * random_unit(&seed);
+  make_ring(&g, BLADES, 5, deviation);
+  g.settings.search.n_orders = 1;
+  g.settings.search.starts   = FEW;
+  g.settings.stability       = MHB_STABILITY_NEVER;
+  g.settings.max_points      = POINTS;
+  assert_ok(main_curve(&g.ring->whole, &g.settings, SEARCH_HARMONICS, NULL, &r));
+  const int most        = 10 * r->branch[0].n_points;
+  g.settings.max_points = 20000;
+  assert_ok(mhb_secondary_branches(&g.ring->whole, &g.settings, r, &monitor.base));
+  int points = 0, used_up = 0;
+  for (int i = 1; i < r->n_branches; i++) {
+    points += r->branch[i].n_points;
+    used_up += strstr(r->branch[i].reason, "used up") != NULL && !r->branch[i].complete;
+  }
+  const mhb_search *search = &r->branch[0].search[0];
+  print_message("%d of %d points, %d found, %d cut, %d not traced\n", points, most, search->found,
+                used_up, search->untraced);
+  assert_in_range(points, 1, most + 2); /* a curve may have one more at each end */
+  assert_true(used_up > 0);
+  assert_int_equal(search->starts, FEW);
+  mhb_response_destroy(r);
+  drop(&g);
+}
+
 int main(void) {
   const struct CMUnitTest tests[] = {cmocka_unit_test(equal_blades_have_a_localised_motion),
                                      cmocka_unit_test(a_turned_motion_counts_once),
                                      cmocka_unit_test(different_blades_are_searched_too),
-                                     cmocka_unit_test(many_blades_are_searched_within_bounds)};
+                                     cmocka_unit_test(many_blades_are_searched_within_bounds),
+                                     cmocka_unit_test(searched_curves_share_their_points)};
   return cmocka_run_group_tests(tests, NULL, NULL);
 }
