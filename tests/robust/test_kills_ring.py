@@ -66,6 +66,10 @@ def broken(seconds):
     for _ in range(PARTS):
         under_way = stopped(signal.SIGTERM, DICE.uniform(0.3, 1) * seconds)
         points, cut = curve()
+        if not cuts and not cut: # too late or too early, as the machine is idle or busy
+            seconds *= 1.2 if under_way and not points else 0.7
+            if points:
+                os.remove(FILE)
         if under_way and cut and points > max(cuts, default=0):
             cuts.append(points)
             # what the killed run computed is lost; the file is still that of the cut, or later
