@@ -10,9 +10,7 @@ static const double CHORD_FOUND = 1e-9; /* the event is located */
 typedef struct {
   double value, chord; /* or by both */
 } width;
-static const width FOUND = {1e-10, 1e-4}, FOUND_BRIEFLY = {1e-8, 1e-2};
-/* A secant this much nearer to zero tells its error, which must be this part of what is allowed. */
-static const double CONVERGING = 0.1, SURE = 0.1;
+static const width  FOUND = {1e-10, 1e-4}, FOUND_BRIEFLY = {1e-8, 1e-2};
 static const double VALUE_NARROW = 2e-7, CHORD_NARROW = 0.01; /* a kink is the event */
 static const double VALUE_BESIDE      = 3e-8;                 /* distance kept from a kink */
 static const double VALUE_LAST_RESORT = 1e-4;                 /* accepted if nothing converges */
@@ -31,8 +29,8 @@ enum {
 typedef struct {
   mhb_arclength         *curve;
   const mhb_curve_point *end[2];
-  double                 at[2], g[2], whole[2]; /* g may be halved, whole is not */
-  double                 relative_value;        /* the chord's change of the value, relative */
+  double                 at[2], g[2];
+  double                 relative_value; /* the chord's change of the value, relative */
   int                    guesses; /* that are tried: one, where the event need not be exact */
   int                    guess;   /* which one converged last */
 } search;
@@ -236,13 +234,6 @@ static bool locate_at_kink(search *s, mhb_test_function g, void *context) {
 
 /* ---- the search ---- */
 
-/* How far the event is from a trial at `at`, by the secant through the end that it replaces. */
-static double secant_left(const search *s, int side, double at, double value) {
-  const double old = s->whole[side];
-  if (!(fabs(value) < CONVERGING * fabs(old))) return INFINITY;
-  return fabs(at - s->at[side]) * fabs(value / (value - old));
-}
-
 bool mhb_arclength_locate(mhb_arclength *curve, mhb_test_function g, void *context,
                           double at_current, double at_next, double exact, double *fraction) {
   for (int i = 0; i < curve->n; i++) curve->chord[i] = curve->next.x[i] - curve->current.x[i];
@@ -252,7 +243,6 @@ bool mhb_arclength_locate(mhb_arclength *curve, mhb_test_function g, void *conte
                             .end            = {&curve->current, &curve->next},
                             .at             = {0, 1},
                             .g              = {at_current, at_next},
-                            .whole          = {at_current, at_next},
                             .relative_value = change / mhb_arclength_size(curve),
                             .guesses        = exact > 0 ? 1 : GUESSES};
   const bool  brief      = curve->system->brief_events;
@@ -280,12 +270,10 @@ bool mhb_arclength_locate(mhb_arclength *curve, mhb_test_function g, void *conte
     if (value == 0) return true;
     int    side  = (value > 0) != (s.g[0] > 0);
     double moved = fabs(at - s.at[side]), left;
-    double near  = brief ? secant_left(&s, side, at, value) : INFINITY;
-    if (near * s.relative_value < SURE * found.value && near < SURE * found.chord) return true;
     /* Illinois: an end that stays twice has its value halved */
     if (side == last_side) s.g[1 - side] *= 0.5;
-    s.g[side] = s.whole[side] = value;
-    left = fmin(s.at[1 - side] > at ? s.at[1 - side] - at : at - s.at[1 - side], moved);
+    s.g[side] = value;
+    left      = fmin(s.at[1 - side] > at ? s.at[1 - side] - at : at - s.at[1 - side], moved);
     if (left < fmax(exact, CHORD_FOUND) ||
         (i > 2 && left * s.relative_value < found.value && left < found.chord))
       return true;
