@@ -161,7 +161,8 @@ static comparison compare(const modal_model *model, const mhb_settings *s, doubl
   return found;
 }
 
-/* Stuck contacts are springs: the balance is exact, and the steps are of order five. */
+/* Stuck contacts are springs: the balance is exact, and the steps are of order five. With
+ * OpenBLAS's kernels for AVX-512 a distance of 1e-12 is not reached within 400 periods. */
 static void order_of_stuck_contacts(void **state) {
   modal_model  model;
   mhb_settings s    = random_settings(3);
@@ -170,7 +171,7 @@ static void order_of_stuck_contacts(void **state) {
   coupled_model(2, WITH_LEFT, &model);
   s.n0[0] = 500;
   for (int steps = 8; steps <= 32; steps *= 2) {
-    const comparison c = compare(&model, &s, 1.13, steps, 1e-12);
+    const comparison c = compare(&model, &s, 1.13, steps, 1e-11);
     print_message("%d steps: %.2e, probes %.2e, order %.2f\n", steps, c.motion, c.probe,
                   last > 0 ? log2(last / c.motion) : 0);
     assert_true(last == 0 || log2(last / c.motion) > 4.7);

@@ -227,6 +227,9 @@ static mhb_response *with_further(void) {
     }
   }
   response->branch[2].searched = false;
+  assert_ok(mhb_response_note_search(
+      &response->branch[3],
+      &(mhb_search){.value = 15, .order = 2, .starts = 5, .seed = 9, .found = 2, .untraced = 3}));
   return response;
 }
 
@@ -246,7 +249,11 @@ static void test_further_branches(void **state) {
     assert_int_equal(b->main, i < 4 ? i : i < 6 ? 2 : 3);
     assert_true(b->origin == a->origin && b->searched == (i != 2));
     if (i >= 4) assert_same(a, b, motion, 4 * PAIRS * 3 * 10);
+    assert_int_equal(b->n_searches, i == 3);
   }
+  const mhb_search *search = &read->branch[3].search[0];
+  assert_true(search->value == 15 && search->order == 2 && search->starts == 5);
+  assert_true(search->seed == 9 && search->found == 2 && search->untraced == 3);
   bool drop[7] = {[4] = true};
   mhb_response_drop(read, drop);
   assert_int_equal(read->n_branches, 6);

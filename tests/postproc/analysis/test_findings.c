@@ -36,6 +36,28 @@ static void response_is_told(void **state) {
   free(text);
 }
 
+/* Two searches found three curves, and motions that were not followed. */
+static void motions_not_followed_are_told(void **state) {
+  (void)state;
+  fixture_options o   = fixture_usual();
+  mhb_response   *r   = fixture_response(&o);
+  post_buffer     out = {0};
+  post_analysis  *analysis;
+  assert_non_null(r);
+  for (int i = 0; i < 2; i++) {
+    mhb_search made = {.value = 1, .order = 1, .starts = 10, .found = 1 + i, .untraced = 2 * i};
+    assert_ok(mhb_response_note_search(&r->branch[2], &made));
+  }
+  assert_ok(post_analysis_create(r, &analysis));
+  post_findings(analysis, &out);
+  assert_has(out.text,
+             ". 20 random starts there found 3. 2 more motions were found, but not "
+             "followed along a curve.");
+  free(out.text);
+  post_analysis_destroy(analysis);
+  mhb_response_destroy(r);
+}
+
 static void limits_may_be_absent(void **state) {
   (void)state;
   fixture_options o = fixture_usual();
@@ -87,8 +109,8 @@ static void summary_is_plain(void **state) {
 
 int main(void) {
   const struct CMUnitTest tests[] = {
-      cmocka_unit_test(response_is_told), cmocka_unit_test(limits_may_be_absent),
-      cmocka_unit_test(figures_are_four), cmocka_unit_test(rest_is_told),
-      cmocka_unit_test(summary_is_plain)};
+      cmocka_unit_test(response_is_told),     cmocka_unit_test(motions_not_followed_are_told),
+      cmocka_unit_test(limits_may_be_absent), cmocka_unit_test(figures_are_four),
+      cmocka_unit_test(rest_is_told),         cmocka_unit_test(summary_is_plain)};
   return cmocka_run_group_tests(tests, NULL, NULL);
 }
