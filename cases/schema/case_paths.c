@@ -18,13 +18,7 @@ char *case_output(const case_file *file, const char *suffix) {
 }
 
 shb_status case_output_check(const case_file *file, int n, const char *const *suffix) {
-  for (int i = 0; i < n; i++) {
-    char *path = case_output(file, suffix[i]);
-    SHB_CHECK(path, SHB_ERR_IO, "out of memory");
-    const shb_status status = shb_publish_check(path);
-    free(path);
-    SHB_TRY(status);
-  }
+  for (int i = 0; i < n; i++) SHB_TRY(shb_publish_check_freed(case_output(file, suffix[i])));
   return SHB_OK;
 }
 

@@ -167,13 +167,8 @@ static shb_status manage(const study_spec *spec, const command_options *options,
 /* May the results of the study be written? */
 static shb_status check_outputs(const study_spec *spec) {
   static const char *const suffix[] = {".study.h5", ".study.csv", ".study.html", ".study.svg"};
-  for (size_t i = 0; i < sizeof suffix / sizeof *suffix; i++) {
-    char *path = study_path(spec, suffix[i]);
-    SHB_CHECK(path, SHB_ERR_IO, "out of memory");
-    const shb_status status = shb_publish_check(path);
-    free(path);
-    SHB_TRY(status);
-  }
+  for (size_t i = 0; i < sizeof suffix / sizeof *suffix; i++)
+    SHB_TRY(shb_publish_check_freed(study_path(spec, suffix[i])));
   return SHB_OK;
 }
 

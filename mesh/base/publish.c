@@ -162,6 +162,13 @@ shb_status shb_publish_check(const char *path) {
   return SHB_OK;
 }
 
+shb_status shb_publish_check_freed(char *path) {
+  SHB_CHECK(path, SHB_ERR_IO, "out of memory");
+  const shb_status status = shb_publish_check(path);
+  free(path);
+  return status;
+}
+
 shb_status shb_publish(const char *temporary, const char *path) {
   const shb_status kind = check_kind(path);
   if (kind != SHB_OK) {

@@ -17,6 +17,8 @@ typedef struct {
 /* May a result be written to path? Told before the work: is there a folder that takes a block of
  * bytes, and no folder, link, device or pipe at path itself? Leaves nothing behind. SHB_ERR_IO. */
 shb_status shb_publish_check(const char *path);
+/* The same of a malloc'ed path, which is freed. NULL: out of memory. */
+shb_status shb_publish_check_freed(char *path);
 
 /* Name of a temporary file beside path; malloc'ed, NULL when out of memory. Those of processes that
  * are gone are removed, unless the run is spread over several machines. */
