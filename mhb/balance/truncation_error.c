@@ -16,6 +16,12 @@ static const double FAR = 0.1;
 /* Distance of the evaluation that measures the curvature, relative to the vibration. */
 static const double NEARBY = 0.1;
 
+/* A bend across a step is followed below this part of the step. */
+static const double SMALL = 0.5;
+
+/* Residual that GMRES leaves of a step in a ring, relative. */
+static const double SOLVED = 1e-2;
+
 /* Error of the products with the receptance of many pairs. The estimate is a few per cent off
  * anyhow, and an error above 1e-5 is one. */
 static const double COARSE = 1e-8;
@@ -52,6 +58,7 @@ shb_status mhb_truncation_create(const mhb_balance *balance, mhb_truncation **ou
     t->r                   = shb_arena_take(&t->arena, n, sizeof(double));
     t->trial               = shb_arena_take(&t->arena, n, sizeof(double));
     t->feedback            = shb_arena_take(&t->arena, n, sizeof(double));
+    t->before              = shb_arena_take(&t->arena, n, sizeof(double));
     t->force = shb_arena_take(&t->arena, 3 * (size_t)mhb_real_size(top), sizeof(double));
     if (t->arena.failed) status = shb_fail(SHB_ERR_IO, __FILE__, __LINE__, "out of memory");
   }
@@ -59,7 +66,9 @@ shb_status mhb_truncation_create(const mhb_balance *balance, mhb_truncation **ou
     status = mhb_higher_harmonics_create(t->doubled, t->receptance, &t->higher);
   if (status == SHB_OK)
     status = mhb_condensation_create_within(t->doubled, MHB_MOST_DOUBLED, &t->system);
-  if (status == SHB_OK && (balance->receptance->ring || t->system->low_rank))
+  if (status == SHB_OK && balance->receptance->ring)
+    status = mhb_doubled_ring_create(balance, t->doubled, &t->ring);
+  if (status == SHB_OK && t->system->low_rank)
     status = mhb_truncation_step_create(balance, t->doubled, t->system->low_rank, &t->broyden);
   if (status == SHB_OK && t->system->low_rank)
     status = mhb_contact_evaluator_create(m, top, balance->settings->tolerance, &t->contact);
@@ -75,6 +84,7 @@ void mhb_truncation_destroy(mhb_truncation *t) {
   if (!t) return;
   mhb_contact_evaluator_destroy(t->contact);
   mhb_truncation_step_destroy(t->broyden);
+  mhb_doubled_ring_destroy(t->ring);
   mhb_condensation_destroy(t->system);
   mhb_higher_harmonics_destroy(t->higher);
   mhb_balance_destroy(t->doubled);
@@ -90,19 +100,43 @@ static void copy_rows(int rows, const double *from, int nb, double *to, int wide
     memcpy(to + (size_t)i * (size_t)wide, from + (size_t)i * (size_t)nb, length);
 }
 
-/* kappa of the residual along a step, -1 + tau + kappa tau^2 in units of the step, from one more
- * evaluation nearby. The residual of the solution is that of delta / part. */
-static double curvature(mhb_truncation *t, const double *step, double length, double size) {
-  mhb_balance *b    = t->doubled;
-  double       part = fmin(1, NEARBY * size / length), product = 0;
-  for (int i = 0; i < b->n; i++) t->trial[i] = t->x[i] + part * step[i];
-  double *r = t->trial;
-  mhb_balance_evaluate(b, t->trial, t->balance->eval->at.omega, t->r, NULL, NULL);
-  for (int i = 0; i < b->n; i++) r[i] = t->r[i] + t->feedback[i];
-  if (!mhb_condensation_solve(t->system, r)) return 0;
-  for (int i = 0; i < b->n; i++)
-    product += (r[i] + t->step[i] / t->part - part * step[i]) / length * (step[i] / length);
-  return product / (part * part);
+/* The linearisation at t->x is ready for solutions: by GMRES in a ring, else by factors. 0: it is
+ * singular, or too large. */
+static int factor(mhb_truncation *t) {
+  t->by_gmres = t->ring && mhb_doubled_ring_factor(t->ring, t->factors);
+  return t->by_gmres || mhb_condensation_factor(t->system, NULL, NULL);
+}
+
+/* x[doubled->n] <- its solution. Where GMRES fails factors take its place. 0: it failed. */
+static int solve(mhb_truncation *t, double *x) {
+  if (!t->by_gmres) return mhb_condensation_solve(t->system, x);
+  memcpy(t->r, x, sizeof *x * (size_t)t->doubled->n);
+  if (mhb_doubled_ring_solve(t->ring, SOLVED, x)) return 1;
+  t->by_gmres = false;
+  memcpy(x, t->r, sizeof *x * (size_t)t->doubled->n);
+  return mhb_condensation_factor(t->system, NULL, NULL) && mhb_condensation_solve(t->system, x);
+}
+
+/* t->trial <- the change of the residual along tau steps beyond the linear one, over tau^2, in the
+ * measure of steps: (I + R J)^-1 (r(x + tau step) - r(x)) - tau step. One evaluation nearby gives
+ * it. Returns kappa, its part along the step in steps; 0 and no change where that fails. */
+static double bend(mhb_truncation *t, const double *step) {
+  mhb_balance *b      = t->doubled;
+  const double length = mhb_norm(step, b->n), size = mhb_balance_vibration(b, t->x);
+  double      *change = t->trial, part = fmin(1, NEARBY * size / length), product = 0;
+  if (!(length > 0)) return 0;
+  for (int i = 0; i < b->n; i++) change[i] = t->x[i] + part * step[i];
+  mhb_balance_evaluate(b, change, t->balance->eval->at.omega, t->r, NULL, NULL);
+  for (int i = 0; i < b->n; i++) change[i] = t->r[i] - t->before[i];
+  if (!solve(t, change)) {
+    memset(change, 0, sizeof *change * (size_t)b->n);
+    return 0;
+  }
+  for (int i = 0; i < b->n; i++) {
+    change[i] = (change[i] - part * step[i]) / (part * part);
+    product += change[i] / length * (step[i] / length);
+  }
+  return product;
 }
 
 /* Smallest positive root tau of -1 + tau + kappa tau^2, or the modulus of complex roots. */
@@ -111,16 +145,17 @@ static double first_root(double kappa) {
   return root >= 0 ? 2 / (1 + sqrt(root)) : 1 / sqrt(-kappa);
 }
 
-static double part_of(mhb_truncation *t, const double *step) {
-  double length = mhb_norm(step, t->doubled->n), size = mhb_balance_vibration(t->doubled, t->x);
-  return length > 0 ? first_root(curvature(t, step, length, size)) : 1;
-}
-
-static void scale_step(mhb_truncation *t) {
-  t->part     = 1;
-  double part = part_of(t, t->step);
-  for (int i = 0; i < t->doubled->n; i++) t->step[i] *= part;
-  t->part = part;
+/* The step to the root along it, without what the bend there adds across it. */
+static void correct_step(mhb_truncation *t) {
+  const int    n     = t->doubled->n;
+  const double kappa = bend(t, t->step), tau = first_root(kappa), length = mhb_norm(t->step, n);
+  double       across = 0;
+  for (int i = 0; i < n; i++) {
+    t->trial[i] -= kappa * t->step[i];
+    across = hypot(across, t->trial[i]);
+  }
+  const double second = tau * across < SMALL * length ? tau * tau : 0;
+  for (int i = 0; i < n; i++) t->step[i] = tau * t->step[i] - second * t->trial[i];
 }
 
 /* Whether harmonics above 2m count beside a step; their forces at t->x are set. stiffness: the
@@ -136,10 +171,11 @@ static mhb_truncation_kind set_newton_step(mhb_truncation *t) {
   mhb_balance *b     = t->doubled;
   size_t       bytes = sizeof(double) * (size_t)b->n;
   mhb_balance_linearise(b, t->x, t->balance->eval->at.omega, t->r, NULL);
+  memcpy(t->before, t->r, bytes);
   for (int i = 0; i < b->n; i++) t->step[i] = -t->r[i];
-  if (!mhb_condensation_factor(t->system, NULL, NULL)) return MHB_TRUNCATION_FIRST_ORDER;
+  if (!factor(t)) return MHB_TRUNCATION_FIRST_ORDER;
   memcpy(t->trial, t->step, bytes);
-  if (!mhb_condensation_solve(t->system, t->trial)) return MHB_TRUNCATION_FIRST_ORDER;
+  if (!solve(t, t->trial)) return MHB_TRUNCATION_FIRST_ORDER;
   memset(t->feedback, 0, bytes);
   if (t->higher) mhb_higher_harmonics_evaluate(t->higher, b, t->x);
   if (higher_count(t, b, t->trial)) {
@@ -148,7 +184,7 @@ static mhb_truncation_kind set_newton_step(mhb_truncation *t) {
     mhb_condensation_solve(t->system, t->trial);
   }
   memcpy(t->step, t->trial, bytes);
-  scale_step(t);
+  correct_step(t);
   return MHB_TRUNCATION_NEWTON;
 }
 
@@ -179,21 +215,19 @@ static void evaluate_above(mhb_truncation *t) {
 static bool set_broyden_step(mhb_truncation *t) {
   mhb_truncation_step *by    = t->broyden;
   const size_t         bytes = sizeof(double) * (size_t)t->doubled->n;
-  if (!t->higher) return mhb_truncation_step_find(by, t->factors, t->x, NULL, NULL, t->step);
   evaluate_above(t);
   memcpy(t->trial, t->doubled->eval->p, bytes); /* the forces at t->x */
-  if (!mhb_truncation_step_find(by, NULL, t->x, t->r, NULL, t->step)) return false;
+  if (!mhb_truncation_step_find(by, t->x, t->r, NULL, t->step)) return false;
   if (mhb_norm(t->step, t->doubled->n) > FAR * mhb_balance_vibration(t->doubled, t->x))
     return false;
   if (!higher_count(t, t->balance, t->step)) return true;
   memcpy(t->doubled->eval->p, t->trial, bytes);
   mhb_higher_harmonics_feedback(t->higher, t->doubled, t->balance, t->x, t->feedback);
-  return mhb_truncation_step_find(by, NULL, t->x, t->r, t->feedback, t->step);
+  return mhb_truncation_step_find(by, t->x, t->r, t->feedback, t->step);
 }
 
 static void set_step(mhb_truncation *t, bool by_broyden) {
   t->doubled->eval->near = true;
-  t->part                = 1;
   t->by_broyden          = by_broyden && set_broyden_step(t);
   t->kind                = t->by_broyden ? MHB_TRUNCATION_NEWTON : set_newton_step(t);
   t->doubled->eval->near = false;
@@ -217,13 +251,14 @@ double mhb_truncation_error(mhb_truncation *t, const double *x) {
 }
 
 bool mhb_truncation_solve(mhb_truncation *t, double *change) {
-  return t->by_broyden ? mhb_truncation_step_solve(t->broyden, change)
-                       : mhb_condensation_solve(t->system, change);
+  if (t->by_broyden) return mhb_truncation_step_solve(t->broyden, change);
+  if (t->by_gmres) return mhb_doubled_ring_solve_low(t->ring, change);
+  return mhb_condensation_solve(t->system, change);
 }
 
 double mhb_truncation_part(mhb_truncation *t, const double *step) {
   if (t->by_broyden) set_step(t, false);
-  return t->kind == MHB_TRUNCATION_NEWTON ? part_of(t, step) : 1;
+  return t->kind == MHB_TRUNCATION_NEWTON ? first_root(bend(t, step)) : 1;
 }
 
 double mhb_truncation_power(const mhb_truncation *t, int k) {

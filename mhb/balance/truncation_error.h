@@ -6,9 +6,11 @@
  * harmonics and is up to fifteen times too small.
  *
  * A harmonic above 2m may be at a resonance. Those harmonics are estimated one by one
- * (higher_harmonics.h). Where they are not small, r is evaluated anew with them before the step. In
- * a ring of different blades those above 2m are not looked at. With many pairs, and in such a ring,
- * Broyden's method saves the Jacobian with 2m harmonics (truncation_step.h). */
+ * (higher_harmonics.h). Where they are not small, r is evaluated anew with them before the step.
+ *
+ * Two cases save the factors with 2m harmonics. With many pairs Broyden's method finds the step
+ * (truncation_step.h). In a ring of different blades GMRES does (doubled_ring.h); there harmonics
+ * above 2m are not looked at. */
 #ifndef MHB_BALANCE_TRUNCATION_ERROR_H
 #define MHB_BALANCE_TRUNCATION_ERROR_H
 
@@ -16,6 +18,7 @@
 
 #include "mesh/base/arena.h"
 #include "mhb/balance/condensation.h"
+#include "mhb/balance/doubled_ring.h"
 #include "mhb/balance/higher_harmonics.h"
 #include "mhb/balance/truncation_step.h"
 
@@ -40,17 +43,19 @@ typedef struct {
   mhb_balance           *doubled;    /* with 2m harmonics */
   mhb_condensation      *system;     /* of the doubled balance */
   mhb_higher_harmonics  *higher;     /* above 2m; NULL of a ring */
-  mhb_truncation_step   *broyden;    /* of a ring and of many pairs; else NULL */
+  mhb_truncation_step   *broyden;    /* of many pairs; else NULL */
+  mhb_doubled_ring      *ring;       /* of a ring; else NULL */
   mhb_contact_evaluator *contact;    /* of many pairs: motions of m harmonics, forces of all */
   double                *force;      /* [3][2 highest + 1] of it */
   mhb_ring_system       *factors;    /* of a ring, near its point; the caller's, or NULL */
   double                *x;          /* [doubled->n] the solution, zero above m */
   double                *step;       /* [doubled->n] delta, -r or 0 of the last estimate */
   double                *r, *trial, *feedback; /* [doubled->n] */
+  double                *before;               /* [doubled->n] residual at x */
   double                 higher_size;          /* |u_k|, k > 2m, of the last estimate */
-  double                 part;                 /* of the Newton step that delta is */
   mhb_truncation_kind    kind;                 /* of the last estimate */
   bool                   by_broyden;           /* its step; the system is not factored there */
+  bool                   by_gmres;             /* its step, from the ring; nor here */
   shb_arena              arena;
 } mhb_truncation;
 
@@ -66,7 +71,7 @@ void       mhb_truncation_destroy(mhb_truncation *truncation);
 double mhb_truncation_error(mhb_truncation *truncation, const double *x);
 
 /* change[doubled->n] <- (I + R J)^-1 change at the point of the last estimate. false: it failed. By
- * Broyden's step: harmonics up to m to a hundredth, the others stay. */
+ * Broyden's step and by GMRES: harmonics up to m as with m harmonics, the others stay. */
 bool mhb_truncation_solve(mhb_truncation *truncation, double *change);
 
 /* How much of a change of the solution, step[doubled->n], is left by the curvature of the residual:

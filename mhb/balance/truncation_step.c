@@ -18,21 +18,8 @@ static const double LEFT = 0.1;
  * above m only, the second one what the others make of them. */
 static const double GAIN = 0.7;
 
-/* In a ring a second correction so much longer than the first one means a fold nearby. With 40
- * blades 108 of 112 such steps failed later on. */
-static const double LONGER = 20;
-
 /* Error of the solutions with m harmonics and many pairs; the next residual removes it. */
 static const double ROUGH = 1e-2;
-
-static void take_ring_arrays(mhb_truncation_step *t) {
-  const mhb_ring_receptance *ring = t->balance->receptance->ring;
-  const size_t n = (size_t)ring->n, N = (size_t)ring->blades, m = (size_t)t->balance->m;
-  t->A     = shb_arena_take(&t->arena, m * N * n * n, sizeof *t->A);
-  t->pivot = shb_arena_take(&t->arena, m * N * n, sizeof *t->pivot);
-  t->u     = shb_arena_take(&t->arena, n, sizeof *t->u);
-  t->along = shb_arena_take(&t->arena, (size_t)t->balance->n + 1, sizeof(double));
-}
 
 static shb_status create_pairs(mhb_truncation_step *t) {
   const mhb_balance *b       = t->balance;
@@ -51,15 +38,11 @@ shb_status mhb_truncation_step_create(const mhb_balance *b, mhb_balance *doubled
   t->balance        = b;
   t->doubled        = doubled;
   t->above          = above;
-  t->low            = shb_arena_take(&t->arena, (size_t)b->n + 1, sizeof(double));
+  t->low            = shb_arena_take(&t->arena, (size_t)b->n, sizeof(double));
   t->at             = shb_arena_take(&t->arena, all, sizeof(double));
   t->r              = shb_arena_take(&t->arena, all, sizeof(double));
   t->steps          = shb_arena_take(&t->arena, MHB_MOST_TRUNCATION_STEPS * all, sizeof(double));
-  shb_status status = SHB_OK;
-  if (b->receptance->ring)
-    take_ring_arrays(t);
-  else
-    status = create_pairs(t);
+  shb_status status = create_pairs(t);
   if (status == SHB_OK && t->arena.failed)
     status = shb_fail(SHB_ERR_IO, __FILE__, __LINE__, "out of memory for %d harmonics", doubled->m);
   if (status != SHB_OK) {
@@ -77,80 +60,12 @@ void mhb_truncation_step_destroy(mhb_truncation_step *t) {
   free(t);
 }
 
-/* ---- a ring ---- */
-
-/* Place of the factors of harmonic k > m of a contact. */
-static size_t place_of(const mhb_truncation_step *t, int k, int contact) {
-  const size_t blades = (size_t)t->balance->receptance->ring->blades;
-  return (size_t)(k - t->balance->m - 1) * blades + (size_t)contact;
-}
-
-/* Factors of all harmonics above m. 0: singular. */
-static int factor_high(mhb_truncation_step *t) {
-  const mhb_balance         *b    = t->balance;
-  const mhb_ring_receptance *ring = t->doubled->receptance->ring;
-  const int                  n = ring->n, P = n / 3;
-  mhb_receptance_set_frequency(t->doubled->receptance, b->eval->at.omega);
-  for (int k = b->m + 1; k <= t->doubled->m; k++) mhb_receptance_update(t->doubled->receptance, k);
-  for (int c = 0; c < ring->blades; c++) {
-    double complex D[P][9];
-    for (int j = 0; j < P; j++) mhb_last_stiffness(b, c * P + j, (double complex(*)[3])D[j]);
-    for (int k = b->m + 1; k <= t->doubled->m; k++) {
-      const size_t    at = place_of(t, k, c);
-      double complex *A  = t->A + at * (size_t)(n * n);
-      mhb_harmonic_matrix(n, mhb_ring_receptance_block(ring, k, c, MHB_RING_OWN),
-                          (const double complex(*)[9])D, A);
-      if (!mhb_factor_complex(n, A, t->pivot + at * (size_t)n)) return 0;
-    }
-  }
-  return 1;
-}
-
-/* Harmonics above m of r[doubled->n] <- the solution of their systems. */
-static void solve_high(mhb_truncation_step *t, double *r) {
-  const mhb_ring_receptance *ring = t->doubled->receptance->ring;
-  const int                  n = ring->n, nb = t->doubled->nb;
-  for (int c = 0; c < ring->blades; c++)
-    for (int k = t->balance->m + 1; k <= t->doubled->m; k++) {
-      const size_t at = place_of(t, k, c);
-      double      *to = r + (size_t)c * (size_t)n * (size_t)nb + (2 * k - 1);
-      for (int i = 0; i < n; i++) t->u[i] = CMPLX(to[i * nb], to[i * nb + 1]);
-      mhb_solve_complex(n, t->A + at * (size_t)(n * n), t->pivot + at * (size_t)n, 1, t->u);
-      for (int i = 0; i < n; i++) {
-        to[i * nb]     = creal(t->u[i]);
-        to[i * nb + 1] = cimag(t->u[i]);
-      }
-    }
-}
-
-/* along <- the solution for the border alone, by which a solution loses its border. 0: singular. */
-static int set_along(mhb_truncation_step *t) {
-  const int n = t->balance->n;
-  if (!t->factors->borders) return 1;
-  memset(t->along, 0, sizeof(double) * (size_t)n);
-  t->along[n] = 1;
-  return mhb_ring_system_solve(t->factors, t->along) && t->along[n] != 0;
-}
-
-/* t->low[n] <- the solution of the ring's Jacobian, without its border. */
-static int solve_ring(mhb_truncation_step *t) {
-  const int n = t->balance->n;
-  t->low[n]   = 0;
-  if (!mhb_ring_system_solve(t->factors, t->low)) return 0;
-  if (!t->factors->borders) return 1;
-  const double part = t->low[n] / t->along[n];
-  for (int i = 0; i < n; i++) t->low[i] -= part * t->along[i];
-  return 1;
-}
-
-/* ---- many pairs ---- */
-
 static const double complex (*stiffness_of(const mhb_truncation_step *t))[9] {
   return (const double complex(*)[9])t->D;
 }
 
 /* Factors with m harmonics, and of those above. 0: singular, or there is no small basis. */
-static int factor_pairs(mhb_truncation_step *t) {
+static int factor(mhb_truncation_step *t) {
   const mhb_balance *b = t->balance;
   for (int a = 0; a < b->n_pairs; a++) {
     t->form[a] = mhb_pair_block(b, a);
@@ -161,29 +76,19 @@ static int factor_pairs(mhb_truncation_step *t) {
          mhb_lone_harmonics_factor(t->above, b->law, b->m + 1, stiffness_of(t));
 }
 
-/* ---- both ---- */
-
-static int factor(mhb_truncation_step *t) {
-  if (t->jacobian) return factor_pairs(t);
-  return t->factors && t->factors->regular && set_along(t) && factor_high(t);
-}
-
 int mhb_truncation_step_solve(mhb_truncation_step *t, double *change) {
   const mhb_balance *b    = t->balance;
   const int          rows = 3 * b->n_pairs, nb = b->nb, wide = t->doubled->nb;
   const size_t       length = sizeof(double) * (size_t)nb;
   for (int i = 0; i < rows; i++) memcpy(t->low + i * nb, change + i * wide, length);
-  if (!(t->jacobian ? mhb_woodbury_solve(t->jacobian, ROUGH, t->low) : solve_ring(t))) return 0;
+  if (!mhb_woodbury_solve(t->jacobian, ROUGH, t->low)) return 0;
   for (int i = 0; i < rows; i++) memcpy(change + i * wide, t->low + i * nb, length);
   return 1;
 }
 
 /* change[doubled->n] <- the first matrix' solution. 0: it failed. */
 static int solve(mhb_truncation_step *t, double *change) {
-  if (t->jacobian)
-    mhb_lone_harmonics_solve(t->above, t->balance->m + 1, stiffness_of(t), change);
-  else
-    solve_high(t, change);
+  mhb_lone_harmonics_solve(t->above, t->balance->m + 1, stiffness_of(t), change);
   return mhb_truncation_step_solve(t, change);
 }
 
@@ -215,25 +120,23 @@ static void evaluate(mhb_truncation_step *t, const double *x, const double *step
   b->assumed = NULL;
 }
 
-int mhb_truncation_step_find(mhb_truncation_step *t, mhb_ring_system *factors, const double *x,
-                             const double *r, const double *feedback, double *step) {
+int mhb_truncation_step_find(mhb_truncation_step *t, const double *x, const double *r,
+                             const double *feedback, double *step) {
   mhb_balance *b      = t->doubled;
   const int    n      = b->n;
   double       before = INFINITY;
-  t->factors          = factors;
   if (!factor(t)) return 0;
   memset(step, 0, sizeof(double) * (size_t)n);
   for (int done = 0; done < MHB_MOST_TRUNCATION_STEPS; done++) {
     double *change = t->steps + done * n;
-    if (done > 0 || !r) evaluate(t, x, step);
-    const double *residual = done > 0 || !r ? t->r : r;
+    if (done > 0) evaluate(t, x, step);
+    const double *residual = done > 0 ? t->r : r;
     for (int i = 0; i < n; i++) change[i] = -residual[i] - (feedback ? feedback[i] : 0);
     if (!solve(t, change)) return 0;
     update(t->steps, done, n, change);
     for (int i = 0; i < n; i++) step[i] += change[i];
     const double size = mhb_norm(change, n), part = size / before;
     if (done > 1 && !(part < GAIN)) return 0;
-    if (done == 1 && part > LONGER && !t->jacobian) return 0;
     if (done > 1 && size * part / (1 - part) <= LEFT * mhb_norm(step, n)) return 1;
     before = size;
   }

@@ -36,7 +36,7 @@ shb_test(mhb/response direct_stress tests_fem tests_models shb_modal)
 shb_test(mhb/branches stiff_disc tests_fem tests_box tests_models shb_modal shb_mesh_blade)
 shb_test(mhb/branches disc_run_up tests_fem tests_models shb_modal)
 foreach(noun balance stick_stiffness condensation newton ring_system subharmonics
-    truncation_error truncation_step modal_error spatial_error stuck_solver coriolis
+    truncation_error doubled_ring modal_error spatial_error stuck_solver coriolis
     disc_contacts)
   shb_test(mhb/balance ${noun} tests_models)
 endforeach()
