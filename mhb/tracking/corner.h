@@ -6,10 +6,9 @@
 
 #include "mhb/tracking/tracked_curve.h"
 
-/* Follow a corner or stuck peak from a seed both ways into an empty branch that ascends in the
- * parameter. It ends at the ends of the range, where the corner is no maximum any more, or where a
- * stuck peak begins to slip (MHB_END_CORNER). Points are as dense as linear interpolation of the
- * amplitude to 3e-5 asks for. MHB_OPTIMUM marks where the amplitude is stationary.
+/* Follow a corner or stuck peak from a seed both ways into an empty branch (peak_places.h). It ends
+ * at the ends of the range, where the corner is no maximum any more, or where a stuck peak begins
+ * to slip (MHB_END_CORNER).
  * *found false: the seed is neither. SHB_ERR_IO: no memory. */
 shb_status mhb_trace_corner(mhb_balance *balance, const mhb_tracking *tracking,
                             const mhb_tracking_seed *seed, mhb_response *response, int branch,
