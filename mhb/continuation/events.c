@@ -22,6 +22,7 @@ const char *mhb_end_text(mhb_end end) {
       [MHB_END_TINY_STEPS]  = "the steps stayed tiny",
       [MHB_END_TURNED]      = "the maximum ends",
       [MHB_END_CORNER]      = "slip ends",
+      [MHB_END_SMOOTH]      = "the maximum leaves its kink",
       [MHB_END_MEETS_PLUS]  = "the pair of multipliers meets at +1",
       [MHB_END_MEETS_MINUS] = "the pair of multipliers meets at -1",
       [MHB_END_FREQUENCY]   = "leaves the frequency range",

@@ -21,6 +21,7 @@ typedef enum {
   MHB_END_TINY_STEPS,  /* the steps stayed tiny */
   MHB_END_TURNED,      /* a tracked maximum becomes a minimum */
   MHB_END_CORNER,      /* a tracked peak meets the end of slip */
+  MHB_END_SMOOTH,      /* a tracked peak leaves its kink */
   MHB_END_MEETS_PLUS,  /* a tracked pair of multipliers meets at +1 */
   MHB_END_MEETS_MINUS, /* the same at -1 */
   MHB_END_FREQUENCY,   /* a tracked point leaves the frequency range */

@@ -8,6 +8,7 @@
 #include "mhb/branches/record.h"
 #include "mhb/numerics/vector.h"
 #include "mhb/tracking/corner_point.h"
+#include "mhb/tracking/kink.h"
 
 /* Brackets of exchanges end at this length, relative to the parameter. */
 static const double EXACT = 1e-9;
@@ -125,6 +126,44 @@ static shb_status corner_at(const search *s, mhb_balance *balance, const mhb_bra
   return SHB_OK;
 }
 
+/* The same of a smooth peak. at->amplitude stays where there is none. */
+static shb_status smooth_at(const search *s, mhb_balance *balance, const double *x,
+                            peak_place *at) {
+  mhb_peak_system *system;
+  mhb_curve_point  point;
+  SHB_TRY(mhb_peak_system_create(
+      balance, s->tracking->kind, s->tracking->output, s->tracking->parameter,
+      s->tracking->frequency[1] - s->tracking->frequency[0], mhb_norm(x, balance->n), &system));
+  mhb_curve_system *base = mhb_peak_system_base(system);
+  mhb_peak_system_measure(base, s->tracking->size);
+  shb_status status = mhb_curve_point_create(base, &point);
+  if (status == SHB_OK) {
+    mhb_peak_system_pack(base, x, SHB_TWO_PI * at->frequency, point.x);
+    point.value = at->value;
+    if (base->solve_at_value(base, 1e-10, &point) == MHB_CONVERGED) {
+      at->amplitude = mhb_peak_system_report(base, &point).amplitude;
+      at->frequency = mhb_peak_system_omega(base, point.x) / SHB_TWO_PI;
+    }
+    mhb_curve_point_destroy(base, &point);
+  }
+  base->destroy(base);
+  return status;
+}
+
+/* The same of a peak on a kink. */
+static shb_status kink_at(const search *s, mhb_balance *balance, const double *x, peak_place *at) {
+  mhb_kink      *kink;
+  const double   omega = SHB_TWO_PI * at->frequency;
+  mhb_peak_place place = {.value = at->value, .omega = omega};
+  SHB_TRY(mhb_kink_create(balance, s->tracking, &kink));
+  if (mhb_kink_start(kink, x, &place) && fabs(place.omega / omega - 1) <= INTERPOLATED) {
+    at->amplitude = place.amplitude;
+    at->frequency = place.omega / SHB_TWO_PI;
+  }
+  mhb_kink_destroy(kink);
+  return SHB_OK;
+}
+
 /* Amplitude and frequency (Hz) of the peak of a branch at a value inside it. NAN: not found. */
 static shb_status peak_at(const search *s, int b, double value, double *amplitude,
                           double *frequency) {
@@ -132,9 +171,7 @@ static shb_status peak_at(const search *s, int b, double value, double *amplitud
   peak_place        at       = {segment_at(branch, value), value, NAN, 0};
   mhb_settings      settings = *s->settings;
   mhb_balance      *balance;
-  mhb_peak_system  *system = NULL;
-  mhb_curve_point   point  = {0};
-  settings.harmonics       = branch->n_harmonics;
+  settings.harmonics = branch->n_harmonics;
   SHB_TRY(mhb_balance_create(s->model, &settings, &balance));
   size_t     n      = (size_t)balance->n;
   double    *x      = calloc(2 * n, sizeof *x);
@@ -149,25 +186,8 @@ static shb_status peak_at(const search *s, int b, double value, double *amplitud
   }
   bool corner = false;
   if (status == SHB_OK) status = corner_at(s, balance, branch, x, x + n, &at, &corner);
-  if (status == SHB_OK && !corner)
-    status = mhb_peak_system_create(
-        balance, s->tracking->kind, s->tracking->output, s->tracking->parameter,
-        s->tracking->frequency[1] - s->tracking->frequency[0], mhb_norm(x, (int)n), &system);
-  if (status == SHB_OK && !corner) {
-    mhb_curve_system *base = mhb_peak_system_base(system);
-    mhb_peak_system_measure(base, s->tracking->size);
-    status = mhb_curve_point_create(base, &point);
-    if (status == SHB_OK) {
-      mhb_peak_system_pack(base, x, SHB_TWO_PI * at.frequency, point.x);
-      point.value = value;
-      if (base->solve_at_value(base, 1e-10, &point) == MHB_CONVERGED) {
-        at.amplitude = mhb_peak_system_report(base, &point).amplitude;
-        at.frequency = mhb_peak_system_omega(base, point.x) / SHB_TWO_PI;
-      }
-      mhb_curve_point_destroy(base, &point);
-    }
-    base->destroy(base);
-  }
+  if (status == SHB_OK && !corner) status = smooth_at(s, balance, x, &at);
+  if (status == SHB_OK && isnan(at.amplitude)) status = kink_at(s, balance, x, &at);
   *amplitude = at.amplitude;
   *frequency = at.frequency;
   free(x);

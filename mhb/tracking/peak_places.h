@@ -1,8 +1,8 @@
 /* Peaks that are solved for at one value of the parameter q at a time, followed along q.
  *
- * Such a peak lies where the response curve is not smooth, or its equations are not those of
- * peak_system.h: a corner or stuck peak (corner.h), a peak on a kink (kink.h). A family says where
- * its peak is at a value; this module walks along q, finds the ends and records the points. */
+ * The equations of peak_system.h do not hold there: at a corner or stuck peak (corner.h), and at a
+ * peak on a kink (kink.h). A family says where its peak is at a value. This module walks along q,
+ * finds the ends and records the points. */
 #ifndef MHB_TRACKING_PEAK_PLACES_H
 #define MHB_TRACKING_PEAK_PLACES_H
 

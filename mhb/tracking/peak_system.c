@@ -20,6 +20,11 @@ static const double ON_SURFACE = 1e-12;
 
 /* Newton's method for a peak at a value is given up if three iterations gain less than this. */
 static const double SLOW_GAIN = 0.5;
+
+/* G is a slope, and its round-off beside the motion is that of the curvature. Newton's method may
+ * end by it. The peak is known if the residual is within the first factor of the tolerance, and the
+ * next step below this part of the motion. */
+static const double ROUNDED_RESIDUAL = 1e3, ROUNDED_STEP = 1e-10;
 enum { MAX_NEWTON = 25, MAX_HALVINGS = 8, MAX_HALVINGS_OF_PEAK = 3 };
 
 struct mhb_peak_system {
@@ -352,28 +357,38 @@ static bool newton_step(mhb_curve_system *system, const mhb_curve_point *point, 
   return solve(system, delta);
 }
 
+/* The line search. false: the residual does not fall, and x is the last point tried. */
+static bool descend(mhb_curve_system *system, mhb_curve_point *point, const double *delta,
+                    double *residual) {
+  const int one = of(system)->n + 1, most = system->costly ? MAX_HALVINGS_OF_PEAK : MAX_HALVINGS;
+  double    from[one], before = *residual, part = 1;
+  memcpy(from, point->x, sizeof from);
+  for (int halvings = 0; halvings <= most; halvings++, part *= 0.5) {
+    for (int i = 0; i < one; i++) point->x[i] = from[i] + part * delta[i];
+    linearise(system, point);
+    *residual = mhb_norm(point->r, one);
+    if (*residual < LEAST_GAIN * before) return true;
+  }
+  return false;
+}
+
 static mhb_reason solve_at_value(mhb_curve_system *system, double tolerance,
                                  mhb_curve_point *point) {
-  int    one = of(system)->n + 1, most = system->costly ? MAX_HALVINGS_OF_PEAK : MAX_HALVINGS;
-  double delta[one + 1], from[one], seen[MAX_NEWTON];
+  const int one = of(system)->n + 1;
+  double    delta[one + 1], seen[MAX_NEWTON];
   linearise(system, point);
   double residual = mhb_norm(point->r, one);
   for (point->iterations = 0; point->iterations < MAX_NEWTON; point->iterations++) {
     if (residual <= tolerance * mhb_norm(point->x, one)) return MHB_CONVERGED;
     seen[point->iterations] = residual;
+    if (!newton_step(system, point, delta)) return MHB_SINGULAR;
+    const double size    = mhb_norm(point->x, one);
+    const bool   rounded = residual <= ROUNDED_RESIDUAL * tolerance * size &&
+                         mhb_norm(delta, one) <= ROUNDED_STEP * size;
     if (system->costly && point->iterations >= 3 &&
         residual > SLOW_GAIN * seen[point->iterations - 3])
-      return MHB_NO_DESCENT;
-    if (!newton_step(system, point, delta)) return MHB_SINGULAR;
-    memcpy(from, point->x, sizeof from);
-    double before = residual, part = 1;
-    for (int halvings = 0;; halvings++, part *= 0.5) {
-      for (int i = 0; i < one; i++) point->x[i] = from[i] + part * delta[i];
-      linearise(system, point);
-      residual = mhb_norm(point->r, one);
-      if (residual < LEAST_GAIN * before) break;
-      if (halvings == most) return MHB_NO_DESCENT;
-    }
+      return rounded ? MHB_CONVERGED : MHB_NO_DESCENT;
+    if (!descend(system, point, delta, &residual)) return rounded ? MHB_CONVERGED : MHB_NO_DESCENT;
   }
   return MHB_MAX_ITERATIONS;
 }

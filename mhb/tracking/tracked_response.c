@@ -10,6 +10,7 @@
 #include "mhb/response/describe.h"
 #include "mhb/response/publisher.h"
 #include "mhb/tracking/corner.h"
+#include "mhb/tracking/kink.h"
 #include "mhb/tracking/optimum.h"
 #include "mhb/tracking/sweep_peak.h"
 #include "mhb/tracking/tracked_curve.h"
@@ -321,6 +322,8 @@ static shb_status follow_with(tracking_run *run, const mhb_sweep_peak *peak, dou
       status = mhb_trace_corner(balance, &run->tracking, &seed, run->response, index, found, &end);
     if (status == SHB_OK && !*found)
       status = mhb_trace_tracked(balance, &tracking, &seed, run->response, index, found, &end);
+    if (status == SHB_OK && !*found)
+      status = mhb_trace_kink(balance, &run->tracking, &seed, run->response, index, found, &end);
   }
   free(x);
   mhb_balance_destroy(balance);

@@ -1,8 +1,13 @@
 /* Tracked peaks and optima of two shipped scenes against sweeps of the frequency. */
+#include <math.h>
 #include <stdlib.h>
 
 #include "cases/commands/load_model.h"
 #include "cases/schema/case.h"
+#include "mesh/base/constants.h"
+#include "mhb/branches/record.h"
+#include "mhb/tracking/kink.h"
+#include "mhb/tracking/tracked_response.h"
 #include "tests/support/peak_scan.h"
 #include "tests/support/scene.h"
 
@@ -76,6 +81,64 @@ static void peaks_of_paper_fig9_are_those_of_sweeps(void **state) {
   peaks_are_those_of_sweeps("paper_fig9", 3, 10, 1500, 100, 6);
 }
 
+/* dA/dq and domega/dq of the peak on a kink at a point of a branch are the limits of central
+ * differences, of second order. */
+static void check_slopes(const case_model *model, const mhb_branch *branch, int point) {
+  const mhb_settings settings = mhb_tracked_settings(&model->settings, branch->value[point]);
+  const mhb_tracking tracking = {
+      .kind      = MHB_TRACK_PEAK,
+      .parameter = MHB_IN_KU,
+      .low       = model->settings.range[0],
+      .high      = model->settings.range[1],
+      .frequency = {SHB_TWO_PI * settings.frequency[0], SHB_TWO_PI * settings.frequency[1]}};
+  mhb_peak_place at = {.value = branch->value[point],
+                       .omega = SHB_TWO_PI * branch->frequency[point]};
+  double         away[2][2];
+  mhb_balance   *balance;
+  mhb_kink      *kink;
+  assert_ok(mhb_balance_create(&model->model, &settings, &balance));
+  assert_ok(mhb_kink_create(balance, &tracking, &kink));
+  double x[balance->n];
+  mhb_recorded_motion(branch, point, balance, x);
+  assert_true(mhb_kink_start(kink, x, &at));
+  for (int i = 0; i < 2; i++) {
+    const double   step    = (i ? 1e-3 : 2e-3) * at.value;
+    mhb_peak_place side[2] = {mhb_peak_place_at(&at, at.value - step),
+                              mhb_peak_place_at(&at, at.value + step)};
+    for (int j = 0; j < 2; j++) assert_true(mhb_kink_start(kink, x, &side[j]));
+    away[0][i] = (side[1].amplitude - side[0].amplitude) / (2 * step * at.slope) - 1;
+    away[1][i] = (side[1].omega - side[0].omega) / (2 * step * at.rate) - 1;
+  }
+  for (int j = 0; j < 2; j++) {
+    const double order = log2(fabs(away[j][0] / away[j][1]));
+    print_message("%s: off by %.1e, %.1e, order %.2f\n", j ? "frequency" : "amplitude", away[j][0],
+                  away[j][1], order);
+    assert_true(order > 1.8 && order < 2.2);
+  }
+  mhb_kink_destroy(kink);
+  mhb_balance_destroy(balance);
+}
+
+/* A phase of slip begins at the peak, over a hundredth of the stiffness. */
+static void peaks_on_a_kink_are_those_of_sweeps(void **state) {
+  (void)state;
+  case_model    model    = scene_model("z_notch_blade", 7);
+  mhb_settings *s        = &model.settings;
+  s->parameter           = MHB_IN_KU;
+  s->range[0]            = 2.283e6;
+  s->range[1]            = 2.3e6;
+  s->n0[0]               = 6.06;
+  const peak_scan scan   = {&model.model, s};
+  mhb_response   *r      = peak_scan_follow(&scan);
+  peak_agreement  agrees = peak_scan_compare(&scan, r);
+  assert_int_equal(r->n_branches, 1);
+  assert_below(agrees.amplitude, 1e-7);
+  assert_below(agrees.frequency, 1e-7);
+  check_slopes(&model, &r->branch[0], r->branch[0].n_points / 2);
+  mhb_response_destroy(r);
+  case_model_free(&model);
+}
+
 /* The optimum of one parameter of z_notch_blade at a preload is that of a scan of sweeps. */
 static void optimum_is_that_of_a_scan(mhb_parameter parameter, double n0, double low, double high) {
   case_model    model  = scene_model("z_notch_blade", 7);
@@ -111,6 +174,7 @@ int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(peaks_of_z_notch_blade_are_those_of_sweeps),
       cmocka_unit_test(peaks_of_paper_fig9_are_those_of_sweeps),
+      cmocka_unit_test(peaks_on_a_kink_are_those_of_sweeps),
       cmocka_unit_test(the_optimum_of_the_preload_is_that_of_a_scan),
       cmocka_unit_test(the_optimum_of_the_friction_coefficient_is_that_of_a_scan),
       cmocka_unit_test(the_optimum_of_the_stiffness_is_that_of_a_scan)};

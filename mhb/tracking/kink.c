@@ -1,0 +1,288 @@
+#include "mhb/tracking/kink.h"
+
+#include <lapacke.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "mesh/base/root.h"
+#include "mhb/numerics/vector.h"
+
+/* The first step along the response curve, the farthest one, and the bracket of the kink, in units
+ * of |z|. */
+static const double FIRST = 1e-7, REACH = 0.03, EXACT = 1e-12;
+
+/* The bracket of the kink grows by this factor. */
+static const double GROWTH = 4;
+
+/* Newton's method for a point of the curve ends at a step of SOLVED |z|. Where steps grow again by
+ * round-off ALMOST will do. */
+static const double SOLVED = 1e-12, ALMOST = 1e-9;
+
+/* On either side of a kink |G| is larger than this. Beside a smooth maximum it is about EXACT times
+ * the curvature of the curve. */
+static const double SLOPE = 1e-6;
+
+/* A recorded point has a smaller residual, relative to the vibration. */
+static const double BALANCED = 1e-8;
+
+enum { MOST_NEWTON = 15 };
+
+/* One point of the response curve, with derivatives by s at fixed q and by q at fixed s. */
+typedef struct {
+  double  s, amplitude, slope, by_value;
+  double *z, *along, *by_q; /* [n + 1]; dz/ds, dz/dq */
+} side;
+
+struct mhb_kink {
+  mhb_peak_family base; /* first: its functions get it back */
+  int             n;
+  double          unit;   /* m s/rad: xi = unit omega */
+  double          value;  /* of the last kink */
+  double         *z;      /* [n + 1] the last kink */
+  double         *rate;   /* [n + 1] dz/dq of it */
+  double         *border; /* [n + 1] c */
+  double         *origin; /* [n + 1] z_0 */
+  side            left, right, next;
+  double         *jacobian, *matrix;   /* [n][n], [n + 1][n + 1] column-major, factored */
+  double         *r, *by_omega, *by_x; /* [n] */
+  double complex *weight;
+  int            *pivot; /* [n + 1] */
+  shb_arena       arena;
+};
+
+/* ---- a point of the response curve ---- */
+
+static void go_to(mhb_balance *b, mhb_parameter parameter, double value) {
+  mhb_balance_set_parameter(b, parameter);
+  mhb_balance_set_value(b, value);
+  mhb_balance_set_parameter(b, MHB_IN_FREQUENCY);
+}
+
+static void solve_linear(const mhb_kink *k, double *v) {
+  const lapack_int one = k->n + 1;
+  LAPACKE_dgetrs_work(LAPACK_COL_MAJOR, 'N', one, 1, k->matrix, one, k->pivot, v, one);
+}
+
+/* r, and the factors of [r_z; c] at z. false: singular. */
+static bool factor(mhb_kink *k, const double *z) {
+  const size_t n = (size_t)k->n, one = n + 1;
+  mhb_balance_evaluate(k->base.balance, z, z[n] / k->unit, k->r, k->jacobian, k->by_omega);
+  for (size_t j = 0; j < n; j++)
+    memcpy(k->matrix + j * one, k->jacobian + j * n, sizeof(double) * n);
+  for (size_t i = 0; i < n; i++) k->matrix[n * one + i] = k->by_omega[i] / k->unit;
+  for (size_t j = 0; j < one; j++) k->matrix[j * one + n] = k->border[j];
+  return LAPACKE_dgetrf_work(LAPACK_COL_MAJOR, (int)one, (int)one, k->matrix, (int)one, k->pivot) ==
+         0;
+}
+
+/* The derivatives at a point whose factors were made last. */
+static void differentiate(mhb_kink *k, side *at) {
+  mhb_balance        *b        = k->base.balance;
+  const mhb_tracking *tracking = k->base.tracking;
+  const int           n        = k->n;
+  mhb_amplitude       a        = {.by_x = k->by_x, .weight = k->weight, .size = tracking->size};
+  mhb_output_amplitude(b, at->z, tracking->output, &a);
+  memset(at->along, 0, sizeof(double) * (size_t)n);
+  at->along[n] = 1;
+  solve_linear(k, at->along);
+  mhb_balance_slope(b, at->z, tracking->parameter, at->by_q);
+  const double by_q = mhb_amplitude_by_parameter(b, &a, tracking->parameter, b->eval->by_parameter);
+  for (int i = 0; i < n; i++) at->by_q[i] = -at->by_q[i];
+  at->by_q[n] = 0;
+  solve_linear(k, at->by_q);
+  const double by_xi = a.by_omega / k->unit;
+  at->amplitude      = a.amplitude;
+  at->slope          = mhb_dot(n, k->by_x, at->along) + by_xi * at->along[n];
+  at->by_value       = by_q + mhb_dot(n, k->by_x, at->by_q) + by_xi * at->by_q[n];
+}
+
+/* The point at s, from a motion near by in at->z. */
+static bool settle(mhb_kink *k, double s, side *at) {
+  const int n      = k->n;
+  double    before = INFINITY, step[n + 1];
+  at->s            = s;
+  for (int i = 0; i < MOST_NEWTON; i++) {
+    if (!(at->z[n] > 0) || !factor(k, at->z)) return false;
+    for (int j = 0; j < n; j++) step[j] = -k->r[j];
+    step[n] = s;
+    for (int j = 0; j <= n; j++) step[n] -= k->border[j] * (at->z[j] - k->origin[j]);
+    solve_linear(k, step);
+    const double size = mhb_norm(step, n + 1) / mhb_norm(at->z, n + 1);
+    if (!isfinite(size)) return false;
+    for (int j = 0; j <= n; j++) at->z[j] += step[j];
+    if (size <= SOLVED || (size <= ALMOST && size > 0.5 * before)) {
+      if (!factor(k, at->z)) return false;
+      differentiate(k, at);
+      return isfinite(at->slope) && isfinite(at->by_value);
+    }
+    before = size;
+  }
+  return false;
+}
+
+/* ---- the kink at a value ---- */
+
+/* to->z <- the point at s, along the tangent of another. */
+static void predict(const mhb_kink *k, const side *from, double s, side *to) {
+  for (int j = 0; j <= k->n; j++) to->z[j] = from->z[j] + (s - from->s) * from->along[j];
+}
+
+static void swap(side *a, side *b) {
+  const side kept = *a;
+  *a              = *b;
+  *b              = kept;
+}
+
+/* left and right <- two points with the next maximum of the amplitude between them, from left. */
+static bool bracket(mhb_kink *k) {
+  const double unit = mhb_norm(k->origin, k->n + 1), way = k->left.slope > 0 ? 1 : -1;
+  for (double step = FIRST; step < REACH; step *= GROWTH) {
+    predict(k, &k->left, k->left.s + way * step * unit, &k->right);
+    if (!settle(k, k->left.s + way * step * unit, &k->right)) return false;
+    if (k->right.slope * k->left.slope <= 0) {
+      if (way < 0) swap(&k->left, &k->right);
+      return true;
+    }
+    swap(&k->left, &k->right);
+  }
+  return false;
+}
+
+/* Shrink the bracket to the maximum. */
+static bool shrink(mhb_kink *k) {
+  const double unit = mhb_norm(k->origin, k->n + 1);
+  shb_root     root;
+  if (!shb_root_start(&root, k->left.s, k->left.slope, k->right.s, k->right.slope, EXACT * unit))
+    return false;
+  while (!shb_root_done(&root)) {
+    const double s = shb_root_next(&root);
+    predict(k, s - k->left.s < k->right.s - s ? &k->left : &k->right, s, &k->next);
+    if (settle(k, s, &k->next)) {
+      shb_root_found(&root, s, k->next.slope);
+      swap(&k->next, k->next.slope > 0 ? &k->left : &k->right);
+    } else if (!shb_root_failed(&root)) {
+      return false;
+    }
+  }
+  return true;
+}
+
+/* The kink near k->origin at a value; fills the place and becomes the last one. */
+static bool find(mhb_kink *k, mhb_peak_place *at, mhb_end *why) {
+  mhb_balance *b = k->base.balance;
+  const int    n = k->n;
+  *why           = MHB_END_TURNED;
+  at->margin     = NAN;
+  go_to(b, k->base.tracking->parameter, at->value);
+  memcpy(k->left.z, k->origin, sizeof(double) * ((size_t)n + 1));
+  if (!settle(k, 0, &k->left) || !bracket(k) || !shrink(k)) return false;
+  const side  *l = &k->left, *r = &k->right;
+  const double jump = l->slope - r->slope;
+  *why              = MHB_END_SMOOTH;
+  if (!(l->slope > SLOPE && r->slope < -SLOPE)) return false;
+  const double by_s = (r->by_value - l->by_value) / jump;
+  at->margin        = fmin(l->slope, -r->slope);
+  at->amplitude     = l->amplitude;
+  at->omega = at->peak = l->z[n] / k->unit;
+  at->slope            = (l->slope * r->by_value - r->slope * l->by_value) / jump;
+  at->rate             = (l->by_q[n] + by_s * l->along[n]) / k->unit;
+  const double *range  = k->base.tracking->frequency;
+  *why                 = MHB_END_FREQUENCY;
+  if (at->omega < range[0] || at->omega > range[1]) return false;
+  const double length = mhb_norm(l->along, n + 1);
+  for (int j = 0; j <= n; j++) {
+    k->z[j]      = l->z[j];
+    k->rate[j]   = l->by_q[j] + by_s * l->along[j];
+    k->border[j] = l->along[j] / length;
+  }
+  k->value = at->value;
+  return true;
+}
+
+static bool is_peak(mhb_peak_family *family, mhb_peak_place *at, mhb_end *why) {
+  mhb_kink *k = (mhb_kink *)family;
+  for (int j = 0; j <= k->n; j++) k->origin[j] = k->z[j] + (at->value - k->value) * k->rate[j];
+  return find(k, at, why);
+}
+
+static bool balance_at(mhb_peak_family *family, const mhb_peak_place *at, mhb_curve_point *point) {
+  mhb_kink      *k    = (mhb_kink *)family;
+  mhb_balance   *b    = family->balance;
+  mhb_peak_place here = *at;
+  mhb_end        unused;
+  if (k->value != at->value && !is_peak(family, &here, &unused)) return false;
+  go_to(b, family->tracking->parameter, at->value);
+  memcpy(point->x, k->z, sizeof(double) * (size_t)k->n);
+  point->value      = at->value;
+  point->iterations = 0;
+  mhb_balance_linearise(b, point->x, here.peak, point->r, NULL);
+  point->residual = mhb_norm(point->r, k->n) / mhb_balance_vibration(b, point->x);
+  return point->residual <= BALANCED;
+}
+
+bool mhb_kink_start(mhb_kink *k, const double *x, mhb_peak_place *at) {
+  const int n = k->n;
+  mhb_end   unused;
+  memcpy(k->origin, x, sizeof(double) * (size_t)n);
+  const double *range = k->base.tracking->frequency;
+  k->unit             = mhb_norm(x, n) / (range[1] > range[0] ? range[1] - range[0] : at->omega);
+  k->origin[n]        = k->unit * at->omega;
+  memset(k->border, 0, sizeof(double) * (size_t)n);
+  k->border[n] = 1;
+  go_to(k->base.balance, k->base.tracking->parameter, at->value);
+  memcpy(k->left.z, k->origin, sizeof(double) * ((size_t)n + 1));
+  if (!settle(k, 0, &k->left)) return false;
+  const double length = mhb_norm(k->left.along, n + 1);
+  for (int j = 0; j <= n; j++) k->border[j] = k->left.along[j] / length;
+  memcpy(k->origin, k->left.z, sizeof(double) * ((size_t)n + 1));
+  return find(k, at, &unused);
+}
+
+/* ---- creation ---- */
+
+shb_status mhb_kink_create(mhb_balance *balance, const mhb_tracking *tracking, mhb_kink **out) {
+  mhb_kink    *k = calloc(1, sizeof *k);
+  const size_t n = (size_t)balance->n, one = n + 1;
+  SHB_CHECK(k, SHB_ERR_IO, "out of memory");
+  k->base            = (mhb_peak_family){balance, tracking, is_peak, balance_at};
+  k->n               = balance->n;
+  double **vectors[] = {&k->z,           &k->rate,       &k->border,    &k->origin,
+                        &k->left.z,      &k->left.along, &k->left.by_q, &k->right.z,
+                        &k->right.along, &k->right.by_q, &k->next.z,    &k->next.along,
+                        &k->next.by_q,   &k->r,          &k->by_omega,  &k->by_x};
+  for (size_t i = 0; i < sizeof vectors / sizeof *vectors; i++)
+    *vectors[i] = shb_arena_take(&k->arena, one, sizeof(double));
+  k->jacobian = shb_arena_take(&k->arena, n * n, sizeof(double));
+  k->matrix   = shb_arena_take(&k->arena, one * one, sizeof(double));
+  k->pivot    = shb_arena_take(&k->arena, one, sizeof *k->pivot);
+  k->weight   = shb_arena_take(&k->arena, mhb_amplitude_weights(balance), sizeof *k->weight);
+  if (k->arena.failed) {
+    mhb_kink_destroy(k);
+    SHB_FAIL(SHB_ERR_IO, "out of memory to follow peaks of %d unknowns", balance->n);
+  }
+  *out = k;
+  return SHB_OK;
+}
+
+void mhb_kink_destroy(mhb_kink *k) {
+  if (!k) return;
+  shb_arena_free(&k->arena);
+  free(k);
+}
+
+shb_status mhb_trace_kink(mhb_balance *balance, const mhb_tracking *tracking,
+                          const mhb_tracking_seed *seed, mhb_response *response, int branch,
+                          bool *found, mhb_tracking_end *end) {
+  mhb_peak_place at = {.value = seed->value, .omega = seed->omega};
+  mhb_kink      *k;
+  *found = false;
+  *end   = (mhb_tracking_end){MHB_END_NO_START, MHB_END_NO_START};
+  if (tracking->kind != MHB_TRACK_PEAK) return SHB_OK;
+  SHB_TRY(mhb_kink_create(balance, tracking, &k));
+  shb_status status = SHB_OK;
+  if (mhb_kink_start(k, seed->x, &at) && mhb_is_seeded(seed, at.omega, at.amplitude))
+    status = mhb_trace_peak_places(&k->base, &at, response, branch, found, end);
+  mhb_kink_destroy(k);
+  return status;
+}
