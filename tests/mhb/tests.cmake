@@ -71,6 +71,9 @@ foreach(noun arclength arclength_scalar balance_curve closed_curve corrector cur
     resonance_detection segment)
   shb_test(mhb/continuation ${noun} tests_models)
 endforeach()
+target_sources(test_mhb_continuation_first_solution PRIVATE bench/shroud_face.c)
+target_link_options(test_mhb_continuation_first_solution PRIVATE
+  LINKER:--wrap=mhb_arclength_start)
 foreach(noun whitehead ring_response)
   shb_test(mhb/amplification ${noun} tests_models)
 endforeach()

@@ -1,6 +1,8 @@
 /* A first solution without a guess: at any preload and parameter, and what it leaves unchanged. */
 #include "mhb/continuation/first_solution.h"
 
+#include "mhb/continuation/balance_curve.h"
+#include "tests/bench/shroud_face.h"
 #include "tests/support/check.h"
 #include "tests/support/random_model.h"
 #include "tests/support/settings.h"
@@ -99,8 +101,48 @@ static void a_failure_leaves_the_balance_as_it_was(void **state) {
   modal_model_free(&model);
 }
 
+/* Curves that were started; the linker leads the calls here. */
+static int n_started;
+mhb_reason __real_mhb_arclength_start(mhb_arclength *curve, const double *x, double value,
+                                      int direction);
+mhb_reason __wrap_mhb_arclength_start(mhb_arclength *curve, const double *x, double value,
+                                      int direction);
+mhb_reason __wrap_mhb_arclength_start(mhb_arclength *curve, const double *x, double value,
+                                      int direction) {
+  n_started++;
+  return __real_mhb_arclength_start(curve, x, value, direction);
+}
+
+/* With stiff contact each pair adds kinks to the curve in the preload. 20 pairs have more than 200
+ * steps, all of which are taken: the first curve arrives. */
+static void the_curve_passes_the_kinks_of_many_pairs(void **state) {
+  (void)state;
+  modal_model  model;
+  mhb_settings s = shroud_face_settings(3);
+  mhb_balance *b;
+  mhb_newton  *newton;
+  const double omega = 2 * 3.14159265358979 * 225;
+  int          iterations;
+  s.kv *= 1000;
+  for (int i = 0; i < 3; i++) s.ku[i] *= 1000;
+  s.n0[0] = 20;
+  shroud_face_model(20, 150, &model);
+  assert_ok(mhb_balance_create(&model, &s, &b));
+  assert_ok(mhb_newton_create(b->n, &newton));
+  double x[b->n];
+  mhb_balance_set_preload(b, s.n0[0]);
+  n_started = 0;
+  assert_int_equal(mhb_first_solution(newton, b, omega, 1e-10, x, &iterations), MHB_CONVERGED);
+  assert_int_equal(n_started, 1);
+  assert_below(relative_residual(b, x, omega), 2e-10);
+  mhb_newton_destroy(newton);
+  mhb_balance_destroy(b);
+  modal_model_free(&model);
+}
+
 int main(void) {
   const struct CMUnitTest tests[] = {cmocka_unit_test(there_is_one_at_every_preload),
+                                     cmocka_unit_test(the_curve_passes_the_kinks_of_many_pairs),
                                      cmocka_unit_test(the_parameter_stands),
                                      cmocka_unit_test(a_failure_leaves_the_balance_as_it_was)};
   return cmocka_run_group_tests(tests, NULL, NULL);
