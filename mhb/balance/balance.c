@@ -681,7 +681,7 @@ bool mhb_balance_solve_many_stuck(mhb_balance *b, int k, const mhb_pair_kind *ki
                                   double complex *u) {
   const double *range = b->settings->frequency;
   if (!b->product) return false;
-  if (!b->stuck && mhb_stuck_solver_create(b->receptance, b->m, &b->stuck) != SHB_OK) return false;
+  if (!b->stuck && mhb_stuck_solver_create(b->product, b->m, &b->stuck) != SHB_OK) return false;
   return mhb_stuck_solver_solve(b->stuck, k, 0.5 * SHB_TWO_PI * (range[0] + range[1]), b->law, kind,
                                 u);
 }

@@ -22,19 +22,23 @@ typedef struct {
 } factor;
 
 struct mhb_stuck_solver {
-  mhb_receptance *receptance;
-  int             n, modes, top;
-  factor         *of;                    /* [top + 1] */
-  double complex *f, *p, *motion, *rest; /* [n] */
-  double complex *small, *force;         /* [modes][modes], [modes] */
-  int            *pivot;                 /* [modes] */
-  shb_arena       arena;
+  mhb_receptance_product *product;
+  mhb_receptance         *receptance; /* of the product */
+  int                     n, modes, top;
+  factor                 *of;                    /* [top + 1] */
+  double complex         *f, *p, *motion, *rest; /* [n] */
+  double complex         *small, *force;         /* [modes][modes], [modes] */
+  int                    *pivot;                 /* [modes] */
+  shb_arena               arena;
 };
 
-shb_status mhb_stuck_solver_create(mhb_receptance *r, int top, mhb_stuck_solver **out) {
+shb_status mhb_stuck_solver_create(mhb_receptance_product *product, int top,
+                                   mhb_stuck_solver **out) {
   mhb_stuck_solver *s = calloc(1, sizeof *s);
+  mhb_receptance   *r = product->receptance;
   SHB_CHECK(s, SHB_ERR_IO, "out of memory");
   const size_t n = (size_t)r->n, m = (size_t)r->n_modes, room = MHB_BLAS_ROOM;
+  s->product    = product;
   s->receptance = r;
   s->n          = r->n;
   s->modes      = r->n_modes;
@@ -160,19 +164,19 @@ static double largest(int n, const double complex *x) {
   return most;
 }
 
-/* rest <- f - (I + R S) u; motion = free - R S u of the receptance. */
+/* rest <- f - (I + R S) u */
 static void set_rest(mhb_stuck_solver *s, int k, const mhb_law *law, const mhb_pair_kind *kind,
                      const double complex *u) {
-  const double complex *free_k = s->receptance->free + (size_t)k * (size_t)s->n;
   stick(s, k, law, kind, u, s->p);
-  mhb_receptance_motion(s->receptance, k, s->p, s->motion);
-  for (int i = 0; i < s->n; i++) s->rest[i] = s->f[i] - u[i] - free_k[i] + s->motion[i];
+  mhb_receptance_product_of_harmonic(s->product, k, s->p, s->motion);
+  for (int i = 0; i < s->n; i++) s->rest[i] = s->f[i] - u[i] - s->motion[i];
 }
 
 bool mhb_stuck_solver_solve(mhb_stuck_solver *s, int k, double middle, const mhb_law *law,
                             const mhb_pair_kind *kind, double complex *u) {
   const double size = largest(s->n, u);
   if (!is_current(s, &s->of[k], law, kind) && !make(s, k, middle, law, kind)) return false;
+  mhb_receptance_product_update(s->product);
   if (!set_modes(s, k)) return false;
   memcpy(s->f, u, sizeof *u * (size_t)s->n);
   memcpy(s->rest, u, sizeof *u * (size_t)s->n);

@@ -13,13 +13,13 @@
 #include <stdbool.h>
 
 #include "mhb/balance/stick_stiffness.h"
-#include "mhb/structure/receptance.h"
+#include "mhb/low_rank/receptance_product.h"
 
 typedef struct mhb_stuck_solver mhb_stuck_solver;
 
-/* For harmonics 0 to top. SHB_ERR_IO: no memory. The receptance must outlive it; its model must not
- * follow the frequency. */
-shb_status mhb_stuck_solver_create(mhb_receptance *receptance, int top, mhb_stuck_solver **solver);
+/* For harmonics 0 to top of a product, which must outlive it. SHB_ERR_IO: no memory. */
+shb_status mhb_stuck_solver_create(mhb_receptance_product *product, int top,
+                                   mhb_stuck_solver **solver);
 void       mhb_stuck_solver_destroy(mhb_stuck_solver *solver);
 
 /* u[n] <- (I + R_k S)^-1 u at the frequency of the receptance, whose load of harmonic k is up to

@@ -173,6 +173,7 @@ shb_status mhb_receptance_product_create(mhb_receptance *r, int first, int m,
   p->first      = first;
   p->m          = m;
   p->nb         = first ? 2 * (m - first + 1) : 2 * m + 1;
+  p->n_weights  = m + 1;
   p->n_poles    = r->n_modes + r->residual_terms->r;
   p->omega      = NAN;
   double     root[r->n];
@@ -208,7 +209,7 @@ void mhb_receptance_product_destroy(mhb_receptance_product *p) {
 
 /* Weights of a residual term in all harmonics. */
 static double *weights_of(const mhb_receptance_product *p, mhb_product_kind kind, int term) {
-  return p->weight + ((size_t)kind * MODAL_TERMS + (size_t)term) * ((size_t)p->m + 1);
+  return p->weight + ((size_t)kind * MODAL_TERMS + (size_t)term) * (size_t)p->n_weights;
 }
 
 /* L and dL/d omega of the modes unless they are coupled, g and dg/d omega of the residual modes. */
@@ -424,4 +425,21 @@ void mhb_receptance_product_apply(mhb_receptance_product *p, mhb_product_kind ki
   for (int t = 0; t < 2; t++) add_own(p, t, kind, negligible, force, out);
   add_smooth(p, kind, negligible, force, out);
   add_poles(p, kind, force, out);
+}
+
+/* The product of one harmonic has one or two columns and the same arrays. */
+void mhb_receptance_product_of_harmonic(const mhb_receptance_product *p, int k,
+                                        const double complex *force, double complex *motion) {
+  mhb_receptance_product one = *p;
+  one.first = one.m = k;
+  one.nb            = k ? 2 : 1;
+  if (k) { /* real and imaginary part side by side */
+    mhb_receptance_product_apply(&one, MHB_PRODUCT_VALUE, 0, (const double *)force,
+                                 (double *)motion);
+    return;
+  }
+  double re[p->n], out[p->n];
+  for (int i = 0; i < p->n; i++) re[i] = creal(force[i]);
+  mhb_receptance_product_apply(&one, MHB_PRODUCT_VALUE, 0, re, out);
+  for (int i = 0; i < p->n; i++) motion[i] = out[i];
 }

@@ -26,6 +26,7 @@ enum { MHB_SMOOTH_TERMS = 2 * MODAL_TERMS + 1 }; /* even, odd of each term, self
 typedef struct {
   mhb_receptance *receptance;
   int             n, first, m, nb; /* 3 pairs; harmonics first..m; columns of a force */
+  int             n_weights;       /* harmonics from 0 on that weight has room for */
   int             n_poles;         /* modes and residual modes */
   const double   *own[2];          /* [n][n] of the receptance; NULL: none */
   float          *coarse[2];       /* [n][n] the same in single precision */
@@ -75,5 +76,10 @@ static inline int mhb_product_column(const mhb_receptance_product *product, int 
  * out then, and single precision is used where it serves. */
 void mhb_receptance_product_apply(mhb_receptance_product *product, mhb_product_kind kind,
                                   double negligible, const double *p, double *out);
+
+/* motion[n] <- R_k p[n] of harmonic k alone, first..m, at the frequency of the last update. At
+ * k = 0 the real part of p counts. */
+void mhb_receptance_product_of_harmonic(const mhb_receptance_product *product, int k,
+                                        const double complex *p, double complex *motion);
 
 #endif

@@ -62,6 +62,25 @@ static double leaves_out(mhb_receptance_product *product, mhb_product_kind kind,
   return sqrt(of / force);
 }
 
+/* Each harmonic alone has its columns of the product of all. */
+static void check_harmonics(const mhb_receptance_product *product, const double *p,
+                            const double *whole) {
+  const int      nb = product->nb, n = product->n;
+  double complex force[n], motion[n];
+  for (int k = 0; k <= product->m; k++) {
+    const int at   = mhb_product_column(product, k);
+    double    away = 0, size = 0;
+    for (int i = 0; i < n; i++) force[i] = CMPLX(p[i * nb + at], k ? p[i * nb + at + 1] : 0);
+    mhb_receptance_product_of_harmonic(product, k, force, motion);
+    for (int i = 0; i < n; i++) {
+      const double complex of = CMPLX(whole[i * nb + at], k ? whole[i * nb + at + 1] : 0);
+      away                    = fmax(away, cabs(motion[i] - of));
+      size                    = fmax(size, cabs(of));
+    }
+    assert_below(away, 1e-13 * size);
+  }
+}
+
 /* Both products against R and against the slope of the motion. */
 static void check_product(const modal_model *model, const mhb_settings *s, double omega,
                           int is_smooth) {
@@ -103,6 +122,7 @@ static void check_product(const modal_model *model, const mhb_settings *s, doubl
     print_message("%d pairs, smooth %d, kind %d: %.1e\n", b->n_pairs, product->n_smooth, (int)kind,
                   difference(out, wanted, n));
     assert_below(difference(out, wanted, n), 1e-11);
+    if (kind == MHB_PRODUCT_VALUE) check_harmonics(product, p, out);
     for (double coarse = 1e-8; coarse < 1e-3; coarse *= 100) {
       const double left = leaves_out(product, kind, coarse, p, wanted, stiffness, out);
       print_message("  allowed %.0e: %.1e\n", coarse, left);
