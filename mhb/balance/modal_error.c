@@ -49,12 +49,10 @@ static void missing_motion(const mhb_receptance *r, int k, double ratio, const d
   const int                 t = last_term(terms->own[0] ? (void *const *)terms->own
                                                         : (void *const *)terms->contact),
             u                 = last_term((void *const *)terms->load);
-  for (int i = 0; i < r->n; i++)
-    if (p)
-      to[i] = -ratio * s.weight[t] * mhb_residual_terms_row(terms, t, k, i, p);
-    else
-      to[i] =
-          terms->load[u] ? ratio * s.load_weight[u] * r->scale * terms->load[u][k * r->n + i] : 0;
+  memset(to, 0, sizeof *to * (size_t)r->n);
+  if (p) mhb_residual_terms_add_product(terms, t, k, -ratio * s.weight[t], p, to);
+  for (int i = 0; i < r->n && !p && terms->load[u]; i++)
+    to[i] = ratio * s.load_weight[u] * r->scale * terms->load[u][k * r->n + i];
 }
 
 /* The same of all blades of a ring, to[n]. */

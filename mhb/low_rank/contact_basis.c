@@ -293,15 +293,28 @@ static void set_weighted(const mhb_contact_basis *b, int k, double *re, double *
     }
 }
 
-/* out[rank][rank] <- X^H D A D X for a real A; image [n][2 rank]. */
-static void project(const mhb_contact_basis *b, int rank, const double *A, const double *re,
+/* A real matrix of the residual terms: A, or A + sign A^T. */
+typedef struct {
+  const double *A; /* [n][n], NULL: none */
+  int           sign;
+} projected_matrix;
+
+/* image[n][rank] <- matrix from */
+static void times(int n, int rank, projected_matrix of, const double *from, double *image) {
+  cblas_dgemm(CblasRowMajor, CblasNoTrans, CblasNoTrans, n, rank, n, 1, of.A, n, from, rank, 0,
+              image, rank);
+  if (of.sign)
+    cblas_dgemm(CblasRowMajor, CblasTrans, CblasNoTrans, n, rank, n, of.sign, of.A, n, from, rank,
+                1, image, rank);
+}
+
+/* out[rank][rank] <- X^H D A D X for a real matrix; image [n][2 rank]. */
+static void project(const mhb_contact_basis *b, int rank, projected_matrix of, const double *re,
                     const double *im, double *image, double complex *out) {
   int     n   = b->n;
   double *Are = image, *Aim = image + n * rank, part[4][rank * rank + 1];
-  cblas_dgemm(CblasRowMajor, CblasNoTrans, CblasNoTrans, n, rank, n, 1, A, n, re, rank, 0, Are,
-              rank);
-  cblas_dgemm(CblasRowMajor, CblasNoTrans, CblasNoTrans, n, rank, n, 1, A, n, im, rank, 0, Aim,
-              rank);
+  times(n, rank, of, re, Are);
+  times(n, rank, of, im, Aim);
   const double *left[4] = {re, im, re, im}, *right[4] = {Are, Aim, Aim, Are};
   for (int i = 0; i < 4; i++)
     cblas_dgemm(CblasRowMajor, CblasTrans, CblasNoTrans, rank, rank, n, 1, left[i], rank, right[i],
@@ -326,10 +339,12 @@ static int project_wave(const mhb_contact_basis *b, int rank, const double compl
   return 1;
 }
 
-static const double *matrix_of(const mhb_receptance *r, int i) {
+/* self, C + C^T and C - C^T of each residual term. */
+static projected_matrix matrix_of(const mhb_receptance *r, int i) {
   const mhb_cyclic_flexibility *f = r->residual_terms->contact[i / 3];
-  if (!f) return NULL;
-  return i % 3 == 0 ? f->self : i % 3 == 1 ? f->even_coupling : f->odd_coupling;
+  if (!f) return (projected_matrix){NULL, 0};
+  return i % 3 ? (projected_matrix){f->coupling, i % 3 == 1 ? 1 : -1}
+               : (projected_matrix){f->self, 0};
 }
 
 static int make_projections(mhb_contact_basis *b, int k) {
@@ -347,7 +362,7 @@ static int make_projections(mhb_contact_basis *b, int k) {
   double *re = room, *im = re + all, *image = im + all;
   set_weighted(b, k, re, im);
   for (int i = 0; i < MHB_PROJECTIONS && rank > 0; i++)
-    if (matrix_of(r, i))
+    if (matrix_of(r, i).A)
       project(b, rank, matrix_of(r, i), re, im, image, b->projected[k] + (size_t)i * square);
   int ok = 1;
   for (int t = 0; t < MODAL_TERMS && rank > 0; t++)

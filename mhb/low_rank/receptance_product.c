@@ -13,17 +13,31 @@
 
 /* ---- the smooth part ---- */
 
-/* Smooth term i of the receptance: even and odd coupling of each term, then self of the third. */
-static const double *source_of(const mhb_receptance *r, int i) {
-  mhb_cyclic_flexibility *const *f = r->residual_terms->contact;
-  if (i == MHB_SMOOTH_TERMS - 1) return f[2] ? f[2]->self : NULL;
-  if (!f[i / 2]) return NULL;
-  return i % 2 ? f[i / 2]->odd_coupling : f[i / 2]->even_coupling;
-}
-
 /* The residual term whose weight smooth term i has. */
 static int term_of(int i) {
   return i == MHB_SMOOTH_TERMS - 1 ? 2 : i / 2;
+}
+
+/* Smooth term i: C + C^T (even) and C - C^T (odd) of each residual term, then self of the third. */
+static mhb_smooth_source source_of(const mhb_receptance *r, int i, double weight) {
+  const mhb_cyclic_flexibility *f    = r->residual_terms->contact[term_of(i)];
+  const int                     self = i == MHB_SMOOTH_TERMS - 1, odd = !self && i % 2;
+  if (!f) return (mhb_smooth_source){NULL, weight, 0};
+  if (self) return (mhb_smooth_source){f->self, weight, 0};
+  return (mhb_smooth_source){f->coupling, weight, odd ? -1 : 1};
+}
+
+/* The terms themselves, where they have no small U. */
+static void take_whole(mhb_receptance_product *p, int t, const mhb_smooth_source *source) {
+  const size_t square = (size_t)p->n * (size_t)p->n;
+  if (!source->A) return;
+  p->smooth[t] = shb_arena_take(&p->arena, square, sizeof(double));
+  if (!p->smooth[t]) return;
+  if (source->sign)
+    mhb_cyclic_flexibility_both(p->receptance->residual_terms->contact[term_of(t)], source->sign,
+                                p->smooth[t]);
+  else
+    memcpy(p->smooth[t], source->A, sizeof(double) * square);
 }
 
 /* Largest weight of a residual term. */
@@ -37,7 +51,7 @@ static void find_smooth(mhb_receptance_product *p, const double *root, double to
   mhb_smooth_span   span;
   int               any = 0;
   for (int t = 0; t < MHB_SMOOTH_TERMS; t++) {
-    source[t] = (mhb_smooth_source){source_of(p->receptance, t), weight_at(p, term_of(t), top)};
+    source[t] = source_of(p->receptance, t, weight_at(p, term_of(t), top));
     any |= source[t].A != NULL;
   }
   mhb_smooth_span_find(p->n, root, MHB_SMOOTH_TERMS, source, &p->arena, &span);
@@ -46,7 +60,10 @@ static void find_smooth(mhb_receptance_product *p, const double *root, double to
   if (!any) return;
   p->n_smooth = span.U ? span.rank : p->n; /* without U the terms themselves */
   for (int t = 0; t < MHB_SMOOTH_TERMS; t++)
-    p->smooth[t] = span.U ? span.C[t] : (double *)source[t].A;
+    if (span.U)
+      p->smooth[t] = span.C[t];
+    else
+      take_whole(p, t, &source[t]);
 }
 
 /* ---- the same of a disc ---- */
@@ -104,8 +121,8 @@ static shb_status find_waves(mhb_receptance_product *p, const double *root, doub
     for (int k = p->first; k <= p->m && own[t]; k++) {
       const size_t at = 2 * ((size_t)t * K + (size_t)k);
       split_wave(p, t, k, part + at * square);
-      source[at]     = (mhb_smooth_source){part + at * square, weight_at(p, t, top)};
-      source[at + 1] = (mhb_smooth_source){part + (at + 1) * square, source[at].weight};
+      source[at]     = (mhb_smooth_source){part + at * square, weight_at(p, t, top), 0};
+      source[at + 1] = (mhb_smooth_source){part + (at + 1) * square, source[at].weight, 0};
     }
   const int ok = part && source && !p->arena.failed;
   if (ok) {
@@ -134,8 +151,14 @@ static void take_own(mhb_receptance_product *p, int t, const double *stiffness) 
       sum += sqrt(stiffness[i] * stiffness[j]) * fabs(p->own[t][i * n + j]);
     p->own_size[t] = fmax(p->own_size[t], sum);
   }
-  p->coarse[t] = shb_arena_take(&p->arena, n * n, sizeof(float));
-  for (size_t i = 0; p->coarse[t] && i < n * n; i++) p->coarse[t][i] = (float)p->own[t][i];
+  mhb_cyclic_flexibility *f = p->receptance->residual_terms->contact[t];
+  if (f) { /* one copy serves all products */
+    p->coarse[t] = mhb_cyclic_flexibility_single(f);
+    return;
+  }
+  float *coarse = shb_arena_take(&p->arena, n * n, sizeof(float));
+  for (size_t i = 0; coarse && i < n * n; i++) coarse[i] = (float)p->own[t][i];
+  p->coarse[t] = coarse;
 }
 
 /* Numbers of a force in groups of columns. */

@@ -29,7 +29,7 @@ typedef struct {
   int             n_weights;       /* harmonics from 0 on that weight has room for */
   int             n_poles;         /* modes and residual modes */
   const double   *own[2];          /* [n][n] of the receptance; NULL: none */
-  float          *coarse[2];       /* [n][n] the same in single precision */
+  const float    *coarse[2];       /* [n][n] the same in single precision */
   double          own_size[2];     /* where I is 1, at weight 1 */
   int             n_smooth;        /* columns of U, n without U */
   double         *U;               /* [n][smooth] or NULL: the identity */

@@ -28,13 +28,17 @@ typedef struct {
   double                  *singular, *left, *work;
 } sketch;
 
-/* to += weight D^1/2 A D^1/2 from, D^1/2 = root. */
+/* to += weight D^1/2 A D^1/2 from, D^1/2 = root, A that of the source. */
 static void add_scaled(const sketch *s, int columns, int source, const double *from, double *to) {
   const int n = s->n;
   for (int i = 0; i < n; i++)
     for (int j = 0; j < columns; j++) s->half[i * columns + j] = s->root[i] * from[i * columns + j];
-  cblas_dgemm(CblasRowMajor, CblasNoTrans, CblasNoTrans, n, columns, n, s->source[source].weight,
-              s->source[source].A, n, s->half, columns, 0, s->image, columns);
+  const mhb_smooth_source *of = &s->source[source];
+  cblas_dgemm(CblasRowMajor, CblasNoTrans, CblasNoTrans, n, columns, n, of->weight, of->A, n,
+              s->half, columns, 0, s->image, columns);
+  if (of->sign)
+    cblas_dgemm(CblasRowMajor, CblasTrans, CblasNoTrans, n, columns, n, of->sign * of->weight,
+                of->A, n, s->half, columns, 1, s->image, columns);
   for (int i = 0; i < n; i++)
     for (int j = 0; j < columns; j++) to[i * columns + j] += s->root[i] * s->image[i * columns + j];
 }

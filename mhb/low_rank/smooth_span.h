@@ -10,6 +10,7 @@
 typedef struct {
   const double *A;      /* [n][n]; NULL: zero */
   double        weight; /* > 0, what it is multiplied by at most */
+  int           sign;   /* 0: the source is A; 1 or -1: A + sign A^T */
 } mhb_smooth_source;
 
 typedef struct {

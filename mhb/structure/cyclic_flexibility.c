@@ -29,19 +29,29 @@ static void block(const source *s, int side_i, int i, int side_j, int j, double 
 static void set_pairs(const source *s, int i, int j, mhb_cyclic_flexibility *f) {
   double rr[3][3], ll[3][3] = {{0}}, rl[3][3] = {{0}}, lr[3][3] = {{0}};
   block(s, 0, i, 0, j, rr);
-  if (f->even_coupling) {
+  if (f->coupling) {
     block(s, 1, i, 1, j, ll);
-    block(s, 0, i, 1, j, rl);
     block(s, 1, i, 0, j, lr);
+    block(s, 0, j, 1, i, rl);
   }
   for (int c = 0; c < 3; c++)
     for (int d = 0; d < 3; d++) {
       size_t at   = (size_t)(3 * i + c) * (size_t)f->n + (size_t)(3 * j + d);
       f->self[at] = rr[c][d] + ll[c][d];
-      if (!f->even_coupling) continue;
-      f->even_coupling[at] = rl[c][d] + lr[c][d];
-      f->odd_coupling[at]  = lr[c][d] - rl[c][d];
+      if (f->coupling) f->coupling[at] = 0.5 * (lr[c][d] + rl[d][c]);
     }
+}
+
+static void set_single(mhb_cyclic_flexibility *f) {
+  const size_t square = (size_t)f->n * (size_t)f->n;
+  for (size_t i = 0; f->single && i < square; i++) f->single[i] = (float)f->self[i];
+}
+
+const float *mhb_cyclic_flexibility_single(mhb_cyclic_flexibility *f) {
+  if (f->single) return f->single;
+  f->single = shb_arena_take(&f->arena, (size_t)f->n * (size_t)f->n, sizeof(float));
+  set_single(f);
+  return f->single;
 }
 
 shb_status mhb_cyclic_flexibility_create(const double *matrix, int nc, const double *T0,
@@ -51,8 +61,7 @@ shb_status mhb_cyclic_flexibility_create(const double *matrix, int nc, const dou
   size_t square = 9 * (size_t)n_pairs * (size_t)n_pairs;
   f->n          = 3 * n_pairs;
   f->self       = shb_arena_take(&f->arena, square, sizeof(double));
-  if (sides == 2) f->even_coupling = shb_arena_take(&f->arena, square, sizeof(double));
-  if (sides == 2) f->odd_coupling = shb_arena_take(&f->arena, square, sizeof(double));
+  if (sides == 2) f->coupling = shb_arena_take(&f->arena, square, sizeof(double));
   if (f->arena.failed) {
     mhb_cyclic_flexibility_destroy(f);
     SHB_FAIL(SHB_ERR_IO, "out of memory for the residual flexibility of %d pairs", n_pairs);
@@ -67,6 +76,7 @@ void mhb_cyclic_flexibility_set(mhb_cyclic_flexibility *f, const double *matrix,
   const source s = {.matrix = matrix, .T0 = T0, .nc = nc, .n = f->n};
   for (int i = 0; i < f->n / 3; i++)
     for (int j = 0; j < f->n / 3; j++) set_pairs(&s, i, j, f);
+  set_single(f);
 }
 
 void mhb_cyclic_flexibility_destroy(mhb_cyclic_flexibility *f) {
@@ -75,68 +85,107 @@ void mhb_cyclic_flexibility_destroy(mhb_cyclic_flexibility *f) {
   free(f);
 }
 
+/* Rows and columns at once, so that C^T is read by whole lines. */
+enum { TILE = 32 };
+
 MHB_HOT void mhb_cyclic_flexibility_add(const mhb_cyclic_flexibility *f, double complex phase,
                                         double factor, double complex *R) {
-  size_t square = (size_t)f->n * (size_t)f->n;
-  double re = factor * creal(phase), im = factor * cimag(phase);
-  if (!f->even_coupling) {
-    for (size_t i = 0; i < square; i++) R[i] += factor * f->self[i];
+  const int n  = f->n;
+  double    re = factor * creal(phase), im = factor * cimag(phase);
+  if (!f->coupling) {
+    for (int i = 0; i < n * n; i++) R[i] += factor * f->self[i];
     return;
   }
-  for (size_t i = 0; i < square; i++)
-    R[i] = CMPLX(creal(R[i]) + factor * f->self[i] - re * f->even_coupling[i],
-                 cimag(R[i]) - im * f->odd_coupling[i]);
+  for (int from_i = 0; from_i < n; from_i += TILE)
+    for (int from_j = 0; from_j < n; from_j += TILE)
+      for (int i = from_i; i < n && i < from_i + TILE; i++)
+        for (int j = from_j; j < n && j < from_j + TILE; j++) {
+          const double c = f->coupling[i * n + j], t = f->coupling[j * n + i];
+          R[i * n + j] = CMPLX(creal(R[i * n + j]) + factor * f->self[i * n + j] - re * (c + t),
+                               cimag(R[i * n + j]) - im * (c - t));
+        }
 }
 
-/* What flexibility adds to a row's sums from column j on: numbers of self - Re e even and of
- * - Im e odd. */
+void mhb_cyclic_flexibility_both(const mhb_cyclic_flexibility *f, int sign, double *out) {
+  const int n = f->n;
+  for (int i = 0; i < n; i++)
+    for (int j = 0; j < n; j++)
+      out[i * n + j] = f->coupling[i * n + j] + sign * f->coupling[j * n + i];
+}
+
+/* Two numbers a row: products of self and of C with a vector, whose parts are re and im. */
 typedef struct {
-  mhb_half_lanes re, im;
-} row_part;
+  double self[2], coupling[2];
+} row_product;
 
-MHB_INLINE row_part part_at(const mhb_cyclic_flexibility *f, double complex phase, size_t at) {
-  row_part part = {half_lanes_load(f->self + at), {0}};
-  if (!f->even_coupling) return part;
-  part.re -= creal(phase) * half_lanes_load(f->even_coupling + at);
-  part.im = -cimag(phase) * half_lanes_load(f->odd_coupling + at);
-  return part;
+static double sum_of(mhb_half_lanes x) {
+  return (x[0] + x[1]) + (x[2] + x[3]);
 }
 
-MHB_HOT double complex mhb_cyclic_flexibility_row(const mhb_cyclic_flexibility *f,
-                                                  double complex phase, int i,
-                                                  const double complex *p) {
-  const size_t   at     = (size_t)i * (size_t)f->n;
-  const int      whole  = f->n / MHB_HALF_LANES * MHB_HALF_LANES;
-  mhb_half_lanes sum_re = {0}, sum_im = {0};
+/* Row i of both, and t += (row i of C)^T times element i. */
+MHB_INLINE row_product row_times(const mhb_cyclic_flexibility *f, int i, const double *re,
+                                 const double *im, double *t_re, double *t_im) {
+  const double  *self = f->self + (size_t)i * (size_t)f->n;
+  const double  *c    = f->coupling ? f->coupling + (size_t)i * (size_t)f->n : NULL;
+  const int      n = f->n, whole = n / MHB_HALF_LANES * MHB_HALF_LANES;
+  mhb_half_lanes s_re = {0}, s_im = {0}, c_re = {0}, c_im = {0};
   for (int j = 0; j < whole; j += MHB_HALF_LANES) {
-    const row_part part = part_at(f, phase, at + (size_t)j);
-    const double  *q    = (const double *)(p + j);
-    mhb_half_lanes re = {q[0], q[2], q[4], q[6]}, im = {q[1], q[3], q[5], q[7]};
-    sum_re += part.re * re - part.im * im;
-    sum_im += part.re * im + part.im * re;
+    const mhb_half_lanes a = half_lanes_load(re + j), b = half_lanes_load(im + j);
+    const mhb_half_lanes s = half_lanes_load(self + j);
+    s_re += s * a;
+    s_im += s * b;
+    if (!c) continue;
+    const mhb_half_lanes q = half_lanes_load(c + j);
+    c_re += q * a;
+    c_im += q * b;
+    half_lanes_store(t_re + j, half_lanes_load(t_re + j) + re[i] * q);
+    half_lanes_store(t_im + j, half_lanes_load(t_im + j) + im[i] * q);
   }
-  double re = (sum_re[0] + sum_re[1]) + (sum_re[2] + sum_re[3]);
-  double im = (sum_im[0] + sum_im[1]) + (sum_im[2] + sum_im[3]);
-  for (int j = whole; j < f->n; j++) {
-    double a = f->self[at + (size_t)j], b = 0;
-    if (f->even_coupling) {
-      a -= creal(phase) * f->even_coupling[at + (size_t)j];
-      b = -cimag(phase) * f->odd_coupling[at + (size_t)j];
-    }
-    re += a * creal(p[j]) - b * cimag(p[j]);
-    im += a * cimag(p[j]) + b * creal(p[j]);
+  row_product sum = {{sum_of(s_re), sum_of(s_im)}, {sum_of(c_re), sum_of(c_im)}};
+  for (int j = whole; j < n; j++) {
+    sum.self[0] += self[j] * re[j];
+    sum.self[1] += self[j] * im[j];
+    if (!c) continue;
+    sum.coupling[0] += c[j] * re[j];
+    sum.coupling[1] += c[j] * im[j];
+    t_re[j] += re[i] * c[j];
+    t_im[j] += im[i] * c[j];
   }
-  return CMPLX(re, im);
+  return sum;
+}
+
+/* self p - e C p - conj(e) C^T p; the last sum is complete after the last row. */
+MHB_HOT void mhb_cyclic_flexibility_add_product(const mhb_cyclic_flexibility *f,
+                                                double complex phase, double factor,
+                                                const double complex *p, double complex *to) {
+  const int n = f->n;
+  double    re[n], im[n], t_re[n], t_im[n], x = creal(phase), y = cimag(phase);
+  for (int i = 0; i < n; i++) {
+    re[i]   = creal(p[i]);
+    im[i]   = cimag(p[i]);
+    t_re[i] = t_im[i] = 0;
+  }
+  for (int i = 0; i < n; i++) {
+    const row_product of = row_times(f, i, re, im, t_re, t_im);
+    const double     *s = of.self, *c = of.coupling;
+    const double      real = s[0] - x * c[0] + y * c[1], imaginary = s[1] - x * c[1] - y * c[0];
+    to[i] = CMPLX(creal(to[i]) + factor * real, cimag(to[i]) + factor * imaginary);
+  }
+  for (int i = 0; i < n && f->coupling; i++) {
+    const double real = x * t_re[i] + y * t_im[i], imaginary = x * t_im[i] - y * t_re[i];
+    to[i] = CMPLX(creal(to[i]) - factor * real, cimag(to[i]) - factor * imaginary);
+  }
 }
 
 void mhb_cyclic_flexibility_add_block(const mhb_cyclic_flexibility *f, double complex phase,
                                       double factor, int pair, double complex R[3][3]) {
   for (int c = 0; c < 3; c++)
     for (int d = 0; d < 3; d++) {
-      size_t at = (size_t)(3 * pair + c) * (size_t)f->n + (size_t)(3 * pair + d);
+      const int at = (3 * pair + c) * f->n + 3 * pair + d;
+      const int t  = (3 * pair + d) * f->n + 3 * pair + c;
       R[c][d] += factor * f->self[at];
-      if (f->even_coupling)
-        R[c][d] -=
-            factor * CMPLX(creal(phase) * f->even_coupling[at], cimag(phase) * f->odd_coupling[at]);
+      if (f->coupling)
+        R[c][d] -= factor * CMPLX(creal(phase) * (f->coupling[at] + f->coupling[t]),
+                                  cimag(phase) * (f->coupling[at] - f->coupling[t]));
     }
 }

@@ -1,11 +1,11 @@
 /* Residual flexibility or inertia of a blade as its contact pairs see it, for any inter-blade phase
  * e.
  *
- * With the blocks of a matrix M between right and left side, each pair in its own axes,
+ * With the blocks of a symmetric matrix M between right and left side, each pair in its own axes,
  *   T M T^H = M_rr + M_ll - conj(e) M_rl - e M_lr
- *           = self - Re(e) even_coupling - j Im(e) odd_coupling,
- *   self = M_rr + M_ll,  even_coupling = M_rl + M_lr,  odd_coupling = M_lr - M_rl,
- * three real matrices for all harmonics. To ground M_ll = M_rl = M_lr = 0. */
+ *           = self - Re(e) (C + C^T) - j Im(e) (C - C^T),
+ *   self = M_rr + M_ll,  C = M_lr = M_rl^T,
+ * two real matrices for all harmonics. To ground M_ll = M_rl = M_lr = 0. */
 #ifndef MHB_STRUCTURE_CYCLIC_FLEXIBILITY_H
 #define MHB_STRUCTURE_CYCLIC_FLEXIBILITY_H
 
@@ -15,12 +15,14 @@
 #include "mesh/base/status.h"
 
 typedef struct {
-  int       n;                                   /* 3 pairs */
-  double   *self, *even_coupling, *odd_coupling; /* [n][n]; couplings are NULL to ground */
+  int       n;               /* 3 pairs */
+  double   *self, *coupling; /* [n][n]; C is NULL to ground */
+  float    *single;          /* [n][n] self in single precision, once it is asked for */
   shb_arena arena;
 } mhb_cyclic_flexibility;
 
-/* matrix[nc][nc] over (side, pair, axis), nc = n or 2n, m/N.
+/* matrix[nc][nc] over (side, pair, axis), nc = n or 2n, m/N. Of M_lr and M_rl^T, which differ by
+ * rounding, C is the mean.
  *   T0     in  [pair][3][3] columns v, u, w
  *   sides  in  1 (ground) or 2
  * SHB_ERR_IO: no memory. */
@@ -42,8 +44,15 @@ void mhb_cyclic_flexibility_add_block(const mhb_cyclic_flexibility *flexibility,
                                       double complex phase, double factor, int pair,
                                       double complex R[3][3]);
 
-/* Row i of T M T^H times p[n]. */
-double complex mhb_cyclic_flexibility_row(const mhb_cyclic_flexibility *flexibility,
-                                          double complex phase, int i, const double complex *p);
+/* to[n] += factor T M T^H p */
+void mhb_cyclic_flexibility_add_product(const mhb_cyclic_flexibility *flexibility,
+                                        double complex phase, double factor,
+                                        const double complex *p, double complex *to);
+
+/* out[n][n] <- C + sign C^T */
+void mhb_cyclic_flexibility_both(const mhb_cyclic_flexibility *flexibility, int sign, double *out);
+
+/* self[n][n] in single precision, made by the first call. NULL: no memory. */
+const float *mhb_cyclic_flexibility_single(mhb_cyclic_flexibility *flexibility);
 
 #endif

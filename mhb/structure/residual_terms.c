@@ -224,15 +224,16 @@ MHB_INLINE double mode_weight(const mhb_residual_terms *l, int k, int i, const m
   return i < model->n_residual ? modal_series_mode(model, i, s, slope) : 0;
 }
 
-double complex mhb_residual_terms_row(const mhb_residual_terms *l, int t, int k, int i,
-                                      const double complex *p) {
-  const size_t   n   = (size_t)l->relative.n;
-  double complex sum = 0;
-  if (l->contact[t]) return mhb_cyclic_flexibility_row(l->contact[t], l->phase[k], i, p);
-  if (!l->own[t]) return 0;
-  const double complex *row = l->own[t] + ((size_t)k * n + (size_t)i) * n;
-  for (size_t j = 0; j < n; j++) sum += row[j] * p[j];
-  return sum;
+void mhb_residual_terms_add_product(const mhb_residual_terms *l, int t, int k, double factor,
+                                    const double complex *p, double complex *to) {
+  const size_t n = (size_t)l->relative.n;
+  if (l->contact[t]) mhb_cyclic_flexibility_add_product(l->contact[t], l->phase[k], factor, p, to);
+  for (size_t i = 0; l->own[t] && i < n; i++) {
+    const double complex *row = l->own[t] + ((size_t)k * n + i) * n;
+    double complex        sum = 0;
+    for (size_t j = 0; j < n; j++) sum += row[j] * p[j];
+    to[i] += factor * sum;
+  }
 }
 
 /* R[n][n] += factor times term t. */
@@ -319,12 +320,10 @@ static void add_terms(const mhb_residual_terms *l, int k, const modal_series *s,
   const int     n       = l->relative.n;
   const double *contact = slopes ? s->slope : s->weight;
   const double *loaded  = slopes ? s->load_slope : s->load_weight;
-  for (int a = 0; a < n; a++) {
+  for (int a = 0; a < n; a++)
     to[a] += factor * load * series(l->load, loaded, (size_t)k * (size_t)n + (size_t)a);
-    for (int t = 0; t < MODAL_TERMS; t++)
-      if (p && (l->contact[t] || l->own[t]) && contact[t] != 0)
-        to[a] -= factor * contact[t] * mhb_residual_terms_row(l, t, k, a, p);
-  }
+  for (int t = 0; t < MODAL_TERMS && p; t++)
+    if (contact[t] != 0) mhb_residual_terms_add_product(l, t, k, -factor * contact[t], p, to);
 }
 
 /* The same by the residual modes. */

@@ -61,9 +61,9 @@ void mhb_residual_terms_update(mhb_residual_terms *terms);
 /* Whether the load has this harmonic. */
 bool mhb_residual_terms_driven(const mhb_residual_terms *terms, int k);
 
-/* Row i of term t (R, R2, R3) in relative motion times p[n]; 0 without the term. */
-double complex mhb_residual_terms_row(const mhb_residual_terms *terms, int t, int k, int i,
-                                      const double complex *p);
+/* to[n] += factor times term t (R, R2, R3) in relative motion times p[n]; nothing without it. */
+void mhb_residual_terms_add_product(const mhb_residual_terms *terms, int t, int k, double factor,
+                                    const double complex *p, double complex *to);
 
 /* R[n][n] += matrix. Not for two threads at once. */
 void mhb_residual_terms_matrix(const mhb_residual_terms *terms, int k, double w, double complex *R);
