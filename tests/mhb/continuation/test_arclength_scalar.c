@@ -117,6 +117,52 @@ static void the_predictor_is_of_second_order(void **state) {
   }
 }
 
+/* Residual of the first point that a step linearises: that of the prediction. */
+static void (*linearise_curve)(mhb_curve_system *system, mhb_curve_point *point);
+static double of_prediction;
+
+static void linearise_and_note(mhb_curve_system *system, mhb_curve_point *point) {
+  linearise_curve(system, point);
+  if (isnan(of_prediction)) of_prediction = fabs(point->r[0]);
+}
+
+/* x = exp(value), of no symmetry. */
+static double exponential(double x, double value, double *f_x, double *f_value) {
+  *f_x     = 1;
+  *f_value = -exp(value);
+  return x - exp(value);
+}
+
+/* The residual of the prediction of the second of two steps of length h. */
+static double predicted(double h, bool bends) {
+  mhb_arclength *curve     = scalar_curve(exponential, -2, 2);
+  const double   x         = exp(0.3);
+  linearise_curve          = curve->system->linearise;
+  curve->system->linearise = linearise_and_note;
+  curve->system->bends     = bends;
+  assert_int_equal(mhb_arclength_start(curve, &x, 0.3, 1), MHB_CONVERGED);
+  for (int step = 0; step < 2; step++) {
+    of_prediction = NAN;
+    curve->step   = h;
+    assert_int_equal(mhb_arclength_step(curve), MHB_ARCLENGTH_ON);
+    mhb_arclength_advance(curve);
+  }
+  mhb_arclength_destroy(curve);
+  return of_prediction;
+}
+
+/* With the curvature of the step before the error of the prediction is of third order, along the
+ * tangent alone of second. */
+static void a_bent_prediction_is_of_third_order(void **state) {
+  (void)state;
+  for (int bends = 0; bends < 2; bends++)
+    for (double h = 0.04; h > 0.003; h /= 2) {
+      const double error = predicted(h, bends), order = log2(error / predicted(h / 2, bends));
+      print_message("%s: error %.2e, order %.3f\n", bends ? "parabola" : "tangent", error, order);
+      assert_near(order, 2 + bends, 0.1);
+    }
+}
+
 /* Round the circle: every point lies on it, steps are bounded, and the orientation is constant. */
 static void steps_go_round(void **state) {
   (void)state;
@@ -262,6 +308,7 @@ int main(void) {
                                      cmocka_unit_test(a_departure_takes_the_other_curve),
                                      cmocka_unit_test(without_another_curve_there_is_no_departure),
                                      cmocka_unit_test(the_predictor_is_of_second_order),
+                                     cmocka_unit_test(a_bent_prediction_is_of_third_order),
                                      cmocka_unit_test(steps_go_round),
                                      cmocka_unit_test(the_last_step_ends_on_the_range),
                                      cmocka_unit_test(where_the_curve_ends_the_step_stalls),
