@@ -31,6 +31,8 @@ struct fem_cholesky {
   double        *value;    /* [n_values] the factor */
   fem_lanes     *few;      /* [n_extended] right-hand sides in the factor's order */
   fem_lanes     *few_work; /* [threads][most_rows] */
+  int            n_blocks; /* that there is room for */
+  double       **block;    /* [n_blocks][3 n + most_rows][BLOCK] columns in the factor's order */
   cholmod_common common;
 };
 
@@ -182,12 +184,27 @@ PetscErrorCode fem_cholesky_update(fem_cholesky *factor, Mat A, bool *definite) 
 
 /* ------------------------------------------------------------------ solves */
 
-/* Solve for one block of columns by BLAS. false: no memory. */
-static bool solve_block(const fem_cholesky *factor, const bool *needed, size_t count,
+/* Room for so many blocks of columns, kept between solves. glibc 2.36 does not use freed memory of
+ * this alignment again, so that the heap would grow by it at every solve. */
+static PetscErrorCode make_block_room(fem_cholesky *factor, int blocks) {
+  const size_t rows = 3 * (size_t)factor->n + (size_t)factor->panels.most_rows;
+  PetscFunctionBeginUser;
+  if (factor->n_blocks >= blocks) PetscFunctionReturn(0);
+  double **more = realloc(factor->block, (size_t)blocks * sizeof *more);
+  PetscCheck(more, PETSC_COMM_SELF, PETSC_ERR_MEM, "no memory");
+  factor->block = more;
+  for (; factor->n_blocks < blocks; factor->n_blocks++) {
+    double *own = fem_large_malloc(rows * BLOCK * sizeof *own);
+    PetscCheck(own, PETSC_COMM_SELF, PETSC_ERR_MEM, "no memory for %d solutions", BLOCK);
+    factor->block[factor->n_blocks] = own;
+  }
+  PetscFunctionReturn(0);
+}
+
+/* Solve for one block of columns by BLAS; own: that of the thread. */
+static void solve_block(const fem_cholesky *factor, double *own, const bool *needed, size_t count,
                         const double *b, size_t ldb, double *x, size_t ldx) {
-  const size_t n = 3 * (size_t)factor->n, rows = (size_t)factor->panels.most_rows;
-  double      *own = fem_large_malloc((n + rows) * count * sizeof *own);
-  if (!own) return false;
+  const size_t n = 3 * (size_t)factor->n;
   for (size_t i = 0; i < n; i++) {
     double *at = own + (3 * (size_t)factor->place[i / 3] + i % 3) * count;
     for (size_t c = 0; c < count; c++) at[c] = b[c * ldb + i];
@@ -198,20 +215,20 @@ static bool solve_block(const fem_cholesky *factor, const bool *needed, size_t c
     const double *at = own + (3 * (size_t)factor->place[i / 3] + i % 3) * count;
     for (size_t c = 0; c < count; c++) x[c * ldx + i] = at[c];
   }
-  free(own);
-  return true;
 }
 
-static PetscErrorCode solve_many(const fem_cholesky *factor, const bool *needed, size_t count,
+static PetscErrorCode solve_many(fem_cholesky *factor, const bool *needed, size_t count,
                                  const double *b, size_t ldb, double *x, size_t ldx) {
-  bool good = true;
+  const int all = ((int)count + BLOCK - 1) / BLOCK, most = omp_get_max_threads();
+  const int threads = all < most ? all : most;
   PetscFunctionBeginUser;
-#pragma omp parallel for schedule(dynamic, 1) reduction(&& : good)
+  PetscCall(make_block_room(factor, threads));
+#pragma omp parallel for schedule(dynamic, 1) num_threads(threads)
   for (size_t c = 0; c < count; c += BLOCK) {
     const size_t here = count - c < BLOCK ? count - c : BLOCK;
-    good = solve_block(factor, needed, here, b + c * ldb, ldb, x + c * ldx, ldx) && good;
+    solve_block(factor, factor->block[omp_get_thread_num()], needed, here, b + c * ldb, ldb,
+                x + c * ldx, ldx);
   }
-  PetscCheck(good, PETSC_COMM_SELF, PETSC_ERR_MEM, "no memory for %d solutions", (int)count);
   PetscFunctionReturn(0);
 }
 
@@ -291,6 +308,8 @@ void fem_cholesky_destroy(fem_cholesky *factor) {
   free(factor->value);
   free(factor->few);
   free(factor->few_work);
+  for (int i = 0; i < factor->n_blocks; i++) free(factor->block[i]);
+  free(factor->block);
   free(factor->place);
   free(factor);
 }

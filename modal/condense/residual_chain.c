@@ -16,7 +16,6 @@ PetscErrorCode modal_residual_chain_create(const fem_system *system, const modal
       .system = system, .eigen = eigen, .at = at, .probe = probe, .batch = batch};
   PetscCall(modal_dense_create(system, batch, &chain->B));
   PetscCall(modal_dense_create(system, batch, &chain->X));
-  PetscCall(modal_dense_create(system, batch, &chain->Y));
   for (int i = 0; i < BLOCKS; i++) {
     PetscCall(PetscMalloc1((size_t)at->n * b, &chain->sample[i]));
     PetscCall(PetscMalloc1((size_t)probe->n * b, &chain->probe_sample[i]));
@@ -62,10 +61,11 @@ static PetscErrorCode products(const modal_residual_chain *chain, Mat X, Mat Y, 
   PetscFunctionReturn(0);
 }
 
-/* V_i . M V_i and V_(i+1) . M V_i are the moments mu_(2i+2) and mu_(2i+3). */
+/* V_i . M V_i and V_(i+1) . M V_i are the moments mu_(2i+2) and mu_(2i+3). B holds M V_i while X
+ * becomes V_(i+1). */
 PetscErrorCode modal_residual_chain_compute(modal_residual_chain *chain, const modal_dofs *column,
                                             int first, int count, int vectors) {
-  Mat V = chain->X, next = chain->Y;
+  Mat V = chain->X;
   PetscFunctionBeginUser;
   PetscCall(modal_dofs_spread(column, chain->system, first, count, chain->B));
   for (int i = 0; i < vectors; i++) {
@@ -74,9 +74,6 @@ PetscErrorCode modal_residual_chain_compute(modal_residual_chain *chain, const m
     if (i > 0) PetscCall(products(chain, V, chain->B, chain->moment[2 * i]));
     PetscCall(fem_mass_multiply(chain->system->M, V, chain->B));
     PetscCall(products(chain, V, chain->B, chain->moment[2 * i + 1]));
-    Mat done = V;
-    V        = next;
-    next     = done;
   }
   PetscFunctionReturn(0);
 }
@@ -100,7 +97,6 @@ PetscErrorCode modal_residual_chain_destroy(modal_residual_chain *chain) {
   PetscFunctionBeginUser;
   PetscCall(MatDestroy(&chain->B));
   PetscCall(MatDestroy(&chain->X));
-  PetscCall(MatDestroy(&chain->Y));
   for (int i = 0; i < BLOCKS; i++) {
     PetscCall(PetscFree(chain->sample[i]));
     PetscCall(PetscFree(chain->probe_sample[i]));

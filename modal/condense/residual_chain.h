@@ -13,7 +13,7 @@ typedef struct {
   const modal_eigen *eigen;
   const modal_dofs  *at, *probe;                            /* where the vectors are sampled */
   int                batch;                                 /* columns */
-  Mat                B, X, Y;                               /* [3 n_free][batch] */
+  Mat                B, X;                                  /* [3 n_free][batch] */
   double            *sample[MODAL_RESIDUAL_BLOCKS];         /* [at][batch] V_0, V_1, V_2 */
   double            *probe_sample[MODAL_RESIDUAL_BLOCKS];   /* [probe][batch] the same */
   double            *moment[2 * MODAL_RESIDUAL_BLOCKS + 2]; /* [batch][batch] mu_1 .. mu_8 */
