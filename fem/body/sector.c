@@ -129,6 +129,21 @@ static PetscErrorCode visit_all(const fem_body *body, const double *state, const
   PetscFunctionReturn(0);
 }
 
+/* Most nodes at cyclic_right meet an inner node from one side only: then K(0) has B or B^T alone in
+ * their block. Otherwise it has more, and the block is any complex one. */
+static signed char exponent_of(const double K[9], const double cosine[9], const double sine[9]) {
+  const double rounding = 1e-12;
+  double       size = 0, rest = 0, forward = 0, backward = 0;
+  for (int i = 0; i < 9; i++) {
+    size     = fmax(size, fmax(fabs(K[i]), fmax(fabs(cosine[i]), fabs(sine[i]))));
+    rest     = fmax(rest, fabs(K[i] - cosine[i]));
+    forward  = fmax(forward, fabs(cosine[i] - sine[i]) / 2);  /* B */
+    backward = fmax(backward, fabs(cosine[i] + sine[i]) / 2); /* B^T */
+  }
+  if (rest > rounding * size) return FEM_ANY_BLOCK;
+  return forward <= rounding * size ? 1 : backward <= rounding * size ? -1 : FEM_ANY_BLOCK;
+}
+
 static PetscErrorCode find_coupling(const fem_body *body, const double *state,
                                     const fem_system *system, fem_sector *s) {
   int *slot = calloc((size_t)s->blocks.start[s->blocks.n] + 1, sizeof *slot);
@@ -139,9 +154,13 @@ static PetscErrorCode find_coupling(const fem_body *body, const double *state,
   s->coupled         = calloc(count, sizeof *s->coupled);
   s->cosine          = calloc(count, sizeof *s->cosine);
   s->sine            = calloc(count, sizeof *s->sine);
-  PetscCheck(s->coupled && s->cosine && s->sine, PETSC_COMM_SELF, PETSC_ERR_MEM,
+  s->exponent        = calloc(count, sizeof *s->exponent);
+  PetscCheck(s->coupled && s->cosine && s->sine && s->exponent, PETSC_COMM_SELF, PETSC_ERR_MEM,
              "no memory for a sector");
   PetscCall(visit_all(body, state, system, s, slot, add_coupling));
+  for (int q = 0; q < s->n_coupled; q++)
+    s->exponent[q] =
+        exponent_of(s->stiffness + 9 * (size_t)s->coupled[q], s->cosine[q], s->sine[q]);
   free(slot);
   PetscFunctionReturn(0);
 }
@@ -153,13 +172,17 @@ double complex fem_sector_phase(int n, int blades) {
   return cexp(-I * (SHB_TWO_PI * m / blades));
 }
 
-void fem_sector_stiffness(const fem_sector *s, double complex phase, double complex *value) {
-  const size_t count = 9 * (size_t)s->blocks.start[s->blocks.n];
+shb_status fem_sector_analyse(const fem_sector *s, fem_hermitian_order **order) {
+  const fem_hermitian_matrix K = {s->blocks, s->stiffness, s->n_coupled, s->coupled, s->exponent};
+  return fem_hermitian_analyse(&K, order);
+}
+
+void fem_sector_coupled(const fem_sector *s, double complex phase, double complex (*value)[9]) {
   const double less = creal(phase) - 1, sine = -cimag(phase);
-  for (size_t i = 0; i < count; i++) value[i] = s->stiffness[i];
   for (int q = 0; q < s->n_coupled; q++) {
-    double complex *block = value + 9 * (size_t)s->coupled[q];
-    for (int i = 0; i < 9; i++) block[i] += CMPLX(less * s->cosine[q][i], sine * s->sine[q][i]);
+    const double *K = s->stiffness + 9 * (size_t)s->coupled[q];
+    for (int i = 0; i < 9; i++)
+      value[q][i] = CMPLX(K[i] + less * s->cosine[q][i], sine * s->sine[q][i]);
   }
 }
 
@@ -358,6 +381,7 @@ void fem_sector_free(fem_sector *s) {
   free(s->coupled);
   free(s->cosine);
   free(s->sine);
+  free(s->exponent);
   free(s->mass_start);
   free(s->mass_node);
   free(s->mass);

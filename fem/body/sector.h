@@ -16,7 +16,7 @@
 
 #include "fem/body/assemble.h"
 #include "fem/body/rotating_body.h"
-#include "fem/solver/block_order.h"
+#include "fem/solver/hermitian.h"
 
 typedef struct {
   int        n_nodes, n_rows;      /* of the mesh; block rows */
@@ -28,8 +28,9 @@ typedef struct {
   int        n_coupled;            /* blocks that depend on theta */
   int       *coupled;              /* [n_coupled] */
   double (*cosine)[9], (*sine)[9]; /* [n_coupled] of B + B^T and of B^T - B */
-  int    *mass_start, *mass_node;  /* [n_nodes + 1]; nodes that share an element with each node */
-  double *mass;                    /* kg, one number a pair of nodes */
+  signed char *exponent; /* [n_coupled] fem_hermitian_matrix.exponent: 1 of B^T, -1 of B alone */
+  int    *mass_start, *mass_node; /* [n_nodes + 1]; nodes that share an element with each node */
+  double *mass;                   /* kg, one number a pair of nodes */
 } fem_sector;
 
 /* Create it from the system at nodal diameter 0.
@@ -44,8 +45,11 @@ PetscErrorCode fem_sector_create(const fem_body *body, const double *state,
  * N/2. */
 double complex fem_sector_phase(int n, int blades);
 
-/* K(theta), [block][9]; phase = e^(-j theta) here and below. */
-void fem_sector_stiffness(const fem_sector *sector, double complex phase, double complex *value);
+/* Order and analyse K(theta) of all theta; the sector must outlive the order. */
+shb_status fem_sector_analyse(const fem_sector *sector, fem_hermitian_order **order);
+
+/* The coupled blocks of K(theta), [n_coupled][9]; phase = e^(-j theta) here and below. */
+void fem_sector_coupled(const fem_sector *sector, double complex phase, double complex (*value)[9]);
 
 /* C x: motion of all nodes, [n_nodes][3], zero where clamped. */
 void fem_sector_expand(const fem_sector *sector, double complex phase, const double complex *x,

@@ -1,6 +1,6 @@
 #include "fem/solver/block_order.h"
 
-#include <omp.h>
+#include <stdlib.h>
 #include <string.h>
 
 void fem_cholmod_start(cholmod_common *common) {
@@ -8,54 +8,53 @@ void fem_cholmod_start(cholmod_common *common) {
   common->print                      = 0;
   common->quick_return_if_not_posdef = 1;
   common->nmethods                   = 1;
+  common->method[0].ordering         = CHOLMOD_NESDIS;
+  common->supernodal                 = CHOLMOD_SUPERNODAL;
+  common->postorder                  = 1;
+  common->nrelax[0] = 2, common->nrelax[1] = 5, common->nrelax[2] = 16; /* nodes */
   common->zrelax[0] = .3, common->zrelax[1] = .05, common->zrelax[2] = .02;
 }
 
-bool fem_block_order(const fem_blocks *b, cholmod_common *common, int *place) {
+cholmod_factor *fem_block_analyse(const fem_blocks *b, cholmod_common *common, int *place) {
   const size_t    n = (size_t)b->n, count = (size_t)b->start[n];
   cholmod_sparse *graph = cholmod_allocate_sparse(n, n, count, 1, 1, -1, CHOLMOD_PATTERN, common);
-  if (!graph) return false;
+  if (!graph) return NULL;
   memcpy(graph->p, b->start, (n + 1) * sizeof(int));
   memcpy(graph->i, b->column, count * sizeof(int));
-  common->method[0].ordering = CHOLMOD_NESDIS;
-  common->supernodal         = CHOLMOD_SIMPLICIAL;
-  common->postorder          = 1;
-  cholmod_factor *order      = cholmod_analyze(graph, common);
-  if (order)
-    for (size_t i = 0; i < n; i++) place[((const int *)order->Perm)[i]] = (int)i;
-  bool good = order != NULL;
-  cholmod_free_factor(&order, common);
+  cholmod_factor *L = cholmod_analyze(graph, common);
+  if (L)
+    for (size_t i = 0; i < n; i++) place[((const int *)L->Perm)[i]] = (int)i;
   cholmod_free_sparse(&graph, common);
-  return good;
+  return L;
 }
 
-void fem_block_starts(const fem_blocks *b, const int *place, int *next, int *start) {
-  int total = 0;
-  for (int r = 0; r < b->n; r++)
-    for (int q = b->start[r]; q < b->start[r + 1]; q++) {
-      int here = place[r], there = place[b->column[q]];
-      if (here != there) next[here < there ? here : there]++;
-    }
-  for (int c = 0; c < b->n; c++) {
-    for (int d = 0; d < 3; d++) {
-      start[3 * c + d] = total;
-      total += 3 - d + 3 * next[c];
-    }
-    next[c] = 0;
+bool fem_lower_pattern_create(const fem_blocks *b, const int *place, fem_lower_pattern *out) {
+  const size_t n = (size_t)b->n, count = (size_t)b->start[n];
+  int         *start = calloc(n + 2, sizeof *start), *row = malloc((count + 1) * sizeof *row),
+      *block = malloc((count + 1) * sizeof *block);
+  *out       = (fem_lower_pattern){b->n, start, row, block};
+  if (!start || !row || !block) return false;
+  for (int pass = 0; pass < 2; pass++) { /* counts two places on, then start one place on */
+    for (int r = 0; r < b->n; r++)
+      for (int q = b->start[r]; q < b->start[r + 1]; q++) {
+        const int here = place[r], there = place[b->column[q]];
+        const int low = here < there ? here : there;
+        if (pass == 0) {
+          if (low + 2 <= b->n) start[low + 2]++;
+          continue;
+        }
+        const int at = start[low + 1]++;
+        row[at]      = here < there ? there : here;
+        block[at]    = here < there ? ~q : q;
+      }
+    for (size_t c = 2; pass == 0 && c <= n; c++) start[c] += start[c - 1];
   }
-  start[3 * (size_t)b->n] = total;
+  return true;
 }
 
-cholmod_factor *fem_cholmod_analyse(cholmod_sparse *A, cholmod_common *common) {
-  common->method[0].ordering = CHOLMOD_NATURAL;
-  common->supernodal         = CHOLMOD_SUPERNODAL;
-  common->postorder          = 0;
-  return cholmod_analyze(A, common);
-}
-
-void fem_cholmod_factorise(cholmod_sparse *A, cholmod_factor *L, cholmod_common *common) {
-  const int levels = omp_get_max_active_levels();
-  omp_set_max_active_levels(0);
-  cholmod_factorize(A, L, common);
-  omp_set_max_active_levels(levels);
+void fem_lower_pattern_free(fem_lower_pattern *lower) {
+  free(lower->start);
+  free(lower->row);
+  free(lower->block);
+  *lower = (fem_lower_pattern){0};
 }

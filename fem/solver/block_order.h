@@ -1,4 +1,4 @@
-/* Order of the nodes for CHOLMOD, and the calls of CHOLMOD that real and complex factors share. */
+/* Order of the nodes and the pattern of the factor, by CHOLMOD. */
 #ifndef FEM_SOLVER_BLOCK_ORDER_H
 #define FEM_SOLVER_BLOCK_ORDER_H
 
@@ -14,24 +14,23 @@ typedef struct {
 /* cholmod_start with the settings of this program. */
 void fem_cholmod_start(cholmod_common *common);
 
-/* Nested dissection of the graph of the nodes. It is three times smaller than that of the dofs and
- * as good.
+/* Order the nodes by nested dissection, and factorise their pattern symbolically. It has a third of
+ * the columns of the dofs' and a ninth of its entries; the order is as good.
  *   place  out  [n] index of a block row in the factor
- * Returns false when out of memory. */
-bool fem_block_order(const fem_blocks *b, cholmod_common *common, int *place);
+ * Returns the supernodal factor of the nodes: each of its rows and columns is three of A. NULL when
+ * out of memory or too large. */
+cholmod_factor *fem_block_analyse(const fem_blocks *b, cholmod_common *common, int *place);
 
-/* Column starts of the permuted lower triangle. In block column b the blocks below the diagonal
- * follow the diagonal block.
- *   next   scratch  [n], zero on entry and exit
- *   start  out      [3 n + 1] */
-void fem_block_starts(const fem_blocks *b, const int *place, int *next, int *start);
+/* The permuted lower triangle by block columns. Block (r, c) is the block-th of the pattern, or the
+ * transpose of it if block is ~ its index. */
+typedef struct {
+  int  n;           /* block columns */
+  int *start;       /* [n + 1] */
+  int *row, *block; /* [start[n]] */
+} fem_lower_pattern;
 
-/* Symbolic supernodal factorisation in the order given. NULL when out of memory or too large. */
-cholmod_factor *fem_cholmod_analyse(cholmod_sparse *A, cholmod_common *common);
-
-/* Factorise on one thread. CHOLMOD copies panels with four OpenMP threads that wait for each other.
- * On a busy machine this takes more processor time than the arithmetic. With no active levels its
- * parallel regions have one thread. */
-void fem_cholmod_factorise(cholmod_sparse *A, cholmod_factor *L, cholmod_common *common);
+/* Returns false when out of memory; free then too. */
+bool fem_lower_pattern_create(const fem_blocks *b, const int *place, fem_lower_pattern *out);
+void fem_lower_pattern_free(fem_lower_pattern *lower);
 
 #endif

@@ -59,43 +59,11 @@ static PetscErrorCode give_back_blocks(Mat A, block_rows *b) {
 
 /* ------------------------------------------------------------------ analysis */
 
-/* Pattern of the permuted lower triangle of the dofs; NULL when out of memory. */
-static cholmod_sparse *permuted_pattern(const fem_blocks *b, const int *place,
-                                        cholmod_common *common) {
-  const size_t    n = (size_t)b->n, entries = 9 * (size_t)b->start[n] - 3 * n;
-  cholmod_sparse *A =
-      cholmod_allocate_sparse(3 * n, 3 * n, entries, 0, 1, -1, CHOLMOD_PATTERN, common);
-  int *next = calloc(n + 1, sizeof *next);
-  if (A && next) {
-    int *start = A->p, *row = A->i;
-    fem_block_starts(b, place, next, start);
-    for (int r = 0; r < b->n; r++)
-      for (int q = b->start[r]; q < b->start[r + 1]; q++) {
-        const int here = place[r], there = place[b->column[q]];
-        const int low = here < there ? here : there, high = here < there ? there : here;
-        const int slot = low == high ? 0 : next[low]++;
-        for (int d = 0; d < 3; d++) {
-          int *at = row + start[3 * low + d] + (low == high ? 0 : 3 - d + 3 * slot);
-          for (int e = low == high ? d : 0; e < 3; e++) *at++ = 3 * high + e;
-        }
-      }
-  } else
-    cholmod_free_sparse(&A, common);
-  free(next);
-  return A;
-}
-
-/* Order, and symbolic factorisation of the permuted matrix. */
 static bool analyse(const block_rows *b, fem_cholesky *factor) {
-  cholmod_common  *common  = &factor->common;
   const fem_blocks pattern = pattern_of(b);
-  if (!fem_block_order(&pattern, common, factor->place)) return false;
-  cholmod_sparse *A = permuted_pattern(&pattern, factor->place, common);
-  if (!A) return false;
-  cholmod_factor *L = fem_cholmod_analyse(A, common);
-  cholmod_free_sparse(&A, common);
-  const bool good = L && fem_supernodes_create(L, &factor->panels);
-  cholmod_free_factor(&L, common);
+  cholmod_factor  *L       = fem_block_analyse(&pattern, &factor->common, factor->place);
+  const bool       good    = L && fem_supernodes_create(L, &factor->panels);
+  cholmod_free_factor(&L, &factor->common);
   return good;
 }
 
@@ -127,55 +95,25 @@ void fem_cholesky_bytes(const fem_cholesky *factor, double *factor_bytes, double
   const fem_supernodes *s = &factor->panels;
   *factor_bytes           = 8. * (double)s->n_values + 4. * (double)s->n_rows;
   *workspace              = fem_supernodal_workspace(s, omp_get_max_threads()) +
-               8. / 9 * factor->common.anz; /* two indices a block */
+               8 * factor->common.anz; /* two indices a block */
 }
 
 /* ------------------------------------------------------------------ numbers */
 
-static void free_lower(fem_lower_blocks *A) {
-  free((void *)A->start);
-  free((void *)A->row);
-  free((void *)A->block);
-}
-
-/* The permuted lower triangle by block columns; false when out of memory. */
-static bool create_lower(const block_rows *b, const int *place, fem_lower_blocks *A) {
-  const size_t n = (size_t)b->n, count = (size_t)b->start[n];
-  int         *start = calloc(n + 2, sizeof *start), *row = malloc((count + 1) * sizeof *row),
-      *block = malloc((count + 1) * sizeof *block);
-  *A         = (fem_lower_blocks){b->n, start, row, block, b->value};
-  if (!start || !row || !block) return false;
-  for (int pass = 0; pass < 2; pass++) { /* counts two places on, then start one place on */
-    for (int r = 0; r < b->n; r++)
-      for (int q = b->start[r]; q < b->start[r + 1]; q++) {
-        const int here = place[r], there = place[b->column[q]];
-        const int low = here < there ? here : there;
-        if (pass == 0) {
-          if (low + 2 <= b->n) start[low + 2]++;
-          continue;
-        }
-        const int at = start[low + 1]++;
-        row[at]      = here < there ? there : here;
-        block[at]    = here < there ? ~q : q;
-      }
-    for (size_t c = 2; pass == 0 && c <= n; c++) start[c] += start[c - 1];
-  }
-  return true;
-}
-
 PetscErrorCode fem_cholesky_update(fem_cholesky *factor, Mat A, bool *definite) {
-  block_rows       b;
-  fem_lower_blocks lower;
-  fem_factorised   end = FEM_NO_MEMORY;
+  block_rows        b;
+  fem_lower_pattern lower;
+  fem_factorised    end = FEM_NO_MEMORY;
 
   PetscFunctionBeginUser;
   if (!factor->value)
     factor->value = fem_large_malloc((factor->panels.n_values + 1) * sizeof *factor->value);
   PetscCall(borrow_blocks(A, &b));
-  const bool listed = create_lower(&b, factor->place, &lower);
+  const fem_blocks pattern = pattern_of(&b);
+  const bool       listed  = fem_lower_pattern_create(&pattern, factor->place, &lower);
   if (listed && factor->value)
-    end = fem_supernodal_factorise(&factor->panels, &lower, factor->value);
-  free_lower(&lower);
+    end = fem_supernodal_factorise(&factor->panels, &lower, b.value, NULL, factor->value);
+  fem_lower_pattern_free(&lower);
   PetscCall(give_back_blocks(A, &b));
   PetscCheck(end != FEM_NO_MEMORY, PETSC_COMM_SELF, PETSC_ERR_MEM, "factor");
   *definite = end == FEM_FACTORISED;

@@ -1,7 +1,7 @@
 /* Sparse supernodal Cholesky factor on one rank, on all threads.
  *
- * CHOLMOD orders by nested dissection and analyses. Numbers and solves are those of
- * supernodal_factor and supernodal_solve.
+ * CHOLMOD orders the nodes by nested dissection and analyses their pattern. Numbers and solves are
+ * those of supernodal_factor and supernodal_solve.
  *
  * The matrix is not copied. The numbers do not depend on the number of threads. A solve takes
  * several right-hand sides: eight cost twice as much as one. */
@@ -15,7 +15,8 @@ typedef struct fem_cholesky fem_cholesky;
 
 /* Order and analyse the pattern of A.
  *   A     in   sequential SBAIJ of block size 3
- *   fits  out  false: the factor would have 2^31 entries or more, which CHOLMOD cannot index
+ *   fits  out  false: counted by nodes, the factor would have 2^31 entries or more, which CHOLMOD
+ *              cannot index
  *   out   out  NULL if it does not fit
  * Errors: PETSC_ERR_MEM. */
 PetscErrorCode fem_cholesky_create(Mat A, bool *fits, fem_cholesky **out);

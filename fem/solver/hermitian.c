@@ -1,155 +1,160 @@
 #include "fem/solver/hermitian.h"
 
+#include <omp.h>
 #include <stdlib.h>
 #include <string.h>
 
+#include "fem/solver/hermitian_factor.h"
 #include "fem/solver/large_pages.h"
-#include "fem/solver/supernodal_hermitian.h"
+#include "mesh/base/memory.h"
 
 struct fem_hermitian_order {
-  fem_blocks      pattern;
-  int            *place; /* [n] index of a block row in the factor */
-  cholmod_factor *L;     /* symbolic */
-  cholmod_common  common;
+  fem_hermitian_matrix A;
+  int                 *place;      /* [n] index of a block row in the factor */
+  int                 *coupled_at; /* [block] index among the coupled ones, or -1 */
+  fem_lower_pattern    lower;
+  fem_supernodes       panels;
+  fem_panel_turns      turns;
+  size_t               n_real, n_other; /* numbers of the real and of the complex panels */
+  double              *real;            /* [n_real] */
+  bool                 definite;        /* the real panels are there */
 };
 
 struct fem_hermitian {
   const fem_hermitian_order *order;
-  cholmod_factor            *L;
-  fem_complex_lanes         *x, *work; /* right-hand sides in the factor's order; a supernode */
-  cholmod_common             common;
+  fem_hermitian_panels       panels;
+  fem_complex_lanes         *x, *work; /* right-hand sides in the factor's order; a panel */
 };
 
-/* The permuted lower triangle: its rows below each column start, and its values by CHOLMOD's
- * column. */
-typedef struct {
-  int            *start, *row;
-  double complex *value; /* NULL: the pattern alone */
-} triangle;
+/* ------------------------------------------------------------------ analysis */
 
-static void put_diagonal(const double complex *B, int c, const triangle *t) {
-  for (int d = 0; d < 3; d++)
-    for (int e = d; e < 3; e++) {
-      const int at = t->start[3 * c + d] + e - d;
-      t->row[at]   = 3 * c + e;
-      if (t->value) t->value[at] = conj(B[d + 3 * e]);
-    }
+/* Order and structure. *too_large: CHOLMOD cannot index the factor. */
+static bool analyse(fem_hermitian_order *order, bool *too_large) {
+  cholmod_common common;
+  fem_cholmod_start(&common);
+  cholmod_factor *L    = fem_block_analyse(&order->A.pattern, &common, order->place);
+  const bool      good = L && fem_supernodes_create(L, &order->panels);
+  *too_large           = common.status == CHOLMOD_TOO_LARGE;
+  cholmod_free_factor(&L, &common);
+  cholmod_finish(&common);
+  return good && fem_lower_pattern_create(&order->A.pattern, order->place, &order->lower);
 }
 
-/* Put a block of rows low and columns high, or its conjugate transpose, as the slot-th block below
- * the diagonal of column low. */
-static void put_block(const double complex *B, bool turned, int low, int high, int slot,
-                      const triangle *t) {
-  for (int d = 0; d < 3; d++) {
-    const int at = t->start[3 * low + d] + 3 - d + 3 * slot;
-    for (int e = 0; e < 3; e++) {
-      t->row[at + e] = 3 * high + e;
-      if (t->value) t->value[at + e] = turned ? B[e + 3 * d] : conj(B[d + 3 * e]);
-    }
+/* Which panels are real, and the place of each panel's numbers. */
+static bool part_panels(fem_hermitian_order *order) {
+  const fem_hermitian_matrix *A        = &order->A;
+  const size_t                count    = (size_t)A->pattern.start[A->pattern.n] + 1;
+  signed char                *exponent = calloc(count, 1);
+  order->coupled_at                    = malloc(count * sizeof *order->coupled_at);
+  bool good                            = exponent && order->coupled_at;
+  for (size_t q = 0; good && q < count; q++) order->coupled_at[q] = -1;
+  for (int i = 0; good && i < A->n_coupled; i++) {
+    exponent[A->coupled[i]]          = A->exponent[i];
+    order->coupled_at[A->coupled[i]] = i;
   }
+  good = good && fem_panel_turns_create(&order->panels, &order->lower, exponent, &order->turns);
+  free(exponent);
+  for (int k = 0; good && k < order->panels.n_panels; k++) {
+    fem_panel   *p    = &order->panels.panel[k];
+    const size_t size = (size_t)p->columns * (size_t)p->rows;
+    p->value          = order->turns.is_real[k] ? order->n_real : order->n_other;
+    if (order->turns.is_real[k])
+      order->n_real += size;
+    else
+      order->n_other += 2 * size;
+  }
+  return good;
 }
 
-/* The permuted lower triangle; NULL when out of memory.
- *   value  in  [block][9]; NULL: the pattern alone */
-static cholmod_sparse *permute(const fem_blocks *b, const int *place, const double complex *value,
-                               cholmod_common *common) {
-  static const double complex none[9];
-  const size_t                n = (size_t)b->n, entries = 9 * (size_t)b->start[n] - 3 * n;
-  cholmod_sparse             *A    = cholmod_allocate_sparse(3 * n, 3 * n, entries, 0, 1, -1,
-                                              value ? CHOLMOD_COMPLEX : CHOLMOD_PATTERN, common);
-  int                        *next = calloc(n + 1, sizeof *next);
-  if (A && next) {
-    const triangle t = {A->p, A->i, value ? A->x : NULL};
-    fem_block_starts(b, place, next, t.start);
-    for (int r = 0; r < b->n; r++)
-      for (int q = b->start[r]; q < b->start[r + 1]; q++) {
-        const int             here = place[r], there = place[b->column[q]];
-        const double complex *block = value ? value + 9 * (size_t)q : none;
-        if (here == there)
-          put_diagonal(block, here, &t);
-        else if (here < there)
-          put_block(block, false, here, there, next[here]++, &t);
-        else
-          put_block(block, true, there, here, next[there]++, &t);
-      }
-  } else
-    cholmod_free_sparse(&A, common);
-  free(next);
-  return A;
+static shb_status factorise_real(fem_hermitian_order *order) {
+  const int    n = order->A.pattern.n;
+  const double bytes =
+      8. * (double)order->n_real + fem_supernodal_workspace(&order->panels, omp_get_max_threads());
+  const double left = shb_memory_available();
+  SHB_CHECK(bytes <= left, SHB_ERR_INPUT,
+            "the factor of %d nodes needs %.3g GB more memory, and %.3g GB are left; make a "
+            "coarser mesh",
+            n, 1e-9 * bytes, 1e-9 * left);
+  order->real = fem_large_malloc((order->n_real + 1) * sizeof *order->real);
+  SHB_CHECK(order->real, SHB_ERR_IO, "out of memory for the factor of %d nodes", n);
+  const fem_factorised end = fem_supernodal_factorise(&order->panels, &order->lower, order->A.real,
+                                                      order->turns.is_real, order->real);
+  SHB_CHECK(end != FEM_NO_MEMORY, SHB_ERR_IO, "out of memory for the factor of %d nodes", n);
+  order->definite = end == FEM_FACTORISED;
+  return SHB_OK;
 }
 
-shb_status fem_hermitian_analyse(const fem_blocks *pattern, fem_hermitian_order **out) {
+static shb_status prepare(const fem_hermitian_matrix *A, fem_hermitian_order *order) {
+  bool too_large  = false;
+  order->A        = *A;
+  order->place    = malloc(((size_t)A->pattern.n + 1) * sizeof *order->place);
+  const bool good = order->place && analyse(order, &too_large) && part_panels(order);
+  SHB_CHECK(!too_large, SHB_ERR_INPUT, "the factor of %d nodes is too large; make a coarser mesh",
+            A->pattern.n);
+  SHB_CHECK(good, SHB_ERR_IO, "out of memory for the factor of %d nodes", A->pattern.n);
+  return factorise_real(order);
+}
+
+shb_status fem_hermitian_analyse(const fem_hermitian_matrix *A, fem_hermitian_order **out) {
   fem_hermitian_order *order = calloc(1, sizeof *order);
-  *out                       = order;
+  *out                       = NULL;
   SHB_CHECK(order, SHB_ERR_IO, "out of memory for a factor");
-  fem_cholmod_start(&order->common);
-  order->pattern = *pattern;
-  order->place   = malloc(((size_t)pattern->n + 1) * sizeof *order->place);
-  if (order->place && fem_block_order(pattern, &order->common, order->place)) {
-    cholmod_sparse *A = permute(pattern, order->place, NULL, &order->common);
-    if (A) order->L = fem_cholmod_analyse(A, &order->common);
-    cholmod_free_sparse(&A, &order->common);
-  }
-  if (order->L) return SHB_OK;
-  const bool too_large = order->common.status == CHOLMOD_TOO_LARGE;
-  fem_hermitian_order_free(order);
-  *out = NULL;
-  SHB_CHECK(!too_large, SHB_ERR_INPUT,
-            "the factor of %d nodes has 2^31 entries or more; make a coarser mesh", pattern->n);
-  SHB_FAIL(SHB_ERR_IO, "out of memory for the factor of %d nodes", pattern->n);
+  const shb_status status = prepare(A, order);
+  if (status == SHB_OK)
+    *out = order;
+  else
+    fem_hermitian_order_free(order);
+  return status;
 }
 
 void fem_hermitian_order_free(fem_hermitian_order *order) {
   if (!order) return;
-  cholmod_free_factor(&order->L, &order->common);
-  cholmod_finish(&order->common);
+  fem_panel_turns_free(&order->turns);
+  fem_supernodes_free(&order->panels);
+  fem_lower_pattern_free(&order->lower);
   free(order->place);
+  free(order->coupled_at);
+  free(order->real);
   free(order);
 }
 
 double fem_hermitian_bytes(const fem_hermitian_order *order) {
-  const cholmod_factor *L = order->L;
-  return 16. * (double)L->xsize + 4. * (double)L->ssize + 16. * (double)L->maxcsize +
-         20. * 9. * (double)order->pattern.start[order->pattern.n];
+  return 8. * (double)order->n_other + fem_hermitian_workspace(&order->panels);
 }
 
-static shb_status factorise(fem_hermitian *factor, const double complex *value, bool *definite) {
-  cholmod_common *common = &factor->common;
-  factor->L              = cholmod_copy_factor(factor->order->L, common);
-  cholmod_sparse *A =
-      factor->L ? permute(&factor->order->pattern, factor->order->place, value, common) : NULL;
-  SHB_CHECK(A, SHB_ERR_IO, "out of memory for the factor of %d nodes", factor->order->pattern.n);
-  if (cholmod_change_factor(CHOLMOD_COMPLEX, 1, 1, 1, 1, factor->L, common))
-    fem_prefer_large_pages(factor->L->x, factor->L->xsize * sizeof *value);
-  fem_cholmod_factorise(A, factor->L, common);
-  cholmod_free_sparse(&A, common);
-  SHB_CHECK(common->status >= CHOLMOD_OK, SHB_ERR_IO, "out of memory for the factor of %d nodes",
-            factor->order->pattern.n);
-  *definite = common->status != CHOLMOD_NOT_POSDEF;
-  return SHB_OK;
-}
+/* ------------------------------------------------------------------ one theta */
 
-shb_status fem_hermitian_create(const fem_hermitian_order *order, const double complex *value,
-                                bool *definite, fem_hermitian **out) {
-  fem_hermitian *factor = calloc(1, sizeof *factor);
-  *out                  = NULL;
-  *definite             = false;
+shb_status fem_hermitian_create(const fem_hermitian_order *order, double complex turn,
+                                const double complex (*value)[9], bool *definite,
+                                fem_hermitian **out) {
+  const fem_hermitian_blocks A      = {&order->lower, order->A.real, order->coupled_at, value};
+  fem_hermitian             *factor = calloc(1, sizeof *factor);
+  fem_factorised             end    = FEM_NO_MEMORY;
+  *out                              = NULL;
+  *definite                         = order->definite;
   SHB_CHECK(factor, SHB_ERR_IO, "out of memory for a factor");
   factor->order = order;
-  fem_cholmod_start(&factor->common);
-  shb_status status = factorise(factor, value, definite);
-  if (status == SHB_OK && *definite)
+  factor->panels =
+      (fem_hermitian_panels){.s     = &order->panels,
+                             .turns = &order->turns,
+                             .real  = order->real,
+                             .other = fem_large_malloc((order->n_other + 1) * sizeof(double))};
+  fem_hermitian_set_phase(turn, &factor->panels);
+  if (factor->panels.other && *definite) end = fem_hermitian_factorise(&A, &factor->panels);
+  *definite = end == FEM_FACTORISED;
+  if (*definite)
     *out = factor;
   else
     fem_hermitian_free(factor);
-  return status;
+  SHB_CHECK(end != FEM_NO_MEMORY || !order->definite, SHB_ERR_IO,
+            "out of memory for the factor of %d nodes", order->A.pattern.n);
+  return SHB_OK;
 }
 
 /* Workspace for four right-hand sides, kept between solves. */
 static bool make_room(fem_hermitian *factor) {
-  const size_t alignment = sizeof(fem_lanes), each = sizeof(fem_complex_lanes);
-  const size_t n    = 3 * (size_t)factor->order->pattern.n,
-               rows = fem_supernodal_hermitian_rows(factor->L);
+  const size_t alignment = sizeof(fem_complex_lanes), each = sizeof(fem_complex_lanes);
+  const size_t n = (size_t)factor->order->panels.n, rows = (size_t)factor->order->panels.most_rows;
   if (factor->x && factor->work) return true;
   factor->x =
       n * each < FEM_LARGE_PAGE ? aligned_alloc(alignment, n * each) : fem_large_malloc(n * each);
@@ -160,7 +165,7 @@ static bool make_room(fem_hermitian *factor) {
 /* Solve for count <= FEM_LANES columns; unused lanes are zero. */
 static void solve_few(fem_hermitian *factor, size_t count, const double complex *b,
                       double complex *x) {
-  const size_t n     = (size_t)factor->order->pattern.n;
+  const size_t n     = (size_t)factor->order->A.pattern.n;
   const int   *place = factor->order->place;
   for (size_t i = 0; i < 3 * n; i++) {
     fem_complex_lanes *at = factor->x + 3 * (size_t)place[i / 3] + i % 3;
@@ -169,7 +174,7 @@ static void solve_few(fem_hermitian *factor, size_t count, const double complex 
       at->im[c] = c < count ? cimag(b[3 * n * c + i]) : 0;
     }
   }
-  fem_supernodal_solve_hermitian(factor->L, factor->x, factor->work);
+  fem_supernodal_solve_hermitian(&factor->panels, factor->x, factor->work);
   for (size_t i = 0; i < 3 * n; i++) {
     const fem_complex_lanes *at = factor->x + 3 * (size_t)place[i / 3] + i % 3;
     for (size_t c = 0; c < count; c++) x[3 * n * c + i] = CMPLX(at->re[c], at->im[c]);
@@ -178,7 +183,7 @@ static void solve_few(fem_hermitian *factor, size_t count, const double complex 
 
 shb_status fem_hermitian_solve(fem_hermitian *factor, int count, const double complex *b,
                                double complex *x) {
-  const size_t all = (size_t)count, order = 3 * (size_t)factor->order->pattern.n;
+  const size_t all = (size_t)count, order = 3 * (size_t)factor->order->A.pattern.n;
   SHB_CHECK(make_room(factor), SHB_ERR_IO, "out of memory for %d solutions", count);
   for (size_t c = 0; c < all; c += FEM_LANES)
     solve_few(factor, all - c < FEM_LANES ? all - c : FEM_LANES, b + c * order, x + c * order);
@@ -187,8 +192,7 @@ shb_status fem_hermitian_solve(fem_hermitian *factor, int count, const double co
 
 void fem_hermitian_free(fem_hermitian *factor) {
   if (!factor) return;
-  cholmod_free_factor(&factor->L, &factor->common);
-  cholmod_finish(&factor->common);
+  free(factor->panels.other);
   free(factor->x);
   free(factor->work);
   free(factor);

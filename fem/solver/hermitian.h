@@ -1,30 +1,46 @@
-/* Sparse Hermitian Cholesky factor L L^H of 3x3 blocks on one thread by CHOLMOD. One symbolic
- * analysis serves any number of factors, also on several threads. Free of PETSc. */
+/* Sparse Hermitian Cholesky factor L L^H of 3x3 blocks at any theta. Free of PETSc.
+ *
+ * Ordered and analysed by CHOLMOD once. What does not depend on theta (fem/solver/panel_turns.h) is
+ * factorised once, on all threads. The rest takes one thread: several theta may be factorised and
+ * solved at a time. */
 #ifndef FEM_SOLVER_HERMITIAN_H
 #define FEM_SOLVER_HERMITIAN_H
 
 #include <complex.h>
 
 #include "fem/solver/block_order.h"
+#include "fem/solver/panel_turns.h"
 #include "mesh/base/status.h"
+
+/* A(theta): upper triangle, each block by columns. */
+typedef struct {
+  fem_blocks         pattern;
+  const double      *real;      /* [block][9] R */
+  int                n_coupled; /* blocks that are not R at every theta */
+  const int         *coupled;   /* [n_coupled] */
+  const signed char *exponent;  /* [n_coupled] e where the block is e^(j theta e) R */
+} fem_hermitian_matrix;
 
 typedef struct fem_hermitian_order fem_hermitian_order;
 typedef struct fem_hermitian       fem_hermitian;
 
-/* Order and analyse a pattern, which must outlive the order and its factors. Errors: SHB_ERR_IO no
- * memory; SHB_ERR_INPUT the factor has 2^31 entries or more. */
-shb_status fem_hermitian_analyse(const fem_blocks *pattern, fem_hermitian_order **out);
+/* Order, analyse, and factorise what is real. The arrays of A must outlive the order. Errors:
+ * SHB_ERR_IO no memory; SHB_ERR_INPUT the machine has too little, or the factor cannot be
+ * indexed. */
+shb_status fem_hermitian_analyse(const fem_hermitian_matrix *A, fem_hermitian_order **out);
 void       fem_hermitian_order_free(fem_hermitian_order *order); /* NULL: nothing */
 
-/* Bytes of one factor with the workspace of its making. */
+/* Bytes of the factor of one theta with the workspace of its making, beside the real part. */
 double fem_hermitian_bytes(const fem_hermitian_order *order);
 
 /* Factorise.
- *   value     in   [block][9] upper triangle in the order of the pattern, each block by columns
+ *   turn      in   e^(j theta)
+ *   value     in   [n_coupled][9] the coupled blocks at theta
  *   definite  out  false: not positive definite, and *out is NULL
  * Errors: SHB_ERR_IO no memory. */
-shb_status fem_hermitian_create(const fem_hermitian_order *order, const double complex *value,
-                                bool *definite, fem_hermitian **out);
+shb_status fem_hermitian_create(const fem_hermitian_order *order, double complex turn,
+                                const double complex (*value)[9], bool *definite,
+                                fem_hermitian **out);
 
 /* Solve A x = b for count columns [3 n]; x may be b. Errors: SHB_ERR_IO no memory. */
 shb_status fem_hermitian_solve(fem_hermitian *factor, int count, const double complex *b,

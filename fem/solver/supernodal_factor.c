@@ -11,12 +11,14 @@
 enum { SPINS = 2000 }; /* looks at a panel in work before the processor is given to others */
 
 typedef struct {
-  const fem_supernodes   *s;
-  const fem_lower_blocks *A;
-  double                 *value;
-  atomic_bool            *done; /* [n_panels] */
-  atomic_int              next; /* piece of work: subtrees, then panels */
-  atomic_bool             failed;
+  const fem_supernodes    *s;
+  const fem_lower_pattern *lower;
+  const double            *block; /* [block][9] */
+  const bool              *only;
+  double                  *value;
+  atomic_bool             *done; /* [n_panels] */
+  atomic_int               next; /* piece of work: subtrees, then panels */
+  atomic_bool              failed;
 } factorisation;
 
 /* Of one thread. */
@@ -30,14 +32,14 @@ typedef struct {
 
 /* Put the entries of A into the panel. */
 static void fill(const factorisation *f, const fem_panel *p, const int *place, double *L) {
-  const fem_lower_blocks *A = f->A;
+  const fem_lower_pattern *A = f->lower;
   memset(L, 0, (size_t)p->columns * (size_t)p->rows * sizeof *L);
   for (int j = 0; j < p->columns; j++) {
     const int c = (p->first + j) / 3, d = (p->first + j) % 3;
     double   *column = L + (size_t)j * (size_t)p->rows;
     for (int k = A->start[c]; k < A->start[c + 1]; k++) {
       const int     q = A->block[k], r = A->row[k];
-      const double *B = A->value + 9 * (size_t)(q < 0 ? ~q : q);
+      const double *B = f->block + 9 * (size_t)(q < 0 ? ~q : q);
       for (int e = r == c ? d : 0; e < 3; e++)
         column[place[3 * r + e]] = q < 0 || r == c ? B[d + 3 * e] : B[e + 3 * d];
     }
@@ -125,14 +127,15 @@ static void work(factorisation *f, const int *top, int n_top, const workspace *w
     if (piece >= s->n_subtrees + n_top) return;
     const int first = piece < s->n_subtrees ? s->subtree[piece].first : top[piece - s->n_subtrees];
     const int last  = piece < s->n_subtrees ? s->subtree[piece].last : first + 1;
-    for (int k = first; k < last && !atomic_load(&f->failed); k++) do_panel(f, k, w);
+    for (int k = first; k < last && !atomic_load(&f->failed); k++)
+      if (!f->only || f->only[k]) do_panel(f, k, w);
   }
 }
 
-fem_factorised fem_supernodal_factorise(const fem_supernodes *s, const fem_lower_blocks *A,
-                                        double *value) {
+fem_factorised fem_supernodal_factorise(const fem_supernodes *s, const fem_lower_pattern *lower,
+                                        const double *block, const bool *only, double *value) {
   const int     most  = omp_get_max_threads();
-  factorisation f     = {.s = s, .A = A, .value = value};
+  factorisation f     = {.s = s, .lower = lower, .block = block, .only = only, .value = value};
   workspace    *w     = calloc((size_t)most, sizeof *w);
   int          *top   = malloc(((size_t)s->n_panels + 1) * sizeof *top);
   int           n_top = 0, ready = 0;

@@ -6,24 +6,19 @@
 #ifndef FEM_SOLVER_SUPERNODAL_FACTOR_H
 #define FEM_SOLVER_SUPERNODAL_FACTOR_H
 
+#include "fem/solver/block_order.h"
 #include "fem/solver/supernodes.h"
-
-/* Lower triangle of a symmetric matrix of 3x3 blocks, in the order of the factor, by block columns.
- * Block (r, c) is the block-th of value, by columns; its transpose if block is ~ its index. */
-typedef struct {
-  int           n;           /* block columns */
-  const int    *start;       /* [n + 1] */
-  const int    *row, *block; /* [start[n]] */
-  const double *value;       /* [block][9] */
-} fem_lower_blocks;
 
 typedef enum { FEM_FACTORISED, FEM_NOT_DEFINITE, FEM_NO_MEMORY } fem_factorised;
 
 /* Bytes of workspace on that many threads. */
 double fem_supernodal_workspace(const fem_supernodes *s, int threads);
 
-/*   value  out  [n_values] */
-fem_factorised fem_supernodal_factorise(const fem_supernodes *s, const fem_lower_blocks *A,
-                                        double *value);
+/* Factorise a symmetric matrix of 3x3 blocks.
+ *   block  in   [block][9] upper triangle in the order of the pattern, each block by columns
+ *   only   in   [n_panels] panels that are wanted, with all below them in the tree; NULL: all
+ *   value  out  [n_values] */
+fem_factorised fem_supernodal_factorise(const fem_supernodes *s, const fem_lower_pattern *lower,
+                                        const double *block, const bool *only, double *value);
 
 #endif

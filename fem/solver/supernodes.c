@@ -7,6 +7,9 @@ enum { SHARES = 16 }; /* a subtree costs at most that part of the whole factoris
 
 /* ------------------------------------------------------------------ panels */
 
+/* A row or column of CHOLMOD's factor is a node with three dofs. */
+enum { DOFS = 3 };
+
 static int pieces_of(int columns) {
   return (columns + FEM_PANEL_COLUMNS - 1) / FEM_PANEL_COLUMNS;
 }
@@ -15,33 +18,38 @@ static bool allocate_panels(const cholmod_factor *L, fem_supernodes *out) {
   const int *super = L->super, *pi = L->pi;
   size_t     rows = 0;
   for (size_t s = 0; s < L->nsuper; s++) {
-    const int pieces = pieces_of(super[s + 1] - super[s]);
+    const int pieces = pieces_of(DOFS * (super[s + 1] - super[s]));
     out->n_panels += pieces;
-    rows += (size_t)pieces * (size_t)(pi[s + 1] - pi[s]);
+    rows += (size_t)pieces * DOFS * (size_t)(pi[s + 1] - pi[s]);
   }
   const size_t n = (size_t)out->n_panels;
-  out->n         = (int)L->n;
+  out->n         = DOFS * (int)L->n;
   out->panel     = malloc((n + 1) * sizeof *out->panel);
   out->row       = malloc((rows + 1) * sizeof *out->row);
   out->is_top    = calloc(n + 1, sizeof *out->is_top);
   return out->panel && out->row && out->is_top;
 }
 
+/* The rows of a panel that begins done rows below the first one of a supernode.
+ *   node  in  [] of the supernode */
+static void fill_rows(const int *node, int done, int rows, int *row) {
+  for (int i = 0; i < rows; i++) row[i] = DOFS * node[(done + i) / DOFS] + (done + i) % DOFS;
+}
+
 /* Cut each supernode into panels of a multiple of 24 columns: nodes, and groups of eight. */
 static void cut_panels(const cholmod_factor *L, fem_supernodes *out) {
-  const int *super = L->super, *pi = L->pi;
-  fem_panel *p        = out->panel;
-  const int *all_rows = L->s;
+  const int *super = L->super, *pi = L->pi, *node = L->s;
+  fem_panel *p = out->panel;
   for (size_t s = 0; s < L->nsuper; s++) {
-    const int all = super[s + 1] - super[s], rows = pi[s + 1] - pi[s], n = pieces_of(all);
-    const int width = n > 1 ? ((all + n - 1) / n + 23) / 24 * 24 : all;
+    const int all = DOFS * (super[s + 1] - super[s]), rows = DOFS * (pi[s + 1] - pi[s]);
+    const int n = pieces_of(all), width = n > 1 ? ((all + n - 1) / n + 23) / 24 * 24 : all;
     for (int done = 0; done < all; done += width, p++) {
-      p->first   = super[s] + done;
+      p->first   = DOFS * super[s] + done;
       p->columns = all - done < width ? all - done : width;
       p->rows    = rows - done;
       p->row     = out->n_rows;
       p->value   = out->n_values;
-      memcpy(out->row + p->row, all_rows + pi[s] + done, (size_t)p->rows * sizeof(int));
+      fill_rows(node + pi[s], done, p->rows, out->row + p->row);
       out->n_rows += (size_t)p->rows;
       out->n_values += (size_t)p->columns * (size_t)p->rows;
       if (p->rows > out->most_rows) out->most_rows = p->rows;
@@ -193,7 +201,7 @@ static bool find_subtrees(fem_supernodes *s, const int *owner) {
 
 bool fem_supernodes_create(const cholmod_factor *L, fem_supernodes *out) {
   memset(out, 0, sizeof *out);
-  int *owner = malloc((L->n + 1) * sizeof *owner);
+  int *owner = malloc((DOFS * L->n + 1) * sizeof *owner);
   bool good  = owner && allocate_panels(L, out);
   if (good) {
     cut_panels(L, out);

@@ -7,12 +7,12 @@
 static const double complex one = 1, zero = 0;
 
 static shb_status factorise(const fem_hermitian_order *order, wave_operator *op) {
-  const size_t    count    = 9 * (size_t)op->sector->blocks.start[op->sector->blocks.n];
-  double complex *value    = malloc((count + 1) * sizeof *value);
-  bool            definite = false;
+  double complex(*value)[9] = malloc(((size_t)op->sector->n_coupled + 1) * sizeof *value);
+  bool   definite           = false;
   SHB_CHECK(value, SHB_ERR_IO, "out of memory for the stiffness of a sector");
-  fem_sector_stiffness(op->sector, op->phase, value);
-  shb_status status = fem_hermitian_create(order, value, &definite, &op->factor);
+  fem_sector_coupled(op->sector, op->phase, value);
+  shb_status status = fem_hermitian_create(
+      order, conj(op->phase), (const double complex(*)[9])value, &definite, &op->factor);
   free(value);
   SHB_TRY(status);
   SHB_CHECK(definite, SHB_ERR_INPUT,

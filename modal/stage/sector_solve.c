@@ -34,8 +34,8 @@ shb_status modal_sector_check(MPI_Comm comm, const modal_settings *settings) {
   int ranks;
   MPI_Comm_size(comm, &ranks);
   SHB_CHECK(ranks == 1, SHB_ERR_INPUT,
-            "a sector with cyclic sides runs on one rank, not %d; its nodal diameters run on "
-            "threads (OMP_NUM_THREADS)",
+            "a sector with cyclic sides runs as one process; its %d ranks are distributed (several "
+            "machines, MUMPS or OMP_PROC_BIND)",
             ranks);
   SHB_CHECK(settings->check != MODAL_CHECK_INERTIA, SHB_ERR_INPUT,
             "modal.check: inertia is for a clamped blade; leave it at auto, or give never");
@@ -209,7 +209,7 @@ static shb_status solve(work *w, shb_progress *progress, modal_result *first) {
   FEM_PETSC(drop_factor(first));
   if (!has_columns(first, w->out->models.n)) first->residual.n = 0;
   FEM_PETSC(fem_sector_create(w->body, w->state, &first->system, &w->matrices));
-  SHB_TRY(fem_hermitian_analyse(&w->matrices.blocks, &w->order));
+  SHB_TRY(fem_sector_analyse(&w->matrices, &w->order));
   SHB_TRY(count_threads(w, &threads));
   modal_phase(first->system.comm, progress, "sector",
               "%d blocks couple the sides, %.3g GB a factor", w->matrices.n_coupled,

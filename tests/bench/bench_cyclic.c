@@ -140,7 +140,7 @@ static shb_status find_modes(const rung *r, mesh_fe *mesh, figures *out) {
   FEM_PETSC(fem_system_create(PETSC_COMM_SELF, mesh, &steel, FEM_CALCULIX, &system));
   FEM_PETSC(fem_sector_create(&body, NULL, &system, &sector));
   FEM_PETSC(fem_system_destroy(&system));
-  SHB_TRY(fem_hermitian_analyse(&sector.blocks, &order));
+  SHB_TRY(fem_sector_analyse(&sector, &order));
   SHB_TRY(find_waves(r, &sector, &body, order, out));
   out->seconds = processor_time() - began;
   fem_hermitian_order_free(order);

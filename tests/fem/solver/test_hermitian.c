@@ -73,6 +73,20 @@ static double residual(const matrix *A, fem_hermitian *factor, int count) {
   return worst;
 }
 
+/* All blocks are complex ones. */
+static fem_hermitian_matrix any_blocks(const matrix *A) {
+  static const double none[N * (BAND + 1)][9];
+  static int          coupled[N * (BAND + 1)];
+  static signed char  exponent[N * (BAND + 1)];
+  for (int q = 0; q < A->start[N]; q++) {
+    coupled[q]  = q;
+    exponent[q] = FEM_ANY_BLOCK;
+  }
+  return (fem_hermitian_matrix){{N, A->start, A->column}, none[0], A->start[N], coupled, exponent};
+}
+
+static const double complex turn = CMPLX(.8, .6);
+
 static void solutions_of_one_analysis(void **state) {
   (void)state;
   static matrix        A[2];
@@ -81,11 +95,11 @@ static void solutions_of_one_analysis(void **state) {
   bool                 definite;
   make(40, 1, &A[0]);
   make(57, 2, &A[1]);
-  const fem_blocks pattern = {N, A[0].start, A[0].column};
-  assert_ok(fem_hermitian_analyse(&pattern, &order));
+  const fem_hermitian_matrix any = any_blocks(&A[0]);
+  assert_ok(fem_hermitian_analyse(&any, &order));
   assert_true(fem_hermitian_bytes(order) > 16. * ORDER);
   for (int k = 0; k < 2; k++) {
-    assert_ok(fem_hermitian_create(order, A[k].value[0], &definite, &factor[k]));
+    assert_ok(fem_hermitian_create(order, turn, A[k].value, &definite, &factor[k]));
     assert_true(definite);
   }
   for (int k = 0; k < 2; k++)
@@ -105,9 +119,9 @@ static void a_solution_in_place(void **state) {
   uint64_t              seed = 8;
   bool                  definite;
   make(40, 5, &A);
-  const fem_blocks pattern = {N, A.start, A.column};
-  assert_ok(fem_hermitian_analyse(&pattern, &order));
-  assert_ok(fem_hermitian_create(order, A.value[0], &definite, &factor));
+  const fem_hermitian_matrix any = any_blocks(&A);
+  assert_ok(fem_hermitian_analyse(&any, &order));
+  assert_ok(fem_hermitian_create(order, turn, A.value, &definite, &factor));
   for (int i = 0; i < ORDER; i++) b[i] = random_number(&seed);
   assert_ok(fem_hermitian_solve(factor, 1, b, x));
   assert_ok(fem_hermitian_solve(factor, 1, b, b));
@@ -123,9 +137,9 @@ static void an_indefinite_matrix(void **state) {
   fem_hermitian       *factor;
   bool                 definite = true;
   make(2, 1, &A);
-  const fem_blocks pattern = {N, A.start, A.column};
-  assert_ok(fem_hermitian_analyse(&pattern, &order));
-  assert_ok(fem_hermitian_create(order, A.value[0], &definite, &factor));
+  const fem_hermitian_matrix any = any_blocks(&A);
+  assert_ok(fem_hermitian_analyse(&any, &order));
+  assert_ok(fem_hermitian_create(order, turn, A.value, &definite, &factor));
   assert_false(definite);
   assert_null(factor);
   fem_hermitian_order_free(order);
@@ -133,9 +147,97 @@ static void an_indefinite_matrix(void **state) {
   fem_hermitian_order_free(NULL);
 }
 
+/* ------------------------------------------------------------------ blocks with phases */
+
+/* A real matrix some of whose blocks carry phases. */
+typedef struct {
+  matrix      A;
+  double      real[N * (BAND + 1)][9];
+  int         coupled[N * (BAND + 1)], n;
+  signed char exponent[N * (BAND + 1)];
+} links;
+
+/* Blocks from below node cut to cut and beyond carry e^(j theta e). Those from below node other
+ * carry e^(-j theta e), where other > 0. */
+static void make_links(int cut, int e, int other, links *l) {
+  make(40, 11, &l->A);
+  l->n = 0;
+  for (int r = 0; r < N; r++)
+    for (int q = l->A.start[r]; q < l->A.start[r + 1]; q++) {
+      const int c = l->A.column[q], first = r < cut && c >= cut, second = r < other && c >= other;
+      for (int i = 0; i < 9; i++) l->real[q][i] = creal(l->A.value[q][i]);
+      for (int d = 0; d < 3 && c == r; d++)
+        for (int k = 0; k < d; k++) l->real[q][d + 3 * k] = l->real[q][k + 3 * d];
+      if (!first && !second) continue;
+      l->coupled[l->n]    = q;
+      l->exponent[l->n++] = (signed char)(e * (first - second));
+    }
+}
+
+static void set_phases(links *l, double complex at, double complex (*value)[9]) {
+  int k = 0;
+  for (int q = 0; q < l->A.start[N]; q++) {
+    const bool           linked = k < l->n && l->coupled[k] == q;
+    const int            e      = linked ? l->exponent[k] : 0;
+    const double complex by     = e == 0 ? 1 : e > 0 ? at : conj(at);
+    for (int i = 0; i < 9; i++) l->A.value[q][i] = by * l->real[q][i];
+    if (linked) memcpy(value[k++], l->A.value[q], sizeof *value);
+  }
+}
+
+/* Solutions at several theta of one analysis.
+ *   returns bytes of a factor */
+static double check_links(links *l) {
+  static double complex      value[N * (BAND + 1)][9];
+  const fem_hermitian_matrix A = {
+      {N, l->A.start, l->A.column}, l->real[0], l->n, l->coupled, l->exponent};
+  fem_hermitian_order *order;
+  assert_ok(fem_hermitian_analyse(&A, &order));
+  for (int k = 0; k < 4; k++) {
+    const double complex at = cexp(I * 1.1 * k);
+    fem_hermitian       *factor;
+    bool                 definite;
+    set_phases(l, at, value);
+    assert_ok(
+        fem_hermitian_create(order, at, (const double complex(*)[9])value, &definite, &factor));
+    assert_true(definite);
+    for (int count = 1; count <= MOST; count += 2)
+      assert_near(residual(&l->A, factor, count), 0, 1e-13);
+    fem_hermitian_free(factor);
+  }
+  const double bytes = fem_hermitian_bytes(order);
+  fem_hermitian_order_free(order);
+  return bytes;
+}
+
+/* A chain of nodes closes no loop: phases only turn the shapes, and all panels are real. */
+static void phases_along_a_chain_are_free(void **state) {
+  (void)state;
+  static links l;
+  make_links(17, 0, 0, &l);
+  const double none = check_links(&l);
+  make_links(17, 1, 0, &l);
+  assert_near(check_links(&l), none, 0);
+  make_links(23, -1, 11, &l);
+  assert_near(check_links(&l), none, 0);
+}
+
+/* One block with another phase than its neighbours closes loops: panels above it are complex. */
+static void a_loop_with_a_phase_is_complex(void **state) {
+  (void)state;
+  static links l;
+  make_links(17, 0, 0, &l);
+  const double none = check_links(&l);
+  make_links(17, 1, 0, &l);
+  for (int k = 1; k < l.n; k += 2) l.exponent[k] = 0;
+  const double some = check_links(&l);
+  assert_true(some > none);
+}
+
 int main(void) {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(solutions_of_one_analysis),
-                                     cmocka_unit_test(a_solution_in_place),
-                                     cmocka_unit_test(an_indefinite_matrix)};
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(solutions_of_one_analysis), cmocka_unit_test(a_solution_in_place),
+      cmocka_unit_test(an_indefinite_matrix), cmocka_unit_test(phases_along_a_chain_are_free),
+      cmocka_unit_test(a_loop_with_a_phase_is_complex)};
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

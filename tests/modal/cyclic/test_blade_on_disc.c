@@ -39,7 +39,7 @@ static void find_modes(const mesh_fe *mesh, int blades, fem_system *system,
   wave_operator        op;
   wave_modes           modes;
   assert_int_equal(fem_sector_create(&body, NULL, system, &sector), 0);
-  assert_ok(fem_hermitian_analyse(&sector.blocks, &order));
+  assert_ok(fem_sector_analyse(&sector, &order));
   assert_ok(wave_operator_create(&sector, order, DIAMETER, blades, &op));
   assert_ok(wave_modes_solve(&op, &wanted, &body, NULL, &modes));
   for (int i = 0; i < MODES; i++) frequency[i] = sqrt(modes.lambda[i]) / SHB_TWO_PI;

@@ -103,7 +103,7 @@ static void compare(mesh_kind kind, int n, const int *diameter) {
   assert_ok(mesh_cyclic_pair(&mesh, MESH_AXIS_X, BLADES, &sides));
   assert_int_equal(fem_system_create(PETSC_COMM_SELF, &mesh, &steel, FEM_CALCULIX, &system), 0);
   assert_int_equal(fem_sector_create(&body, NULL, &system, &sector), 0);
-  assert_ok(fem_hermitian_analyse(&sector.blocks, &order));
+  assert_ok(fem_sector_analyse(&sector, &order));
   for (int k = 0; k < n; k++) {
     double own[MODES], other[MODES], worst = 0;
     run_calculix(&mesh, diameter[k], other);

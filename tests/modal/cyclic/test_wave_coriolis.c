@@ -77,7 +77,7 @@ static void ring_create(double h, double omega, ring *r) {
   assert_int_equal(
       fem_system_create(PETSC_COMM_SELF, &r->mesh, r->material, FEM_STANDARD, &r->system), 0);
   assert_int_equal(fem_sector_create(&r->body, NULL, &r->system, &r->sector), 0);
-  assert_ok(fem_hermitian_analyse(&r->sector.blocks, &r->order));
+  assert_ok(fem_sector_analyse(&r->sector, &r->order));
 }
 
 static void ring_destroy(ring *r) {

@@ -45,7 +45,7 @@ static void create(scene *s) {
   assert_int_equal(fem_system_create(PETSC_COMM_SELF, &s->mesh, &steel, FEM_STANDARD, &s->system),
                    0);
   assert_int_equal(fem_sector_create(&s->body, NULL, &s->system, &s->sector), 0);
-  assert_ok(fem_hermitian_analyse(&s->sector.blocks, &s->order));
+  assert_ok(fem_sector_analyse(&s->sector, &s->order));
   s->ring = make_sector_ring(&s->mesh, axis, BLADES);
   assert_int_equal(
       fem_system_create(PETSC_COMM_SELF, &s->ring.mesh, &steel, FEM_STANDARD, &s->whole), 0);
@@ -305,7 +305,7 @@ static void stiff_disc(scene *s, double stiffer, int n, double *omega) {
   sector_mark_disc(&mesh);
   assert_int_equal(fem_system_create(PETSC_COMM_SELF, &mesh, material, FEM_STANDARD, &system), 0);
   assert_int_equal(fem_sector_create(&body, NULL, &system, &sector), 0);
-  assert_ok(fem_hermitian_analyse(&sector.blocks, &order));
+  assert_ok(fem_sector_analyse(&sector, &order));
   assert_ok(wave_operator_create(&sector, order, 2, BLADES, &op));
   assert_ok(wave_modes_solve(&op, &wanted, &body, NULL, &modes));
   for (int i = 0; i < n; i++) omega[i] = sqrt(modes.lambda[i]);
