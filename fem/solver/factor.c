@@ -15,17 +15,14 @@ struct fem_factor {
 
 static const double giga = 1e9;
 
-/* True on several ranks, or if the user asks for MUMPS. */
-static PetscErrorCode wants_mumps(MPI_Comm comm, bool *yes) {
+PetscErrorCode fem_factor_mumps_asked(bool *yes) {
   char      name[32] = "";
   PetscBool given, is_mumps;
-  int       n_ranks;
   PetscFunctionBeginUser;
-  PetscCallMPI(MPI_Comm_size(comm, &n_ranks));
   PetscCall(
       PetscOptionsGetString(NULL, "st_", "-pc_factor_mat_solver_type", name, sizeof name, &given));
   PetscCall(PetscStrcmp(name, MATSOLVERMUMPS, &is_mumps));
-  *yes = n_ranks > 1 || is_mumps;
+  *yes = is_mumps;
   PetscFunctionReturn(0);
 }
 
@@ -91,9 +88,12 @@ static PetscErrorCode analyse_mumps(fem_factor *factor, Mat A, double *mine) {
 
 static PetscErrorCode analyse(fem_factor *factor, Mat A, double *mine) {
   bool   mumps = false, fits = false;
+  int    n_ranks;
   double own, workspace;
   PetscFunctionBeginUser;
-  PetscCall(wants_mumps(factor->comm, &mumps));
+  PetscCallMPI(MPI_Comm_size(factor->comm, &n_ranks));
+  PetscCall(fem_factor_mumps_asked(&mumps));
+  mumps = mumps || n_ranks > 1;
   if (!mumps) {
     PetscCall(fem_cholesky_create(A, &fits, &factor->cholesky));
     mumps = !fits;

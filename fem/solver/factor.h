@@ -1,8 +1,9 @@
 /* Factor of a symmetric positive definite matrix: choice of the program, and the memory it needs.
  *
  * One rank: CHOLMOD (fem/solver/cholesky.h), whose solves are twice as fast as MUMPS's. MUMPS
- * serves several ranks, a factor too large for CHOLMOD, and the option
- * -st_pc_factor_mat_solver_type mumps. It takes the options -st_mat_mumps_.... */
+ * serves several ranks (modal/common/team.h has when there are some), a factor too large for
+ * CHOLMOD, and the option -st_pc_factor_mat_solver_type mumps. It takes the options
+ * -st_mat_mumps_.... */
 #ifndef FEM_SOLVER_FACTOR_H
 #define FEM_SOLVER_FACTOR_H
 
@@ -10,6 +11,9 @@
 #include <stdbool.h>
 
 typedef struct fem_factor fem_factor;
+
+/* Is -st_pc_factor_mat_solver_type mumps given? */
+PetscErrorCode fem_factor_mumps_asked(bool *yes);
 
 /* Order and analyse the pattern of A. Collective, as all functions below.
  *   A       in  SBAIJ, block size 3

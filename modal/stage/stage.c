@@ -14,6 +14,7 @@
 #include "mesh/io/read.h"
 #include "modal/common/phases.h"
 #include "modal/common/session.h"
+#include "modal/common/team.h"
 #include "modal/model/sampled_receptance.h"
 #include "modal/stage/model_export.h"
 #include "modal/stage/sector_export.h"
@@ -208,21 +209,37 @@ static shb_status run(MPI_Comm comm, int rank, const char *out_path, const mesh_
   return status;
 }
 
-shb_status modal_stage(MPI_Comm comm, const char *mesh_path, const char *out_path,
+/* On the ranks of comm. */
+static shb_status work(MPI_Comm comm, const char *out_path, mesh_fe *mesh,
                        const modal_settings *settings, const shb_provenance *provenance,
                        shb_progress *progress) {
-  int     rank;
-  mesh_fe mesh = {0};
+  int rank;
   MPI_Comm_rank(comm, &rank);
+  FEM_PETSC(fem_mesh_broadcast(comm, mesh));
+  modal_phase(comm, progress, "mesh", "%d nodes, %d elements", mesh->n_nodes, mesh->n_elements);
+  return run(comm, rank, out_path, mesh, settings, provenance, progress);
+}
+
+shb_status modal_stage(MPI_Comm all, const char *mesh_path, const char *out_path,
+                       const modal_settings *settings, const shb_provenance *provenance,
+                       shb_progress *progress) {
+  int        rank;
+  mesh_fe    mesh = {0};
+  modal_team team = {.all = all};
+  MPI_Comm_rank(all, &rank);
   shb_progress_show(progress, 0, "reading %s", mesh_path);
   const int  threads = omp_get_max_threads(); /* gmsh sets it to 1 */
   shb_status status =
-      modal_agree(comm, rank == 0 ? read_mesh(mesh_path, settings, progress, &mesh) : SHB_OK);
+      modal_agree(all, rank == 0 ? read_mesh(mesh_path, settings, progress, &mesh) : SHB_OK);
   omp_set_num_threads(threads);
-  if (status == SHB_OK) status = fem_petsc_status(fem_mesh_broadcast(comm, &mesh));
-  if (status == SHB_OK)
-    modal_phase(comm, progress, "mesh", "%d nodes, %d elements", mesh.n_nodes, mesh.n_elements);
-  if (status == SHB_OK) status = run(comm, rank, out_path, &mesh, settings, provenance, progress);
+  if (status == SHB_OK) status = modal_team_gather(all, mesh.n_nodes, &team);
+  if (team.gathered)
+    shb_progress_note(progress,
+                      "the ranks share a machine: they work as one process with %d "
+                      "threads",
+                      team.threads);
+  if (team.works) status = work(team.comm, out_path, &mesh, settings, provenance, progress);
+  status = modal_team_end(&team, status);
   mesh_fe_free(&mesh);
   shb_progress_clear(progress);
   return status;

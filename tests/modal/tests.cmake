@@ -35,14 +35,20 @@ foreach(noun rotating materials modal_stress sector stage vtkhdf)
   shb_test(modal/stage ${noun} tests_fem shb_modal)
 endforeach()
 
-# The same program on 1, 2 and 3 ranks.
-add_executable(test_modal_stage_ranks modal/stage/test_ranks.c)
-target_link_libraries(test_modal_stage_ranks PRIVATE tests_fem shb_modal)
-foreach(ranks 1 2 3)
-  add_test(NAME modal.stage.ranks_${ranks} COMMAND ${MPIEXEC_EXECUTABLE} ${MPIEXEC_NUMPROC_FLAG}
-    ${ranks} --oversubscribe $<TARGET_FILE:test_modal_stage_ranks>)
-  set_tests_properties(modal.stage.ranks_${ranks} PROPERTIES PROCESSORS 2
-    ENVIRONMENT "OMPI_ALLOW_RUN_AS_ROOT=1;OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1")
+# The same programs on 1, 2 and 3 ranks.
+foreach(noun common/team stage/ranks)
+  string(REPLACE / _ name ${noun})
+  string(REPLACE / /test_ source ${noun})
+  set(program test_modal_${name})
+  add_executable(${program} modal/${source}.c)
+  target_link_libraries(${program} PRIVATE tests_fem shb_modal)
+  string(REPLACE / . name ${noun})
+  foreach(ranks 1 2 3)
+    add_test(NAME modal.${name}_${ranks} COMMAND ${MPIEXEC_EXECUTABLE} ${MPIEXEC_NUMPROC_FLAG}
+      ${ranks} --oversubscribe $<TARGET_FILE:${program}>)
+    set_tests_properties(modal.${name}_${ranks} PROPERTIES PROCESSORS 2
+      ENVIRONMENT "OMPI_ALLOW_RUN_AS_ROOT=1;OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1")
+  endforeach()
 endforeach()
 
 # Between programs; skipped where python3 has no h5py.
