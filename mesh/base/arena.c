@@ -2,37 +2,33 @@
 
 #include <stdint.h>
 #include <stdlib.h>
+#include <string.h>
 
 static const size_t ALIGNMENT = 64; /* a cache line, and the widest vector */
 
-/* A block: one alignment that holds the link to the block before and the start of the memory, then
- * the array. Memory comes cleared, so that pages which nobody writes are not touched. */
-typedef struct block {
-  struct block *before;
-  void         *memory;
-} block;
-
+/* A block: one alignment that holds the link to the block before, then the array. */
 void *shb_arena_take(shb_arena *arena, size_t count, size_t size) {
-  const size_t most   = PTRDIFF_MAX - 3 * ALIGNMENT;
-  char        *memory = NULL;
-  if (size == 0 || count <= most / size) /* the array ends with a whole alignment */
-    memory = calloc((count * size + 3 * ALIGNMENT - 1) / ALIGNMENT, ALIGNMENT);
-  if (!memory) {
+  const size_t most  = PTRDIFF_MAX - 2 * ALIGNMENT;
+  void       **block = NULL;
+  if (size == 0 || count <= most / size) {
+    size_t bytes = (count * size + 2 * ALIGNMENT - 1) / ALIGNMENT * ALIGNMENT;
+    block        = aligned_alloc(ALIGNMENT, bytes);
+    if (block) memset(block, 0, bytes);
+  }
+  if (!block) {
     arena->failed = true;
     return NULL;
   }
-  const size_t beyond = (uintptr_t)memory % ALIGNMENT;
-  block       *newest = (block *)(void *)(memory + (beyond ? ALIGNMENT - beyond : 0));
-  *newest             = (block){arena->newest, memory};
-  arena->newest       = newest;
-  return (char *)newest + ALIGNMENT;
+  *block        = arena->newest;
+  arena->newest = block;
+  return (char *)block + ALIGNMENT;
 }
 
 void shb_arena_free(shb_arena *arena) {
   while (arena->newest) {
-    block *newest = arena->newest;
-    arena->newest = newest->before;
-    free(newest->memory);
+    void *block   = arena->newest;
+    arena->newest = *(void **)block;
+    free(block);
   }
   arena->failed = false;
 }
