@@ -155,10 +155,10 @@ shb_status fem_hermitian_create(const fem_hermitian_order *order, double complex
 static bool make_room(fem_hermitian *factor) {
   const size_t alignment = sizeof(fem_complex_lanes), each = sizeof(fem_complex_lanes);
   const size_t n = (size_t)factor->order->panels.n, rows = (size_t)factor->order->panels.most_rows;
-  if (factor->x && factor->work) return true;
-  factor->x =
-      n * each < FEM_LARGE_PAGE ? aligned_alloc(alignment, n * each) : fem_large_malloc(n * each);
-  factor->work = aligned_alloc(alignment, rows * each);
+  if (!factor->x)
+    factor->x =
+        n * each < FEM_LARGE_PAGE ? aligned_alloc(alignment, n * each) : fem_large_malloc(n * each);
+  if (!factor->work) factor->work = aligned_alloc(alignment, rows * each);
   return factor->x && factor->work;
 }
 

@@ -134,29 +134,33 @@ static void split(const mhb_balance *b, int pair, const double *x, double comple
   }
 }
 
-/* z[doubled->n] <- the first matrix' solution for v; Az <- (I + R D) z. 0: failed. */
-static int apply(void *context, const double *v, double *z, double *Az) {
-  mhb_doubled_ring  *d   = context;
+void mhb_doubled_ring_product(mhb_doubled_ring *d, const double *x, double *to) {
   const mhb_balance *b   = d->doubled;
   const int          own = 3 * b->nb, axes = 3 * b->n_pairs;
-  memcpy(z, v, sizeof(double) * (size_t)b->n);
-  solve_high(d, z);
-  if (!mhb_doubled_ring_solve_low(d, z)) return 0;
   for (int a = 0; a < b->n_pairs; a++) {
     const double *D = b->eval->dp + (size_t)a * (size_t)own * (size_t)own;
-    cblas_dgemv(CblasRowMajor, CblasNoTrans, own, own, 1, D, own, z + a * own, 1, 0, d->p, 1);
+    cblas_dgemv(CblasRowMajor, CblasNoTrans, own, own, 1, D, own, x + a * own, 1, 0, d->p, 1);
     split(b, a, d->p, d->force);
-    split(b, a, z + a * own, d->motion);
+    split(b, a, x + a * own, d->motion);
   }
   for (int k = 0; k <= b->m; k++) {
     double complex *motion = d->motion + k * axes;
     mhb_ring_receptance_product(b->receptance->ring, k, d->force + k * axes, motion);
     for (int i = 0; i < axes; i++) {
-      double *to = Az + i * b->nb;
-      if (k > 0) to[2 * k] = cimag(motion[i]);
-      to[k > 0 ? 2 * k - 1 : 0] = creal(motion[i]);
+      double *at = to + i * b->nb;
+      if (k > 0) at[2 * k] = cimag(motion[i]);
+      at[k > 0 ? 2 * k - 1 : 0] = creal(motion[i]);
     }
   }
+}
+
+/* z[doubled->n] <- the first matrix' solution for v; Az <- (I + R D) z. 0: failed. */
+static int apply(void *context, const double *v, double *z, double *Az) {
+  mhb_doubled_ring *d = context;
+  memcpy(z, v, sizeof(double) * (size_t)d->doubled->n);
+  solve_high(d, z);
+  if (!mhb_doubled_ring_solve_low(d, z)) return 0;
+  mhb_doubled_ring_product(d, z, Az);
   return 1;
 }
 

@@ -42,6 +42,9 @@ int mhb_doubled_ring_factor(mhb_doubled_ring *ring, mhb_ring_system *factors);
  * 0: GMRES does not reach it; x is the best then. */
 int mhb_doubled_ring_solve(mhb_doubled_ring *ring, double tolerance, double *x);
 
+/* to[doubled->n] <- (I + R D) x */
+void mhb_doubled_ring_product(mhb_doubled_ring *ring, const double *x, double *to);
+
 /* Harmonics up to m of x[doubled->n] <- (I + R D)^-1 x of the balance with m. Those above stay. 0:
  * not finite. */
 int mhb_doubled_ring_solve_low(mhb_doubled_ring *ring, double *x);

@@ -237,6 +237,7 @@ static void solve_condensed(mhb_ring_system *s, double *rhs) {
 }
 
 int mhb_ring_system_solve(mhb_ring_system *s, double *rhs) {
+  if (!s->regular) return 0;
   if (s->linear->n_gone == 0)
     mhb_block_cyclic_solve(s->blocks, rhs);
   else

@@ -38,7 +38,7 @@ void       mhb_ring_system_destroy(mhb_ring_system *system);
  * border, both with the same corner last; or both NULL. 0: singular. No allocation. */
 int mhb_ring_system_factor(mhb_ring_system *system, const double *column, const double *row);
 
-/* rhs[n or n+1] <- solution. 0: not finite. */
+/* rhs[n or n+1] <- solution. 0: the last factors are singular, or it is not finite. */
 int mhb_ring_system_solve(mhb_ring_system *system, double *rhs);
 
 /* Sign of the determinant of the last factors. */

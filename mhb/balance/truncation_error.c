@@ -119,21 +119,25 @@ static int solve(mhb_truncation *t, double *x) {
 
 /* t->trial <- the change of the residual along tau steps beyond the linear one, over tau^2, in the
  * measure of steps: (I + R J)^-1 (r(x + tau step) - r(x)) - tau step. One evaluation nearby gives
- * it. Returns kappa, its part along the step in steps; 0 and no change where that fails. */
+ * it. Returns kappa, its part along the step in steps; 0 for both where that fails. The error of
+ * GMRES is a part of its solution, so that it solves for the difference itself. */
 static double bend(mhb_truncation *t, const double *step) {
   mhb_balance *b      = t->doubled;
   const double length = mhb_norm(step, b->n), size = mhb_balance_vibration(b, t->x);
-  double      *change = t->trial, part = fmin(1, NEARBY * size / length), product = 0;
-  if (!(length > 0)) return 0;
+  const double part   = length > 0 ? fmin(1, NEARBY * size / length) : 1;
+  double      *change = t->trial, product = 0;
   for (int i = 0; i < b->n; i++) change[i] = t->x[i] + part * step[i];
   mhb_balance_evaluate(b, change, t->balance->eval->at.omega, t->r, NULL, NULL);
-  for (int i = 0; i < b->n; i++) change[i] = t->r[i] - t->before[i];
-  if (!solve(t, change)) {
+  const bool gmres = t->by_gmres;
+  if (gmres) mhb_doubled_ring_product(t->ring, step, change);
+  for (int i = 0; i < b->n; i++)
+    change[i] = t->r[i] - t->before[i] - (gmres ? part * change[i] : 0);
+  if (!(length > 0) || !solve(t, change)) {
     memset(change, 0, sizeof *change * (size_t)b->n);
     return 0;
   }
   for (int i = 0; i < b->n; i++) {
-    change[i] = (change[i] - part * step[i]) / (part * part);
+    change[i] = (change[i] - (gmres ? 0 : part * step[i])) / (part * part);
     product += change[i] / length * (step[i] / length);
   }
   return product;

@@ -71,7 +71,8 @@ void       mhb_truncation_destroy(mhb_truncation *truncation);
 double mhb_truncation_error(mhb_truncation *truncation, const double *x);
 
 /* change[doubled->n] <- (I + R J)^-1 change at the point of the last estimate. false: it failed. By
- * Broyden's step and by GMRES: harmonics up to m as with m harmonics, the others stay. */
+ * Broyden's step and by GMRES: harmonics up to m as with m harmonics, the others stay. In a ring
+ * the factors must be those of the estimate. */
 bool mhb_truncation_solve(mhb_truncation *truncation, double *change);
 
 /* How much of a change of the solution, step[doubled->n], is left by the curvature of the residual:

@@ -66,7 +66,7 @@ static void bend(mhb_arclength *curve, double ds) {
 }
 
 /* The curve's step from current to next is accepted. After a step that was refused at first the
- * next one is not bent, for it passes kinks. Rings are bent all the same. */
+ * next one is not bent, for it passes kinks. Steps of costly systems are bent all the same. */
 static void note_former(mhb_arclength *curve, bool at_once) {
   double chord[curve->n + 1];
   if (!curve->system->bends) return;

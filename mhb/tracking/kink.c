@@ -26,6 +26,9 @@ static const double SLOPE = 1e-6;
 /* A recorded point has a smaller residual, relative to the vibration. */
 static const double BALANCED = 1e-8;
 
+/* A kink found again has its frequency to within this, relative. */
+static const double SAME = 1e-6;
+
 enum { MOST_NEWTON = 15 };
 
 /* One point of the response curve, with derivatives by s at fixed q and by q at fixed s. */
@@ -34,13 +37,17 @@ typedef struct {
   double *z, *along, *by_q; /* [n + 1]; dz/ds, dz/dq */
 } side;
 
+/* A kink that was found, to predict others from. */
+typedef struct {
+  double  value;
+  double *z, *rate, *border; /* [n + 1]; dz/dq; the unit tangent */
+} found_kink;
+
 struct mhb_kink {
   mhb_peak_family base; /* first: its functions get it back */
   int             n;
-  double          unit;   /* m s/rad: xi = unit omega */
-  double          value;  /* of the last kink */
-  double         *z;      /* [n + 1] the last kink */
-  double         *rate;   /* [n + 1] dz/dq of it */
+  double          unit; /* m s/rad: xi = unit omega */
+  found_kink      first, last;
   double         *border; /* [n + 1] c */
   double         *origin; /* [n + 1] z_0 */
   side            left, right, next;
@@ -192,17 +199,23 @@ static bool find(mhb_kink *k, mhb_peak_place *at, mhb_end *why) {
   if (at->omega < range[0] || at->omega > range[1]) return false;
   const double length = mhb_norm(l->along, n + 1);
   for (int j = 0; j <= n; j++) {
-    k->z[j]      = l->z[j];
-    k->rate[j]   = l->by_q[j] + by_s * l->along[j];
-    k->border[j] = l->along[j] / length;
+    k->last.z[j]      = l->z[j];
+    k->last.rate[j]   = l->by_q[j] + by_s * l->along[j];
+    k->last.border[j] = l->along[j] / length;
   }
-  k->value = at->value;
+  k->last.value = at->value;
   return true;
 }
 
+/* From the first kink or from the last one, whichever is nearer. */
 static bool is_peak(mhb_peak_family *family, mhb_peak_place *at, mhb_end *why) {
-  mhb_kink *k = (mhb_kink *)family;
-  for (int j = 0; j <= k->n; j++) k->origin[j] = k->z[j] + (at->value - k->value) * k->rate[j];
+  mhb_kink         *k = (mhb_kink *)family;
+  const found_kink *from =
+      fabs(at->value - k->first.value) < fabs(at->value - k->last.value) ? &k->first : &k->last;
+  for (int j = 0; j <= k->n; j++) {
+    k->origin[j] = from->z[j] + (at->value - from->value) * from->rate[j];
+    k->border[j] = from->border[j];
+  }
   return find(k, at, why);
 }
 
@@ -211,9 +224,10 @@ static bool balance_at(mhb_peak_family *family, const mhb_peak_place *at, mhb_cu
   mhb_balance   *b    = family->balance;
   mhb_peak_place here = *at;
   mhb_end        unused;
-  if (k->value != at->value && !is_peak(family, &here, &unused)) return false;
+  if (k->last.value != at->value && !is_peak(family, &here, &unused)) return false;
+  if (fabs(here.omega / at->omega - 1) > SAME) return false;
   go_to(b, family->tracking->parameter, at->value);
-  memcpy(point->x, k->z, sizeof(double) * (size_t)k->n);
+  memcpy(point->x, k->last.z, sizeof(double) * (size_t)k->n);
   point->value      = at->value;
   point->iterations = 0;
   mhb_balance_linearise(b, point->x, here.peak, point->r, NULL);
@@ -236,7 +250,12 @@ bool mhb_kink_start(mhb_kink *k, const double *x, mhb_peak_place *at) {
   const double length = mhb_norm(k->left.along, n + 1);
   for (int j = 0; j <= n; j++) k->border[j] = k->left.along[j] / length;
   memcpy(k->origin, k->left.z, sizeof(double) * ((size_t)n + 1));
-  return find(k, at, &unused);
+  if (!find(k, at, &unused)) return false;
+  k->first.value = k->last.value;
+  memcpy(k->first.z, k->last.z, sizeof(double) * ((size_t)n + 1));
+  memcpy(k->first.rate, k->last.rate, sizeof(double) * ((size_t)n + 1));
+  memcpy(k->first.border, k->last.border, sizeof(double) * ((size_t)n + 1));
+  return true;
 }
 
 /* ---- creation ---- */
@@ -247,10 +266,11 @@ shb_status mhb_kink_create(mhb_balance *balance, const mhb_tracking *tracking, m
   SHB_CHECK(k, SHB_ERR_IO, "out of memory");
   k->base            = (mhb_peak_family){balance, tracking, is_peak, balance_at};
   k->n               = balance->n;
-  double **vectors[] = {&k->z,           &k->rate,       &k->border,    &k->origin,
-                        &k->left.z,      &k->left.along, &k->left.by_q, &k->right.z,
-                        &k->right.along, &k->right.by_q, &k->next.z,    &k->next.along,
-                        &k->next.by_q,   &k->r,          &k->by_omega,  &k->by_x};
+  double **vectors[] = {&k->first.z,     &k->first.rate,  &k->first.border, &k->last.z,
+                        &k->last.rate,   &k->last.border, &k->border,       &k->origin,
+                        &k->left.z,      &k->left.along,  &k->left.by_q,    &k->right.z,
+                        &k->right.along, &k->right.by_q,  &k->next.z,       &k->next.along,
+                        &k->next.by_q,   &k->r,           &k->by_omega,     &k->by_x};
   for (size_t i = 0; i < sizeof vectors / sizeof *vectors; i++)
     *vectors[i] = shb_arena_take(&k->arena, one, sizeof(double));
   k->jacobian = shb_arena_take(&k->arena, n * n, sizeof(double));

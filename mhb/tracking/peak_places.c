@@ -49,9 +49,10 @@ static shb_status record(tracer *t, const mhb_peak_place *at, int special, bool 
 }
 
 /* The last value at which there is a peak, between one with and one without: a root where the
- * margin is known, else by bisection. */
+ * margin is known, else by bisection. Places near by are predicted better.
+ *   *ended  out  false: from there the peak is found at the value without, too */
 static mhb_peak_place last_peak(tracer *t, mhb_peak_place with, const mhb_peak_place *beyond,
-                                mhb_end *why) {
+                                mhb_end *why, bool *ended) {
   double   without = beyond->value, exact = fmax(fabs(with.value), fabs(without));
   mhb_end  reason;
   shb_root root;
@@ -72,7 +73,9 @@ static mhb_peak_place last_peak(tracer *t, mhb_peak_place with, const mhb_peak_p
     }
     if (known && shb_root_done(&root)) break;
   }
-  return with;
+  mhb_peak_place again = mhb_peak_place_at(&with, beyond->value);
+  *ended               = known || !t->family->is_peak(t->family, &again, &reason);
+  return *ended ? with : again;
 }
 
 /* Where the amplitude is stationary between two places. */
@@ -118,13 +121,14 @@ static shb_status trace_half(tracer *t, mhb_peak_place from, int direction, mhb_
       step = 0.5 * fabs(to.value - from.value);
       continue;
     }
+    bool ended = false;
     if (!peak) {
       const mhb_peak_place beyond = to;
-      to                          = last_peak(t, from, &beyond, &why);
+      to                          = last_peak(t, from, &beyond, &why, &ended);
     }
     SHB_TRY(record_optimum(t, &from, &to, &balanced));
     if (to.value != from.value) SHB_TRY(record(t, &to, MHB_ORDINARY, &balanced));
-    if (!peak) *end = why;
+    if (ended) *end = why;
     if (!balanced) *end = MHB_END_STALLED;
     if (t->store->branch[t->segment].n_points >= tracking->max_points) *end = MHB_END_MAX_POINTS;
     if (bent < 0.25 * STRAIGHT * to.amplitude) step *= 2;

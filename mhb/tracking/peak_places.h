@@ -24,8 +24,8 @@ struct mhb_peak_family {
    *   why  out  what it is instead */
   bool (*is_peak)(mhb_peak_family *family, mhb_peak_place *at, mhb_end *why);
 
-  /* x, r, residual and evaluation of the point <- the motion at a place of is_peak, with every
-   * pair's own law. The evaluation is in use. false: it does not balance there. */
+  /* x, r, residual and evaluation of the point <- the motion at a place that is_peak has filled,
+   * with every pair's own law. The evaluation is in use. false: it does not balance there. */
   bool (*balance_at)(mhb_peak_family *family, const mhb_peak_place *at, mhb_curve_point *point);
 };
 

@@ -357,7 +357,7 @@ static bool newton_step(mhb_curve_system *system, const mhb_curve_point *point, 
   return solve(system, delta);
 }
 
-/* The line search. false: the residual does not fall, and x is the last point tried. */
+/* The line search. false: the residual does not fall; the point is linearised where it was. */
 static bool descend(mhb_curve_system *system, mhb_curve_point *point, const double *delta,
                     double *residual) {
   const int one = of(system)->n + 1, most = system->costly ? MAX_HALVINGS_OF_PEAK : MAX_HALVINGS;
@@ -369,6 +369,9 @@ static bool descend(mhb_curve_system *system, mhb_curve_point *point, const doub
     *residual = mhb_norm(point->r, one);
     if (*residual < LEAST_GAIN * before) return true;
   }
+  memcpy(point->x, from, sizeof from);
+  linearise(system, point);
+  *residual = before;
   return false;
 }
 

@@ -35,7 +35,7 @@ shb_status modal_sector_check(MPI_Comm comm, const modal_settings *settings) {
   MPI_Comm_size(comm, &ranks);
   SHB_CHECK(ranks == 1, SHB_ERR_INPUT,
             "a sector with cyclic sides runs as one process; its %d ranks are distributed (several "
-            "machines, MUMPS or OMP_PROC_BIND)",
+            "machines, MUMPS, OMP_PROC_BIND or more than a million nodes)",
             ranks);
   SHB_CHECK(settings->check != MODAL_CHECK_INERTIA, SHB_ERR_INPUT,
             "modal.check: inertia is for a clamped blade; leave it at auto, or give never");

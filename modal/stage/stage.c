@@ -238,7 +238,8 @@ shb_status modal_stage(MPI_Comm all, const char *mesh_path, const char *out_path
                       "the ranks share a machine: they work as one process with %d "
                       "threads",
                       team.threads);
-  if (team.works) status = work(team.comm, out_path, &mesh, settings, provenance, progress);
+  if (status == SHB_OK && team.works)
+    status = work(team.comm, out_path, &mesh, settings, provenance, progress);
   status = modal_team_end(&team, status);
   mesh_fe_free(&mesh);
   shb_progress_clear(progress);

@@ -81,16 +81,43 @@ static void peaks_of_paper_fig9_are_those_of_sweeps(void **state) {
   peaks_are_those_of_sweeps("paper_fig9", 3, 10, 1500, 100, 6);
 }
 
-/* dA/dq and domega/dq of the peak on a kink at a point of a branch are the limits of central
+/* From its middle both ways the branch is the same: it has the same ends. */
+static void check_halves(mhb_balance *balance, const mhb_tracking *tracking, mhb_response *r,
+                         const double *x, const mhb_peak_place *middle) {
+  const mhb_tracking_seed seed  = {.x = x, .omega = middle->omega, .value = middle->value};
+  const int               last  = r->branch[0].n_points - 1;
+  mhb_response           *store = mhb_response_like(r);
+  mhb_tracking_end        end;
+  bool                    found;
+  int                     index;
+  assert_ok(mhb_response_branch(store, MHB_BRANCH_TRACKED, &index));
+  assert_ok(mhb_trace_kink(balance, tracking, &seed, store, index, &found, &end));
+  const mhb_branch *b = &store->branch[index];
+  assert_true(found);
+  assert_int_equal(end.low, MHB_END_LOW);
+  assert_int_equal(end.high, MHB_END_HIGH);
+  for (int i = 0; i + 1 < b->n_points; i++) assert_true(b->value[i] < b->value[i + 1]);
+  for (int i = 0; i < 2; i++) {
+    const int own = i ? b->n_points - 1 : 0, other = i ? last : 0;
+    assert_near(mhb_response_output(store, b, own) / mhb_response_output(r, &r->branch[0], other),
+                1, 1e-9);
+    assert_near(b->frequency[own] / r->branch[0].frequency[other], 1, 1e-9);
+  }
+  mhb_response_destroy(store);
+}
+
+/* dA/dq and domega/dq of the peak on a kink at a point of branch 0 are the limits of central
  * differences, of second order. */
-static void check_slopes(const case_model *model, const mhb_branch *branch, int point) {
+static void check_at(const case_model *model, mhb_response *r, int point) {
+  const mhb_branch  *branch   = &r->branch[0];
   const mhb_settings settings = mhb_tracked_settings(&model->settings, branch->value[point]);
   const mhb_tracking tracking = {
-      .kind      = MHB_TRACK_PEAK,
-      .parameter = MHB_IN_KU,
-      .low       = model->settings.range[0],
-      .high      = model->settings.range[1],
-      .frequency = {SHB_TWO_PI * settings.frequency[0], SHB_TWO_PI * settings.frequency[1]}};
+      .kind       = MHB_TRACK_PEAK,
+      .max_points = 200,
+      .parameter  = MHB_IN_KU,
+      .low        = model->settings.range[0],
+      .high       = model->settings.range[1],
+      .frequency  = {SHB_TWO_PI * settings.frequency[0], SHB_TWO_PI * settings.frequency[1]}};
   mhb_peak_place at = {.value = branch->value[point],
                        .omega = SHB_TWO_PI * branch->frequency[point]};
   double         away[2][2];
@@ -116,6 +143,7 @@ static void check_slopes(const case_model *model, const mhb_branch *branch, int 
     assert_true(order > 1.8 && order < 2.2);
   }
   mhb_kink_destroy(kink);
+  check_halves(balance, &tracking, r, x, &at);
   mhb_balance_destroy(balance);
 }
 
@@ -134,7 +162,7 @@ static void peaks_on_a_kink_are_those_of_sweeps(void **state) {
   assert_int_equal(r->n_branches, 1);
   assert_below(agrees.amplitude, 1e-7);
   assert_below(agrees.frequency, 1e-7);
-  check_slopes(&model, &r->branch[0], r->branch[0].n_points / 2);
+  check_at(&model, r, r->branch[0].n_points / 2);
   mhb_response_destroy(r);
   case_model_free(&model);
 }
