@@ -127,9 +127,10 @@ static void the_estimate_is_the_distance(void **state) {
       for (double omega = 0.7; omega < 2; omega += 0.09) check_at(&g, omega, bordered, &found);
       drop(&g);
     }
-    print_message("border %d: %d estimates, off by %.3f of the distance, by %.1e of those with "
-                  "factors\n",
-                  bordered, found.n, found.worst, found.from_factors);
+    print_message(
+        "border %d: %d estimates, off by %.3f of the distance, by %.1e of those with "
+        "factors\n",
+        bordered, found.n, found.worst, found.from_factors);
     assert_true(found.n >= 15);
     assert_below(found.worst, 0.03);
     assert_below(found.from_factors, 2e-3);
