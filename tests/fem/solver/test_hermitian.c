@@ -85,7 +85,7 @@ static fem_hermitian_matrix any_blocks(const matrix *A) {
   return (fem_hermitian_matrix){{N, A->start, A->column}, none[0], A->start[N], coupled, exponent};
 }
 
-static const double complex turn = CMPLX(.8, .6);
+static const double complex turn = 0.8 + 0.6 * I;
 
 static void solutions_of_one_analysis(void **state) {
   (void)state;
