@@ -232,15 +232,20 @@ void mhb_balance_set_value(mhb_balance *b, double value) {
   }
 }
 
-/* Complex harmonic k of x[n]: out[3 pairs]. */
-static void get_harmonic(const mhb_balance *b, const double *x, int k, double complex *out) {
+void mhb_balance_go_to(mhb_balance *b, mhb_parameter parameter, double value) {
+  mhb_balance_set_parameter(b, parameter);
+  mhb_balance_set_value(b, value);
+  mhb_balance_set_parameter(b, MHB_IN_FREQUENCY);
+}
+
+void mhb_balance_get_harmonic(const mhb_balance *b, const double *x, int k, double complex *out) {
   for (int row = 0; row < 3 * b->n_pairs; row++) {
     const double *a = x + (size_t)row * (size_t)b->nb;
     out[row]        = k == 0 ? a[0] : CMPLX(a[2 * k - 1], a[2 * k]);
   }
 }
 
-static void put_harmonic(const mhb_balance *b, double *x, int k, const double complex *in) {
+void mhb_balance_put_harmonic(const mhb_balance *b, double *x, int k, const double complex *in) {
   for (int row = 0; row < 3 * b->n_pairs; row++) {
     double *a = x + (size_t)row * (size_t)b->nb;
     if (k == 0) {
@@ -547,7 +552,8 @@ static int is_independent(const mhb_balance *b, int k, int unloaded) {
 /* motion_k <- dr_k/dvalue, force_k the forces at x. */
 static void set_slope(mhb_balance *b, int k, int unloaded) {
   int n3 = 3 * b->n_pairs;
-  if (b->parameter != MHB_IN_FREQUENCY) get_harmonic(b, b->eval->by_parameter, k, b->force_k);
+  if (b->parameter != MHB_IN_FREQUENCY)
+    mhb_balance_get_harmonic(b, b->eval->by_parameter, k, b->force_k);
   for (int i = 0; i < n3; i++) b->motion_k[i] = 0;
   if (is_independent(b, k, unloaded)) return;
   mhb_receptance_update(b->receptance, k);
@@ -619,17 +625,17 @@ static void evaluate(mhb_balance *b, const double *x, double value, int derivati
     if (slope) slope_by_product(b, slope);
   }
   for (int k = 0; k <= b->m && !b->product; k++) {
-    get_harmonic(b, b->eval->p, k, b->force_k);
-    get_harmonic(b, x, k, b->motion_k);
+    mhb_balance_get_harmonic(b, b->eval->p, k, b->force_k);
+    mhb_balance_get_harmonic(b, x, k, b->motion_k);
     int unloaded = is_unloaded(b, k);
     if (!unloaded) {
       mhb_receptance_update(b->receptance, k);
       (b->receptance->ring ? subtract_ring_response : subtract_response)(b, k);
     }
-    put_harmonic(b, r, k, b->motion_k);
+    mhb_balance_put_harmonic(b, r, k, b->motion_k);
     if (!slope) continue;
     set_slope(b, k, unloaded);
-    put_harmonic(b, slope, k, b->motion_k);
+    mhb_balance_put_harmonic(b, slope, k, b->motion_k);
   }
 }
 
@@ -639,9 +645,9 @@ void mhb_balance_slope(mhb_balance *b, const double *x, mhb_parameter parameter,
   if (parameter != MHB_IN_FREQUENCY) set_force_by_parameter(b, x);
   if (b->product) slope_by_product(b, slope);
   for (int k = 0; k <= b->m && !b->product; k++) {
-    get_harmonic(b, b->eval->p, k, b->force_k);
+    mhb_balance_get_harmonic(b, b->eval->p, k, b->force_k);
     set_slope(b, k, is_unloaded(b, k));
-    put_harmonic(b, slope, k, b->motion_k);
+    mhb_balance_put_harmonic(b, slope, k, b->motion_k);
   }
   b->parameter = own;
 }
@@ -743,7 +749,7 @@ shb_status mhb_balance_linear_limit(mhb_balance *b, double value, int stuck, dou
   for (int k = 0; k <= b->m; k++) {
     if (!rests(b, k)) mhb_balance_update_probes(b, k);
     SHB_TRY(linear_harmonic(b, k, stuck, b->motion_k));
-    put_harmonic(b, x, k, b->motion_k);
+    mhb_balance_put_harmonic(b, x, k, b->motion_k);
     for (int i = 0; i < 3 * b->n_pairs; i++) b->force_k[i] = 0;
     for (int a = 0; stuck && a < b->n_pairs; a++) {
       if (!is_stuck(b, a, stuck)) continue;
@@ -752,13 +758,13 @@ shb_status mhb_balance_linear_limit(mhb_balance *b, double value, int stuck, dou
       mhb_stick_force(law, k, u, b->force_k + 3 * a);
       if (k == 0) b->force_k[3 * a] += own_preload(law);
     }
-    put_harmonic(b, b->eval->p, k, b->force_k);
+    mhb_balance_put_harmonic(b, b->eval->p, k, b->force_k);
   }
   return SHB_OK;
 }
 
 void mhb_balance_contact_force(const mhb_balance *b, int k, double complex *p) {
-  get_harmonic(b, b->eval->p, k, p);
+  mhb_balance_get_harmonic(b, b->eval->p, k, p);
 }
 
 void mhb_balance_update_probes(const mhb_balance *b, int k) {

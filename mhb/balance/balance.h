@@ -111,6 +111,9 @@ void mhb_balance_set_parameter(mhb_balance *balance, mhb_parameter parameter);
 /* Set the operating point at a value of the parameter. */
 void mhb_balance_set_value(mhb_balance *balance, double value);
 
+/* The same at a value of any parameter. The frequency is the continuation parameter then. */
+void mhb_balance_go_to(mhb_balance *balance, mhb_parameter parameter, double value);
+
 /* From here on the preloads of all interfaces change by the same amount, or no longer. */
 void mhb_balance_tie_preloads(mhb_balance *balance, int anchored);
 
@@ -163,6 +166,12 @@ void mhb_balance_row_times_dp(const mhb_balance *balance, const double complex R
  * its preload (MHB_BY_PRELOAD). The evaluation in use gets its forces p only. Errors: SHB_ERR_INPUT
  * the stuck system is singular. */
 shb_status mhb_balance_linear_limit(mhb_balance *balance, double value, int stuck, double *x);
+
+/* Complex harmonic k of x[n]: out[3 pairs]; and back from in[3 pairs]. */
+void mhb_balance_get_harmonic(const mhb_balance *balance, const double *x, int k,
+                              double complex *out);
+void mhb_balance_put_harmonic(const mhb_balance *balance, double *x, int k,
+                              const double complex *in);
 
 /* Forces of the evaluation in use: complex harmonic k of all pairs, p[3 pairs] N. */
 void mhb_balance_contact_force(const mhb_balance *balance, int k, double complex *p);

@@ -27,9 +27,9 @@ shb_status mhb_doubled_ring_create(const mhb_balance *balance, const mhb_balance
   d->low            = shb_arena_take(&d->arena, (size_t)balance->n + 1, sizeof(double));
   d->along          = shb_arena_take(&d->arena, (size_t)balance->n + 1, sizeof(double));
   d->rhs            = shb_arena_take(&d->arena, (size_t)doubled->n, sizeof(double));
-  d->p              = shb_arena_take(&d->arena, 3 * (size_t)doubled->nb, sizeof(double));
-  d->force          = shb_arena_take(&d->arena, (2 * m + 1) * N * n, sizeof *d->force);
-  d->motion         = shb_arena_take(&d->arena, (2 * m + 1) * N * n, sizeof *d->motion);
+  d->p              = shb_arena_take(&d->arena, (size_t)doubled->n, sizeof(double));
+  d->force          = shb_arena_take(&d->arena, N * n, sizeof *d->force);
+  d->motion         = shb_arena_take(&d->arena, N * n, sizeof *d->motion);
   shb_status status = mhb_gmres_create(doubled->n, MOST_ITERATIONS, &d->gmres);
   if (status == SHB_OK && d->arena.failed)
     status = shb_fail(SHB_ERR_IO, __FILE__, __LINE__, "out of memory for %d harmonics", doubled->m);
@@ -125,32 +125,19 @@ int mhb_doubled_ring_solve_low(mhb_doubled_ring *d, double *x) {
 
 /* ---- the system ---- */
 
-/* to[2m + 1][3 pairs] <- harmonics of rows of a pair, x[3][nb] */
-static void split(const mhb_balance *b, int pair, const double *x, double complex *to) {
-  const int axes = 3 * b->n_pairs;
-  for (int i = 3 * pair; i < 3 * pair + 3; i++, x += b->nb) {
-    to[i] = x[0];
-    for (int k = 1; k <= b->m; k++) to[k * axes + i] = CMPLX(x[2 * k - 1], x[2 * k]);
-  }
-}
-
 void mhb_doubled_ring_product(mhb_doubled_ring *d, const double *x, double *to) {
   const mhb_balance *b   = d->doubled;
-  const int          own = 3 * b->nb, axes = 3 * b->n_pairs;
+  const int          own = 3 * b->nb;
   for (int a = 0; a < b->n_pairs; a++) {
     const double *D = b->eval->dp + (size_t)a * (size_t)own * (size_t)own;
-    cblas_dgemv(CblasRowMajor, CblasNoTrans, own, own, 1, D, own, x + a * own, 1, 0, d->p, 1);
-    split(b, a, d->p, d->force);
-    split(b, a, x + a * own, d->motion);
+    cblas_dgemv(CblasRowMajor, CblasNoTrans, own, own, 1, D, own, x + a * own, 1, 0, d->p + a * own,
+                1);
   }
   for (int k = 0; k <= b->m; k++) {
-    double complex *motion = d->motion + k * axes;
-    mhb_ring_receptance_product(b->receptance->ring, k, d->force + k * axes, motion);
-    for (int i = 0; i < axes; i++) {
-      double *at = to + i * b->nb;
-      if (k > 0) at[2 * k] = cimag(motion[i]);
-      at[k > 0 ? 2 * k - 1 : 0] = creal(motion[i]);
-    }
+    mhb_balance_get_harmonic(b, d->p, k, d->force);
+    mhb_balance_get_harmonic(b, x, k, d->motion);
+    mhb_ring_receptance_product(b->receptance->ring, k, d->force, d->motion);
+    mhb_balance_put_harmonic(b, to, k, d->motion);
   }
 }
 

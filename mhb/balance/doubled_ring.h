@@ -21,8 +21,8 @@ typedef struct {
   double            *low;     /* [balance->n + 1] */
   double            *along;   /* [balance->n + 1] solution for the border alone */
   double            *rhs;     /* [doubled->n] */
-  double            *p;       /* [3 nb] D x of a pair, with 2m harmonics */
-  double complex    *force, *motion; /* [2m + 1][3 pairs] */
+  double            *p;       /* [doubled->n] D x */
+  double complex    *force, *motion; /* [3 pairs] one harmonic */
   mhb_gmres         *gmres;
   shb_arena          arena;
 } mhb_doubled_ring;

@@ -47,12 +47,6 @@ static mhb_slip_onset onset_of(const mhb_balance *b, const double *x, int pair) 
   return onset;
 }
 
-static void go_to(mhb_balance *b, mhb_parameter parameter, double value) {
-  mhb_balance_set_parameter(b, parameter);
-  mhb_balance_set_value(b, value);
-  mhb_balance_set_parameter(b, MHB_IN_FREQUENCY);
-}
-
 /* ---- which pairs touch ---- */
 
 /* The pairs of a set as near to slip as one of them. */
@@ -94,7 +88,7 @@ int mhb_corner_candidates(const mhb_corner *c, double value, const double *x, do
   mhb_balance *b = c->balance;
   double       h[b->n_pairs], limit[b->n_pairs];
   int          n = 0;
-  go_to(b, c->tracking->parameter, value);
+  mhb_balance_go_to(b, c->tracking->parameter, value);
   for (int a = 0; a < b->n_pairs; a++) {
     if (is_open(b, x, a)) continue;
     const mhb_slip_onset at = onset_of(b, x, a);
@@ -114,7 +108,7 @@ int mhb_corner_candidates(const mhb_corner *c, double value, const double *x, do
 
 void mhb_corner_take(mhb_corner *c, int pair, double value, const double *x) {
   mhb_balance *b = c->balance;
-  go_to(b, c->tracking->parameter, value);
+  mhb_balance_go_to(b, c->tracking->parameter, value);
   memmove(c->x, x, sizeof *x * (size_t)b->n);
   c->stuck = pair < 0;
   for (int a = 0; a < b->n_pairs; a++) c->closed[a] = !is_open(b, x, a);
@@ -165,7 +159,7 @@ static mhb_amplitude output_at(mhb_corner *c) {
 
 mhb_corner_state mhb_corner_evaluate(mhb_corner *c, double omega, double value) {
   mhb_corner_state state = {NAN, NAN, NAN, NAN, NAN, NAN};
-  go_to(c->balance, c->tracking->parameter, value);
+  mhb_balance_go_to(c->balance, c->tracking->parameter, value);
   if (!(c->stuck ? settle_stuck(c, omega) : settle(c, omega))) return state;
   state.amplitude = output_at(c).amplitude;
   nearest_to_slip(c, c->touching, &state.onset);
@@ -188,10 +182,10 @@ static double onset_by(mhb_corner *c, mhb_parameter parameter, int pair) {
   double              sum   = 0;
   if (step == 0) return 0;
   for (int i = 0; i < 4; i++) {
-    go_to(b, parameter, value + place[i] * step);
+    mhb_balance_go_to(b, parameter, value + place[i] * step);
     sum += weight[i] * onset_of(b, c->x, pair).h / (12 * step);
   }
-  go_to(b, parameter, value);
+  mhb_balance_go_to(b, parameter, value);
   return sum;
 }
 
@@ -209,7 +203,7 @@ static mhb_corner_state linearise(mhb_corner *c, double omega, double value) {
   mhb_balance     *b     = c->balance;
   const int        n     = b->n;
   mhb_corner_state state = {NAN, NAN, NAN, NAN, NAN, NAN};
-  go_to(b, c->tracking->parameter, value);
+  mhb_balance_go_to(b, c->tracking->parameter, value);
   b->touching = c->touching;
   mhb_balance_evaluate(b, c->x, omega, c->r, c->jacobian, c->by_omega);
   b->touching = NULL;

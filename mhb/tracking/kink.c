@@ -60,12 +60,6 @@ struct mhb_kink {
 
 /* ---- a point of the response curve ---- */
 
-static void go_to(mhb_balance *b, mhb_parameter parameter, double value) {
-  mhb_balance_set_parameter(b, parameter);
-  mhb_balance_set_value(b, value);
-  mhb_balance_set_parameter(b, MHB_IN_FREQUENCY);
-}
-
 static void solve_linear(const mhb_kink *k, double *v) {
   const lapack_int one = k->n + 1;
   LAPACKE_dgetrs_work(LAPACK_COL_MAJOR, 'N', one, 1, k->matrix, one, k->pivot, v, one);
@@ -181,7 +175,7 @@ static bool find(mhb_kink *k, mhb_peak_place *at, mhb_end *why) {
   const int    n = k->n;
   *why           = MHB_END_TURNED;
   at->margin     = NAN;
-  go_to(b, k->base.tracking->parameter, at->value);
+  mhb_balance_go_to(b, k->base.tracking->parameter, at->value);
   memcpy(k->left.z, k->origin, sizeof(double) * ((size_t)n + 1));
   if (!settle(k, 0, &k->left) || !bracket(k) || !shrink(k)) return false;
   const side  *l = &k->left, *r = &k->right;
@@ -226,7 +220,7 @@ static bool balance_at(mhb_peak_family *family, const mhb_peak_place *at, mhb_cu
   mhb_end        unused;
   if (k->last.value != at->value && !is_peak(family, &here, &unused)) return false;
   if (fabs(here.omega / at->omega - 1) > SAME) return false;
-  go_to(b, family->tracking->parameter, at->value);
+  mhb_balance_go_to(b, family->tracking->parameter, at->value);
   memcpy(point->x, k->last.z, sizeof(double) * (size_t)k->n);
   point->value      = at->value;
   point->iterations = 0;
@@ -244,7 +238,7 @@ bool mhb_kink_start(mhb_kink *k, const double *x, mhb_peak_place *at) {
   k->origin[n]        = k->unit * at->omega;
   memset(k->border, 0, sizeof(double) * (size_t)n);
   k->border[n] = 1;
-  go_to(k->base.balance, k->base.tracking->parameter, at->value);
+  mhb_balance_go_to(k->base.balance, k->base.tracking->parameter, at->value);
   memcpy(k->left.z, k->origin, sizeof(double) * ((size_t)n + 1));
   if (!settle(k, 0, &k->left)) return false;
   const double length = mhb_norm(k->left.along, n + 1);

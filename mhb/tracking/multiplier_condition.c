@@ -88,9 +88,7 @@ static mhb_solution solution_of(mhb_multiplier_condition *c, mhb_evaluation *e, 
 static mhb_solution evaluate(mhb_multiplier_condition *c, const double *z, double value) {
   mhb_balance *b = c->balance;
   mhb_balance_use(b, c->displaced);
-  mhb_balance_set_parameter(b, c->parameter);
-  mhb_balance_set_value(b, value);
-  mhb_balance_set_parameter(b, MHB_IN_FREQUENCY);
+  mhb_balance_go_to(b, c->parameter, value);
   mhb_balance_evaluate(b, z, z[c->n] * c->rate, c->r, NULL, NULL);
   return solution_of(c, c->displaced, z);
 }

@@ -94,9 +94,7 @@ static double derivatives(mhb_peak_system *s, mhb_evaluation *evaluation, const 
                           double value, double *r) {
   mhb_balance *b = s->balance;
   mhb_balance_use(b, evaluation);
-  mhb_balance_set_parameter(b, s->parameter);
-  mhb_balance_set_value(b, value);
-  mhb_balance_set_parameter(b, MHB_IN_FREQUENCY);
+  mhb_balance_go_to(b, s->parameter, value);
   mhb_balance_evaluate(b, z, z[s->n] * s->rate, r, s->jacobian, s->by_xi);
   mhb_balance_slope(b, z, s->parameter, s->by_q);
   for (int i = 0; i < s->n; i++) s->by_xi[i] *= s->rate;
