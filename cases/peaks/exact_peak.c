@@ -244,9 +244,9 @@ static void set_errors(exact_peak *peak, const exact_peak *fewer) {
     peak->field_error[i] = fabs(fewer->field[i] - peak->field[i]);
 }
 
-/* A peak found by comparison is too low by at most this. */
+/* A peak found by comparison is too low by at most this, and so is a corner. */
 static void add_drop(exact_peak *peak, double drop) {
-  if (peak->by.kind != MHB_PEAK_UNJUDGED) drop = 0;
+  if (peak->by.kind != MHB_PEAK_UNJUDGED && peak->by.kind != MHB_PEAK_CORNER) drop = 0;
   peak->amplitude_error = drop + (isnan(peak->amplitude_error) ? 0 : peak->amplitude_error);
   for (int i = 0; i < STUDY_MAX_OUTPUTS; i++)
     peak->field_error[i] += fabs(peak->field[i]) * drop / peak->amplitude;
@@ -354,7 +354,8 @@ static shb_status begin(const work *w, const fine_maximum *f, int fixed, double 
   shb_status status = solve_first(&m, &c->solution, &by);
   if (status == SHB_OK && c->solution.x) {
     c->amplitude = by.kind == MHB_PEAK_UNJUDGED ? m.found[1] : by.amplitude;
-    c->drop      = m.drop;
+    /* beside a corner the law may go on a little higher, and Newton's method not reach the top */
+    c->drop = by.kind == MHB_PEAK_CORNER ? fmax(0, m.found[1] - by.amplitude) : m.drop;
     if (c->amplitude >= (1 - RIVAL) * most) {
       status        = describe_peak(w, &m, &by, &c->peak);
       c->peak.exact = true;

@@ -12,12 +12,9 @@
  * of |z|. */
 static const double FIRST = 1e-7, REACH = 0.03, EXACT = 1e-12;
 
-/* The bracket of the kink grows by this factor. */
-static const double GROWTH = 4;
-
 /* Newton's method for a point of the curve ends at a step of SOLVED |z|. Where steps grow again by
  * round-off ALMOST will do. */
-static const double SOLVED = 1e-12, ALMOST = 1e-9;
+static const double SOLVED = 1e-12, ALMOST = 1e-9, LEAST_PART = 1.0 / 64;
 
 /* On either side of a kink |G| is larger than this. Beside a smooth maximum it is about EXACT times
  * the curvature of the curve. */
@@ -29,12 +26,12 @@ static const double BALANCED = 1e-8;
 /* A kink found again has its frequency to within this, relative. */
 static const double SAME = 1e-6;
 
-enum { MOST_NEWTON = 15 };
+enum { MOST_NEWTON = 30, GROWTH = 4 /* of the bracket */ };
 
 /* One point of the response curve, with derivatives by s at fixed q and by q at fixed s. */
 typedef struct {
-  double  s, amplitude, slope, by_value;
-  double *z, *along, *by_q; /* [n + 1]; dz/ds, dz/dq */
+  double  s, amplitude, slope, by_value, slip; /* slip: share (peak_system.h) */
+  double *z, *along, *by_q;                    /* [n + 1]; dz/ds, dz/dq */
 } side;
 
 /* A kink that was found, to predict others from. */
@@ -60,9 +57,9 @@ struct mhb_kink {
 
 /* ---- a point of the response curve ---- */
 
-static void solve_linear(const mhb_kink *k, double *v) {
+static void solve_linear(const mhb_kink *k, char transposed, double *v) {
   const lapack_int one = k->n + 1;
-  LAPACKE_dgetrs_work(LAPACK_COL_MAJOR, 'N', one, 1, k->matrix, one, k->pivot, v, one);
+  LAPACKE_dgetrs_work(LAPACK_COL_MAJOR, transposed, one, 1, k->matrix, one, k->pivot, v, one);
 }
 
 /* r, and the factors of [r_z; c] at z. false: singular. */
@@ -86,38 +83,50 @@ static void differentiate(mhb_kink *k, side *at) {
   mhb_output_amplitude(b, at->z, tracking->output, &a);
   memset(at->along, 0, sizeof(double) * (size_t)n);
   at->along[n] = 1;
-  solve_linear(k, at->along);
+  solve_linear(k, 'N', at->along);
   mhb_balance_slope(b, at->z, tracking->parameter, at->by_q);
   const double by_q = mhb_amplitude_by_parameter(b, &a, tracking->parameter, b->eval->by_parameter);
   for (int i = 0; i < n; i++) at->by_q[i] = -at->by_q[i];
   at->by_q[n] = 0;
-  solve_linear(k, at->by_q);
+  solve_linear(k, 'N', at->by_q);
   const double by_xi = a.by_omega / k->unit;
   at->amplitude      = a.amplitude;
+  at->slip           = mhb_slip_share(b);
   at->slope          = mhb_dot(n, k->by_x, at->along) + by_xi * at->along[n];
   at->by_value       = by_q + mhb_dot(n, k->by_x, at->by_q) + by_xi * at->by_q[n];
 }
 
-/* The point at s, from a motion near by in at->z. */
+/* The point at s, from a motion near by in at->z. A step that does not lower the residual is cut:
+ * where slip begins Newton's method would go to and fro. */
 static bool settle(mhb_kink *k, double s, side *at) {
-  const int n      = k->n;
-  double    before = INFINITY, step[n + 1];
-  at->s            = s;
+  const int n    = k->n;
+  double    size = INFINITY, before = INFINITY, part = 1, step[n + 1], from[n + 1];
+  at->s = s;
   for (int i = 0; i < MOST_NEWTON; i++) {
     if (!(at->z[n] > 0) || !factor(k, at->z)) return false;
+    double aside = s;
+    for (int j = 0; j <= n; j++) aside -= k->border[j] * (at->z[j] - k->origin[j]);
+    const double residual = hypot(mhb_norm(k->r, n), aside);
+    if (residual > before && size > ALMOST && part > LEAST_PART) {
+      part *= 0.5;
+      for (int j = 0; j <= n; j++) at->z[j] = from[j] + part * step[j];
+      continue;
+    }
+    before = residual;
+    part   = 1;
+    memcpy(from, at->z, sizeof from);
     for (int j = 0; j < n; j++) step[j] = -k->r[j];
-    step[n] = s;
-    for (int j = 0; j <= n; j++) step[n] -= k->border[j] * (at->z[j] - k->origin[j]);
-    solve_linear(k, step);
-    const double size = mhb_norm(step, n + 1) / mhb_norm(at->z, n + 1);
+    step[n] = aside;
+    solve_linear(k, 'N', step);
+    const double last = size;
+    size              = mhb_norm(step, n + 1) / mhb_norm(at->z, n + 1);
     if (!isfinite(size)) return false;
     for (int j = 0; j <= n; j++) at->z[j] += step[j];
-    if (size <= SOLVED || (size <= ALMOST && size > 0.5 * before)) {
+    if (size <= SOLVED || (size <= ALMOST && size > 0.5 * last)) {
       if (!factor(k, at->z)) return false;
       differentiate(k, at);
       return isfinite(at->slope) && isfinite(at->by_value);
     }
-    before = size;
   }
   return false;
 }
@@ -135,17 +144,39 @@ static void swap(side *a, side *b) {
   *b              = kept;
 }
 
-/* left and right <- two points with the next maximum of the amplitude between them, from left. */
+/* Measure s from the left point, along its tangent. */
+static bool measure_from_left(mhb_kink *k) {
+  const double length = mhb_norm(k->left.along, k->n + 1);
+  for (int j = 0; j <= k->n; j++) k->border[j] = k->left.along[j] / length;
+  memcpy(k->origin, k->left.z, sizeof(double) * ((size_t)k->n + 1));
+  return settle(k, 0, &k->left);
+}
+
+/* The right point, about this far from the left one; step becomes its distance. Newton's method may
+ * miss a point where slip just begins: one behind or before it is taken. */
+static bool step_right(mhb_kink *k, double *step) {
+  static const double part[] = {1, 4, 16, 0.25, 0.06, 0.015};
+  const double        wanted = *step;
+  for (size_t i = 0; i < sizeof part / sizeof *part; i++) {
+    *step = part[i] * wanted;
+    predict(k, &k->left, k->left.s + *step, &k->right);
+    if (settle(k, k->left.s + *step, &k->right)) return true;
+  }
+  return false;
+}
+
+/* left and right <- two points with the next maximum of the amplitude between them, from left. The
+ * curve may bend much where slip begins: s is measured anew from point to point. */
 static bool bracket(mhb_kink *k) {
   const double unit = mhb_norm(k->origin, k->n + 1), way = k->left.slope > 0 ? 1 : -1;
-  for (double step = FIRST; step < REACH; step *= GROWTH) {
-    predict(k, &k->left, k->left.s + way * step * unit, &k->right);
-    if (!settle(k, k->left.s + way * step * unit, &k->right)) return false;
+  for (double step = way * FIRST * unit; fabs(step) < REACH * unit; step *= GROWTH) {
+    if (!step_right(k, &step)) return false;
     if (k->right.slope * k->left.slope <= 0) {
       if (way < 0) swap(&k->left, &k->right);
       return true;
     }
     swap(&k->left, &k->right);
+    if (!measure_from_left(k)) return false;
   }
   return false;
 }
@@ -179,17 +210,16 @@ static bool find(mhb_kink *k, mhb_peak_place *at, mhb_end *why) {
   memcpy(k->left.z, k->origin, sizeof(double) * ((size_t)n + 1));
   if (!settle(k, 0, &k->left) || !bracket(k) || !shrink(k)) return false;
   const side  *l = &k->left, *r = &k->right;
-  const double jump = l->slope - r->slope;
-  *why              = MHB_END_SMOOTH;
-  if (!(l->slope > SLOPE && r->slope < -SLOPE)) return false;
-  const double by_s = (r->by_value - l->by_value) / jump;
-  at->margin        = fmin(l->slope, -r->slope);
-  at->amplitude     = l->amplitude;
+  const double jump = l->slope - r->slope, by_s = (r->by_value - l->by_value) / jump;
+  at->amplitude = l->amplitude;
   at->omega = at->peak = l->z[n] / k->unit;
-  at->slope            = (l->slope * r->by_value - r->slope * l->by_value) / jump;
-  at->rate             = (l->by_q[n] + by_s * l->along[n]) / k->unit;
-  const double *range  = k->base.tracking->frequency;
-  *why                 = MHB_END_FREQUENCY;
+  *why                 = MHB_END_SMOOTH;
+  if (!(l->slope > SLOPE && r->slope < -SLOPE)) return false;
+  at->margin          = fmin(l->slope, -r->slope);
+  at->slope           = (l->slope * r->by_value - r->slope * l->by_value) / jump;
+  at->rate            = (l->by_q[n] + by_s * l->along[n]) / k->unit;
+  const double *range = k->base.tracking->frequency;
+  *why                = MHB_END_FREQUENCY;
   if (at->omega < range[0] || at->omega > range[1]) return false;
   const double length = mhb_norm(l->along, n + 1);
   for (int j = 0; j <= n; j++) {
@@ -229,9 +259,9 @@ static bool balance_at(mhb_peak_family *family, const mhb_peak_place *at, mhb_cu
   return point->residual <= BALANCED;
 }
 
-bool mhb_kink_start(mhb_kink *k, const double *x, mhb_peak_place *at) {
+bool mhb_kink_start(mhb_kink *k, const double *x, mhb_peak_place *at, mhb_end *why) {
   const int n = k->n;
-  mhb_end   unused;
+  *why        = MHB_END_NO_START;
   memcpy(k->origin, x, sizeof(double) * (size_t)n);
   const double *range = k->base.tracking->frequency;
   k->unit             = mhb_norm(x, n) / (range[1] > range[0] ? range[1] - range[0] : at->omega);
@@ -240,16 +270,39 @@ bool mhb_kink_start(mhb_kink *k, const double *x, mhb_peak_place *at) {
   k->border[n] = 1;
   mhb_balance_go_to(k->base.balance, k->base.tracking->parameter, at->value);
   memcpy(k->left.z, k->origin, sizeof(double) * ((size_t)n + 1));
-  if (!settle(k, 0, &k->left)) return false;
-  const double length = mhb_norm(k->left.along, n + 1);
-  for (int j = 0; j <= n; j++) k->border[j] = k->left.along[j] / length;
-  memcpy(k->origin, k->left.z, sizeof(double) * ((size_t)n + 1));
-  if (!find(k, at, &unused)) return false;
+  if (!settle(k, 0, &k->left) || !measure_from_left(k)) return false;
+  if (!find(k, at, why)) return false;
   k->first.value = k->last.value;
   memcpy(k->first.z, k->last.z, sizeof(double) * ((size_t)n + 1));
   memcpy(k->first.rate, k->last.rate, sizeof(double) * ((size_t)n + 1));
   memcpy(k->first.border, k->last.border, sizeof(double) * ((size_t)n + 1));
   return true;
+}
+
+/* ---- the maximum found last ---- */
+
+/* dA/dq at fixed s, on one side. */
+static void side_gradient(mhb_kink *k, const side *at, double by[MHB_PEAK_PARAMETERS]) {
+  mhb_balance  *b = k->base.balance;
+  mhb_amplitude a = {.by_x = k->by_x, .weight = k->weight, .size = k->base.tracking->size};
+  double        adjoint[k->n + 1];
+  factor(k, at->z);
+  mhb_output_amplitude(b, at->z, k->base.tracking->output, &a);
+  memcpy(adjoint, k->by_x, sizeof(double) * (size_t)k->n);
+  adjoint[k->n] = a.by_omega / k->unit;
+  solve_linear(k, 'T', adjoint);
+  mhb_peak_gradient(b, at->z, &a, adjoint, k->r, by);
+}
+
+double mhb_kink_maximum(mhb_kink *k, double *x, double by[MHB_PEAK_PARAMETERS]) {
+  const side  *l = &k->left, *r = &k->right;
+  const double jump = l->slope - r->slope, share = jump > 0 ? l->slope / jump : 0.5;
+  double       before[MHB_PEAK_PARAMETERS];
+  memcpy(x, l->z, sizeof(double) * (size_t)k->n);
+  side_gradient(k, l, before);
+  side_gradient(k, r, by);
+  for (int i = 0; i < MHB_PEAK_PARAMETERS; i++) by[i] = share * by[i] + (1 - share) * before[i];
+  return fmin(l->slip, r->slip);
 }
 
 /* ---- creation ---- */
@@ -290,12 +343,13 @@ shb_status mhb_trace_kink(mhb_balance *balance, const mhb_tracking *tracking,
                           bool *found, mhb_tracking_end *end) {
   mhb_peak_place at = {.value = seed->value, .omega = seed->omega};
   mhb_kink      *k;
+  mhb_end        unused;
   *found = false;
   *end   = (mhb_tracking_end){MHB_END_NO_START, MHB_END_NO_START};
   if (tracking->kind != MHB_TRACK_PEAK) return SHB_OK;
   SHB_TRY(mhb_kink_create(balance, tracking, &k));
   shb_status status = SHB_OK;
-  if (mhb_kink_start(k, seed->x, &at) && mhb_is_seeded(seed, at.omega, at.amplitude))
+  if (mhb_kink_start(k, seed->x, &at, &unused) && mhb_is_seeded(seed, at.omega, at.amplitude))
     status = mhb_trace_peak_places(&k->base, &at, response, branch, found, end);
   mhb_kink_destroy(k);
   return status;

@@ -155,8 +155,9 @@ static shb_status kink_at(const search *s, mhb_balance *balance, const double *x
   mhb_kink      *kink;
   const double   omega = SHB_TWO_PI * at->frequency;
   mhb_peak_place place = {.value = at->value, .omega = omega};
+  mhb_end        unused;
   SHB_TRY(mhb_kink_create(balance, s->tracking, &kink));
-  if (mhb_kink_start(kink, x, &place) && fabs(place.omega / omega - 1) <= INTERPOLATED) {
+  if (mhb_kink_start(kink, x, &place, &unused) && fabs(place.omega / omega - 1) <= INTERPOLATED) {
     at->amplitude = place.amplitude;
     at->frequency = place.omega / SHB_TWO_PI;
   }

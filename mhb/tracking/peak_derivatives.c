@@ -7,6 +7,7 @@
 #include "mesh/base/constants.h"
 #include "mhb/numerics/vector.h"
 #include "mhb/tracking/corner_point.h"
+#include "mhb/tracking/kink.h"
 
 /* The peak solved here is the one that was found if amplitude and frequency agree, relative. */
 static const double SAME_AMPLITUDE = 1e-4, SAME_FREQUENCY = 1e-3;
@@ -19,6 +20,9 @@ static const double SETTLED = 1e-10;
 
 /* The solution may be at a corner of a pair whose h is this part of its friction limit. */
 static const double CANDIDATE = 0.01;
+
+/* On either side of a kink |G| is larger than this. */
+static const double JUMP = 1e-4;
 
 typedef struct {
   mhb_balance  *balance;
@@ -142,6 +146,45 @@ static void without_slip(const search *s, mhb_corner *corner, mhb_peak_derivativ
   corner_derivatives(s, corner, out);
 }
 
+static shb_status find_without_slip(const search *s, const mhb_tracking *tracking,
+                                    mhb_peak_derivatives *out) {
+  mhb_corner *corner;
+  SHB_TRY(mhb_corner_create(s->balance, tracking, &corner));
+  without_slip(s, corner, out);
+  mhb_corner_destroy(corner);
+  return SHB_OK;
+}
+
+/* ---- a peak that is bracketed ---- */
+
+/* The next maximum of the response curve, if slip bounds it on both sides. A jump of G within the
+ * law's error is none. */
+static void take_bracketed(const search *s, mhb_kink *kink, mhb_peak_derivatives *out) {
+  mhb_peak_place at = {.value = s->balance->eval->at.n0, .omega = s->omega};
+  mhb_end        why;
+  const bool     found = mhb_kink_start(kink, s->x, &at, &why), on_kink = found && at.margin > JUMP;
+  if (!found && why != MHB_END_SMOOTH) return;
+  if (!(on_kink ? is_same : is_near)(s, at.omega, at.amplitude)) return;
+  double x[s->balance->n], by[MHB_PEAK_PARAMETERS];
+  if (!(mhb_kink_maximum(kink, x, by) > 0)) return; /* at the corner, or stuck */
+  out->kind      = on_kink ? MHB_PEAK_KINK : MHB_PEAK_SMOOTH;
+  out->omega     = at.omega;
+  out->amplitude = at.amplitude;
+  memcpy(s->x, x, sizeof x);
+  if (!s->near.no_derivatives) memcpy(out->by, by, sizeof by);
+}
+
+static shb_status bracketed(const search *s, const mhb_tracking *tracking,
+                            mhb_peak_derivatives *out) {
+  const mhb_operating_point at = s->balance->eval->at;
+  mhb_kink                 *kink;
+  SHB_TRY(mhb_kink_create(s->balance, tracking, &kink));
+  take_bracketed(s, kink, out);
+  mhb_balance_set_operating_point(s->balance, &at);
+  mhb_kink_destroy(kink);
+  return SHB_OK;
+}
+
 shb_status mhb_peak_derivatives_find(mhb_balance *balance, int output, mhb_size size,
                                      mhb_peak_near near, double *x, double omega, double found,
                                      mhb_peak_derivatives *out) {
@@ -151,16 +194,14 @@ shb_status mhb_peak_derivatives_find(mhb_balance *balance, int output, mhb_size 
   if (balance->n > MOST_UNKNOWNS) return SHB_OK;
   SHB_TRY(smooth(&s, out));
   if (out->kind == MHB_PEAK_SMOOTH || near.smooth_only) return SHB_OK;
-  const double       n0       = balance->eval->at.n0;
+  const double       n0 = balance->eval->at.n0, *range = balance->settings->frequency;
   const mhb_tracking tracking = {.kind      = MHB_TRACK_PEAK,
                                  .output    = output,
                                  .parameter = MHB_IN_N0,
                                  .low       = n0,
                                  .high      = n0,
+                                 .frequency = {SHB_TWO_PI * range[0], SHB_TWO_PI * range[1]},
                                  .size      = size};
-  mhb_corner        *corner;
-  SHB_TRY(mhb_corner_create(balance, &tracking, &corner));
-  without_slip(&s, corner, out);
-  mhb_corner_destroy(corner);
-  return SHB_OK;
+  SHB_TRY(bracketed(&s, &tracking, out));
+  return out->kind == MHB_PEAK_UNJUDGED ? find_without_slip(&s, &tracking, out) : SHB_OK;
 }

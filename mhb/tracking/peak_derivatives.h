@@ -1,15 +1,22 @@
 /* Derivatives of one peak by the parameters of contact, load and damping.
  *
- * A smooth peak is solved again, and one adjoint solution gives all derivatives (peak_system.h). A
- * peak at the corner between stuck and slipping moves along the corner: dA/dq = A_q - A_omega
- * h_q/h_omega (corner.h). On the stuck side it is A_q. Other peaks are kinks that the program has
- * no equations for: their derivatives are not judged. */
+ * A smooth peak is solved again, and one adjoint solution gives all derivatives (peak_system.h).
+ * Where Newton's method does not reach it, it is bracketed along the response curve (kink.h): slip
+ * that just begins bends the curve within 1e-5 of the motion. A peak at the corner between stuck
+ * and slipping moves along the corner: dA/dq = A_q - A_omega h_q/h_omega (corner_point.h). On the
+ * stuck side it is A_q. On a kink both sides count (kink.h). Other peaks are not judged. */
 #ifndef MHB_TRACKING_PEAK_DERIVATIVES_H
 #define MHB_TRACKING_PEAK_DERIVATIVES_H
 
 #include "mhb/tracking/peak_system.h"
 
-typedef enum { MHB_PEAK_UNJUDGED, MHB_PEAK_SMOOTH, MHB_PEAK_CORNER, MHB_PEAK_STUCK } mhb_peak_kind;
+typedef enum {
+  MHB_PEAK_UNJUDGED,
+  MHB_PEAK_SMOOTH,
+  MHB_PEAK_CORNER,
+  MHB_PEAK_STUCK,
+  MHB_PEAK_KINK
+} mhb_peak_kind;
 
 typedef struct {
   mhb_peak_kind kind;
@@ -30,7 +37,8 @@ mhb_peak_near mhb_peak_at(double omega);
 /* Derivatives of a peak near a solution.
  *   output    in  output_amplitude.h
  *   x, omega  inout, in  [n], rad/s: the solution, which the balance is at; its amplitude in found.
- *                        x becomes that of a smooth peak
+ *                        x becomes that
+ *                        of a smooth peak or of one on a kink
  * The operating point of the balance is that of the solution, before and after. SHB_ERR_IO: no
  * memory. */
 shb_status mhb_peak_derivatives_find(mhb_balance *balance, int output, mhb_size size,

@@ -158,8 +158,7 @@ static double tangent_and_adjoint(mhb_peak_system *s) {
   return mhb_dot(s->n + 1, s->gradient, s->tangent);
 }
 
-/* The smallest share of the period in which a pair that is not linear slips or is open. */
-static double slip_share(const mhb_balance *b) {
+double mhb_slip_share(const mhb_balance *b) {
   double least = mhb_balance_is_linear(b) ? 0 : 1;
   for (int a = 0; a < b->n_pairs; a++)
     if (b->eval->kind[a] == MHB_PAIR_NONLINEAR)
@@ -225,7 +224,7 @@ static void linearise(mhb_curve_system *system, mhb_curve_point *point) {
   memcpy(matrix + n * one, s->by_xi, sizeof(double) * n);
   memcpy(point->slope, s->by_q, sizeof(double) * n);
   s->report.amplitude  = s->amplitude.amplitude;
-  s->report.slip_share = slip_share(s->balance);
+  s->report.slip_share = mhb_slip_share(s->balance);
   point->r[n]          = tangent_and_adjoint(s);
   if (s->condition) {
     if (!isnan(point->r[n])) multiplier_row(s, point);
@@ -265,22 +264,26 @@ void mhb_peak_system_measure(mhb_curve_system *system, mhb_size size) {
   of(system)->value          = NAN;
 }
 
+void mhb_peak_gradient(mhb_balance *b, const double *x, const mhb_amplitude *amplitude,
+                       const double *adjoint, double *by_q, double by[MHB_PEAK_PARAMETERS]) {
+  for (int i = 0; i < MHB_PEAK_BY_DAMPING; i++) {
+    const mhb_parameter q = mhb_peak_parameter(i);
+    mhb_balance_slope(b, x, q, by_q);
+    by[i] = mhb_amplitude_by_parameter(b, amplitude, q, b->eval->by_parameter) -
+            mhb_dot(b->n, adjoint, by_q);
+  }
+  mhb_slope_by_damping(b, by_q);
+  by[MHB_PEAK_BY_DAMPING] = amplitude->by_damping - mhb_dot(b->n, adjoint, by_q);
+}
+
 void mhb_peak_system_derivatives(mhb_curve_system *system, const mhb_curve_point *point,
                                  double by[MHB_PEAK_PARAMETERS]) {
   mhb_peak_system *s = of(system);
-  mhb_balance     *b = s->balance;
   ensure(system, point);
-  mhb_balance_use(b, point->evaluation);
+  mhb_balance_use(s->balance, point->evaluation);
   s->amplitude.by_x = s->moved;
-  mhb_output_amplitude(b, point->x, s->output, &s->amplitude);
-  for (int i = 0; i < MHB_PEAK_BY_DAMPING; i++) {
-    mhb_balance_slope(b, point->x, mhb_peak_parameter(i), s->by_q);
-    by[i] =
-        mhb_amplitude_by_parameter(b, &s->amplitude, mhb_peak_parameter(i), b->eval->by_parameter) -
-        mhb_dot(s->n, s->adjoint, s->by_q);
-  }
-  mhb_slope_by_damping(b, s->by_q);
-  by[MHB_PEAK_BY_DAMPING] = s->amplitude.by_damping - mhb_dot(s->n, s->adjoint, s->by_q);
+  mhb_output_amplitude(s->balance, point->x, s->output, &s->amplitude);
+  mhb_peak_gradient(s->balance, point->x, &s->amplitude, s->adjoint, s->by_q, by);
 }
 
 const char *mhb_peak_system_choose(mhb_curve_system *system, const double *x, double omega,

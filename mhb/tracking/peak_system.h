@@ -43,6 +43,9 @@ typedef struct {
   mhb_multiplier_place multiplier; /* of a flip or Neimark-Sacker point */
 } mhb_peak_report;
 
+/* The slip share of a report, at the evaluation in use. */
+double mhb_slip_share(const mhb_balance *balance);
+
 typedef struct mhb_peak_system mhb_peak_system;
 
 /* The system of the peaks of an output (output_amplitude.h), or of the other points. The balance
@@ -96,7 +99,14 @@ mhb_parameter mhb_peak_parameter(int derivative);
 /* Which amplitude has the peak. The root of the sum after creation. */
 void mhb_peak_system_measure(mhb_curve_system *system, mhb_size size);
 
-/* dA/dq of a peak by all parameters, from the adjoint of the point. */
+/* dA/dq by all parameters at a linearised point of the response curve: A_q - l r_q.
+ *   amplitude   in   there
+ *   adjoint     in   [n] l
+ *   by_q        out  [n] work space */
+void mhb_peak_gradient(mhb_balance *balance, const double *x, const mhb_amplitude *amplitude,
+                       const double *adjoint, double *by_q, double by[MHB_PEAK_PARAMETERS]);
+
+/* The same of a peak, from the adjoint of the point. */
 void mhb_peak_system_derivatives(mhb_curve_system *system, const mhb_curve_point *point,
                                  double by[MHB_PEAK_PARAMETERS]);
 

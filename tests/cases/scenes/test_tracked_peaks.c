@@ -7,6 +7,7 @@
 #include "mesh/base/constants.h"
 #include "mhb/branches/record.h"
 #include "mhb/tracking/kink.h"
+#include "mhb/tracking/peak_derivatives.h"
 #include "mhb/tracking/tracked_response.h"
 #include "tests/support/peak_scan.h"
 #include "tests/support/scene.h"
@@ -123,16 +124,25 @@ static void check_at(const case_model *model, mhb_response *r, int point) {
   double         away[2][2];
   mhb_balance   *balance;
   mhb_kink      *kink;
+  mhb_end        why;
   assert_ok(mhb_balance_create(&model->model, &settings, &balance));
   assert_ok(mhb_kink_create(balance, &tracking, &kink));
-  double x[balance->n];
+  double x[balance->n], there[balance->n], by[MHB_PEAK_PARAMETERS];
   mhb_recorded_motion(branch, point, balance, x);
-  assert_true(mhb_kink_start(kink, x, &at));
+  assert_true(mhb_kink_start(kink, x, &at, &why));
+  assert_true(mhb_kink_maximum(kink, there, by) > 0);
+  assert_below(fabs(by[MHB_PEAK_BY_KU] / at.slope - 1), 1e-9);
+  mhb_peak_derivatives again;
+  assert_ok(mhb_peak_derivatives_find(balance, 0, tracking.size, mhb_peak_at(at.omega), there,
+                                      at.omega, at.amplitude, &again));
+  assert_int_equal(again.kind, MHB_PEAK_KINK);
+  assert_below(fabs(again.by[MHB_PEAK_BY_KU] / at.slope - 1), 1e-6);
+  mhb_balance_go_to(balance, MHB_IN_KU, at.value);
   for (int i = 0; i < 2; i++) {
     const double   step    = (i ? 1e-3 : 2e-3) * at.value;
     mhb_peak_place side[2] = {mhb_peak_place_at(&at, at.value - step),
                               mhb_peak_place_at(&at, at.value + step)};
-    for (int j = 0; j < 2; j++) assert_true(mhb_kink_start(kink, x, &side[j]));
+    for (int j = 0; j < 2; j++) assert_true(mhb_kink_start(kink, x, &side[j], &why));
     away[0][i] = (side[1].amplitude - side[0].amplitude) / (2 * step * at.slope) - 1;
     away[1][i] = (side[1].omega - side[0].omega) / (2 * step * at.rate) - 1;
   }

@@ -6,6 +6,7 @@
 
 #include "mesh/base/constants.h"
 #include "mhb/tracking/corner_point.h"
+#include "mhb/tracking/tracked_response.h"
 #include "tests/support/check.h"
 #include "tests/support/settings.h"
 #include "tests/support/solution.h"
@@ -29,15 +30,14 @@ static void set_up(fixture *f, double n0, double tolerance, int parameter, doubl
   f->settings.frequency[0] = 1.1 / SHB_TWO_PI;
   f->settings.frequency[1] = 1.6 / SHB_TWO_PI;
   f->settings.tolerance    = tolerance;
-  assert_ok(mhb_balance_create(&f->model, &f->settings, &f->balance));
-  mhb_operating_point at = f->balance->eval->at;
   for (int i = 0; parameter == MHB_PEAK_BY_DAMPING && i < f->model.n_modes; i++)
     f->model.damping_ratio[i] *= factor;
   if (parameter >= 0 && parameter < MHB_PEAK_BY_DAMPING) {
-    mhb_parameter q = mhb_peak_parameter(parameter);
-    mhb_parameter_set(&at, q, factor * mhb_parameter_get(&at, q));
+    const double base[]   = {n0, 1, 0.4, 0.5, 0.8};
+    f->settings.parameter = mhb_peak_parameter(parameter);
+    f->settings           = mhb_tracked_settings(&f->settings, factor * base[parameter]);
   }
-  mhb_balance_set_operating_point(f->balance, &at);
+  assert_ok(mhb_balance_create(&f->model, &f->settings, &f->balance));
 }
 
 static void tear_down(fixture *f) {
@@ -56,8 +56,31 @@ static void find(fixture *f, const double *from, double omega, double amplitude)
   double r[N], x[N];
   memcpy(x, from, sizeof x);
   mhb_balance_linearise(f->balance, x, omega, r, NULL);
-  assert_ok(mhb_peak_derivatives_find(f->balance, 0, MHB_SIZE_HALF_AXIS, mhb_peak_at(omega), x,
-                                      omega, amplitude, &f->result));
+  mhb_peak_near near = mhb_peak_at(omega);
+  near.amplitude[1]  = 1.01;
+  assert_ok(mhb_peak_derivatives_find(f->balance, 0, MHB_SIZE_HALF_AXIS, near, x, omega, amplitude,
+                                      &f->result));
+}
+
+/* best <- the solution at a frequency if its amplitude is above most. */
+static void take_higher(fixture *f, double at, double *most, double *omega, double best[N]) {
+  double         x[N], by_x[N], r[N];
+  double complex weight[3 * (H + 1)];
+  mhb_amplitude  a = {.by_x = by_x, .weight = weight, .size = MHB_SIZE_HALF_AXIS};
+  cold_solution(&f->model, &f->settings, at, 1e-11, x);
+  mhb_balance_linearise(f->balance, x, at, r, NULL);
+  mhb_output_amplitude(f->balance, x, 0, &a);
+  if (a.amplitude <= *most) return;
+  *most  = a.amplitude;
+  *omega = at;
+  memcpy(best, x, sizeof x);
+}
+
+/* The same of frequencies ever nearer to that of the best so far. */
+static void approach_peak(fixture *f, double *most, double *omega, double best[N]) {
+  for (double step = 2.5e-3; step > 1e-5; step *= 0.5)
+    for (int side = -1; side < 2; side += 2)
+      take_higher(f, *omega + side * step, most, omega, best);
 }
 
 /* Largest difference of the derivatives, relative to peak/parameter, from solved peaks. */
@@ -79,7 +102,13 @@ static double worst_of(double n0, double tolerance, double step, const double *f
     for (int i = 0; i < 4; i++) {
       fixture f;
       set_up(&f, n0, tolerance, p, 1 + step * (i < 2 ? i - 2 : i - 1));
-      find(&f, from, omega, a.amplitude);
+      double x[N], at = omega, most = a.amplitude;
+      memcpy(x, from, sizeof x);
+      if (kind == MHB_PEAK_SMOOTH) {
+        most = 0;
+        approach_peak(&f, &most, &at, x);
+      }
+      find(&f, x, at, most);
       assert_int_equal(f.result.kind, kind);
       peak[i] = f.result.amplitude;
       tear_down(&f);
@@ -94,33 +123,27 @@ static double worst_of(double n0, double tolerance, double step, const double *f
   return worst;
 }
 
-/* best <- the solution at a frequency if its amplitude is above most. */
-static void take_higher(fixture *f, double at, double *most, double *omega, double best[N]) {
-  double         x[N], by_x[N], r[N];
-  double complex weight[3 * (H + 1)];
-  mhb_amplitude  a = {.by_x = by_x, .weight = weight, .size = MHB_SIZE_HALF_AXIS};
-  cold_solution(&f->model, &f->settings, at, 1e-11, x);
-  mhb_balance_linearise(f->balance, x, at, r, NULL);
-  mhb_output_amplitude(f->balance, x, 0, &a);
-  if (a.amplitude <= *most) return;
-  *most  = a.amplitude;
-  *omega = at;
-  memcpy(best, x, sizeof x);
+/* Largest difference of the derivatives of the highest peak, which is smooth. */
+static double worst_of_highest(double n0, double tolerance, double step) {
+  fixture f;
+  double  best[N], omega = 0, most = 0;
+  set_up(&f, n0, tolerance, -1, 1);
+  for (int i = 0; i < 60; i++) /* the highest of 60 solutions */
+    take_higher(&f, 1.2 + 0.3 * i / 60, &most, &omega, best);
+  approach_peak(&f, &most, &omega, best); /* the peak must be the one that was found */
+  tear_down(&f);
+  return worst_of(n0, tolerance, step, best, omega, MHB_PEAK_SMOOTH);
 }
 
 static void a_smooth_peak_has_the_derivatives_of_solved_peaks(void **state) {
   (void)state;
-  fixture f;
-  double  best[N], omega = 0, most = 0;
-  set_up(&f, 0.2, 1e-12, -1, 1);
-  for (int i = 0; i < 60; i++) /* the highest of 60 solutions */
-    take_higher(&f, 1.2 + 0.3 * i / 60, &most, &omega, best);
-  /* nearer, for the peak must be the one that was found */
-  for (double step = 2.5e-3; step > 1e-5; step *= 0.5)
-    for (int side = -1; side < 2; side += 2)
-      take_higher(&f, omega + side * step, &most, &omega, best);
-  tear_down(&f);
-  assert_below(worst_of(0.2, 1e-12, 2e-5, best, omega, MHB_PEAK_SMOOTH), 1e-6);
+  assert_below(worst_of_highest(0.2, 1e-12, 2e-5), 1e-6);
+}
+
+/* Slip lasts for 3e-4 of the period. The law's error hides G, and Newton's method does not end. */
+static void a_peak_where_slip_just_begins_is_bracketed(void **state) {
+  (void)state;
+  assert_below(worst_of_highest(0.95, 1e-8, 1e-3), 1e-6);
 }
 
 static void a_corner_peak_has_the_derivatives_of_solved_corners(void **state) {
@@ -150,6 +173,7 @@ static void a_corner_peak_has_the_derivatives_of_solved_corners(void **state) {
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(a_smooth_peak_has_the_derivatives_of_solved_peaks),
+      cmocka_unit_test(a_peak_where_slip_just_begins_is_bracketed),
       cmocka_unit_test(a_corner_peak_has_the_derivatives_of_solved_corners)};
   return cmocka_run_group_tests(tests, NULL, NULL);
 }
