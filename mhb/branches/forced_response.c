@@ -101,13 +101,14 @@ static shb_status copy_curves(const mhb_response *own, mhb_response **out) {
     if (k > 0 && from->n_points == 0) continue; /* under way, or not there */
     status = mhb_response_branch(copy, from->kind, &index);
     if (status != SHB_OK) break;
-    mhb_branch *to  = &copy->branch[index];
-    to->origin      = from->origin;
-    to->order       = from->order;
-    to->n_harmonics = from->n_harmonics;
-    to->main        = from->main;
-    to->searched    = from->searched;
-    to->complete    = from->complete;
+    mhb_branch *to     = &copy->branch[index];
+    to->origin         = from->origin;
+    to->order          = from->order;
+    to->n_harmonics    = from->n_harmonics;
+    to->main           = from->main;
+    to->searched       = from->searched;
+    to->flips_untraced = from->flips_untraced;
+    to->complete       = from->complete;
     for (int i = 0; i < from->n_searches && status == SHB_OK; i++)
       status = mhb_response_note_search(to, &from->search[i]);
     to->reason = from->reason ? strdup(from->reason) : NULL;

@@ -275,7 +275,8 @@ static shb_status trace(branch_search *h, subharmonic_problem *s, mhb_origin ori
   const bool  searched = origin == MHB_FROM_SEARCH;
   const int   most     = searched ? points_left(h) : h->settings->max_points;
   if (h->response->n_branches > MAX_SECONDARY || most < LEAST_POINTS) {
-    h->untraced += searched;
+    if (searched) h->untraced++;
+    if (!searched) branch_at(h, 0)->flips_untraced++;
     return SHB_OK;
   }
   s->settings.max_points = most;
@@ -460,12 +461,13 @@ static shb_status search_values(branch_search *h, int n, const double *value, in
 
 shb_status mhb_secondary_branches(const modal_model *model, const mhb_settings *settings,
                                   mhb_response *response, mhb_monitor *monitor) {
-  branch_search h      = {.model    = model,
-                          .settings = settings,
-                          .response = response,
-                          .monitor  = monitor,
-                          .go_on    = true};
-  shb_status    status = SHB_OK;
+  branch_search h                  = {.model    = model,
+                                      .settings = settings,
+                                      .response = response,
+                                      .monitor  = monitor,
+                                      .go_on    = true};
+  shb_status    status             = SHB_OK;
+  branch_at(&h, 0)->flips_untraced = 0;
   if (branch_at(&h, 0)->n_points > 0) {
     if (settings->flips) status = trace_flips(&h);
     if (status == SHB_OK) status = search_everywhere(&h);

@@ -263,6 +263,8 @@ static shb_status fill_branch(hid_t group, const mhb_response *response, const m
   SHB_TRY(h5_write_attribute_text(group, ".", "reason", branch->reason));
   SHB_TRY(h5_write_attribute_int(group, ".", "complete", branch->complete));
   if (!branch->searched) SHB_TRY(h5_write_attribute_int(group, ".", "searched", 0));
+  if (branch->flips_untraced > 0)
+    SHB_TRY(h5_write_attribute_int(group, ".", "flips_untraced", branch->flips_untraced));
   if (branch->origin != MHB_FROM_END) {
     SHB_TRY(h5_write_attribute_text(group, ".", "origin", origin_name[branch->origin]));
     SHB_TRY(h5_write_attribute_int(group, ".", "order", branch->order));
@@ -361,6 +363,7 @@ static shb_status read_descent(hid_t group, const char *path, int index, mhb_bra
   SHB_TRY(h5_read_attribute_int(group, ".", "order", branch->order, &branch->order));
   SHB_TRY(h5_read_attribute_int(group, ".", "main", index, &branch->main));
   SHB_TRY(h5_read_attribute_int(group, ".", "searched", 1, &searched));
+  SHB_TRY(h5_read_attribute_int(group, ".", "flips_untraced", 0, &branch->flips_untraced));
   SHB_TRY(h5_read_attribute_text(group, ".", "origin", &text));
   while (text && *text && origin < N_ORIGINS && strcmp(text, origin_name[origin]) != 0) origin++;
   free(text);

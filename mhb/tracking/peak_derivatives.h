@@ -1,7 +1,7 @@
 /* Derivatives of one peak by the parameters of contact, load and damping.
  *
  * A smooth peak is solved again, and one adjoint solution gives all derivatives (peak_system.h).
- * Where Newton's method does not reach it, it is bracketed along the response curve (kink.h): slip
+ * Where Newton's method does not reach it, it is bracketed along the response curve (kink.h). Slip
  * that just begins bends the curve within 1e-5 of the motion. A peak at the corner between stuck
  * and slipping moves along the corner: dA/dq = A_q - A_omega h_q/h_omega (corner_point.h). On the
  * stuck side it is A_q. On a kink both sides count (kink.h). Other peaks are not judged. */

@@ -459,6 +459,17 @@ static void put_searches(const post_analysis *analysis, post_buffer *out) {
              "<code>mhb.search</code> does.</li>\n");
 }
 
+/* Doubled curves that were not looked for. */
+static void put_flips(const mhb_response *r, post_buffer *out) {
+  int untraced = 0;
+  for (int b = 0; b < r->n_branches; b++) untraced += r->branch[b].flips_untraced;
+  if (untraced > 0)
+    post_put(out,
+             "<li>At <b>%d of the points where the period doubles</b> no doubled curve was looked "
+             "for: there are too many other curves.</li>\n",
+             untraced);
+}
+
 static void put_accuracy(const post_analysis *analysis, post_buffer *out) {
   double worst = NAN, at_peak = NAN;
   int    unknown = 0; /* points whose estimate is no number below 1 */
@@ -508,6 +519,7 @@ void post_findings(const post_analysis *analysis, post_buffer *out) {
   put_folds(analysis, out);
   put_other_curves(analysis, out);
   put_searches(analysis, out);
+  put_flips(analysis->response, out);
   post_stability_findings(analysis, out);
   put_accuracy(analysis, out);
   post_put(out, "</ul>\n");

@@ -148,6 +148,26 @@ static void doubled_periods(void **state) {
   modal_model_free(&model);
 }
 
+/* A response has room for 24 curves beside the main one. */
+static void flips_left_out_are_counted(void **state) {
+  (void)state;
+  modal_model   model;
+  mhb_settings  s     = settings(0, 9, -1, 16, 2, 3.4);
+  quiet_monitor quiet = due_monitor_create();
+  mhb_response *r;
+  int           index;
+  one_degree_model(0.02, 0, 1, &model);
+  s.flips = true;
+  assert_int_equal(main_curve(&model, &s, 16, NULL, &r), SHB_OK);
+  assert_int_equal(count(&r->branch[0], MHB_FLIP), 2);
+  while (r->n_branches <= 24) assert_ok(mhb_response_branch(r, MHB_BRANCH_NONLINEAR, &index));
+  assert_int_equal(mhb_secondary_branches(&model, &s, r, &quiet.base), SHB_OK);
+  assert_int_equal(r->n_branches, 25);
+  assert_int_equal(r->branch[0].flips_untraced, 2);
+  mhb_response_destroy(r);
+  modal_model_free(&model);
+}
+
 /* Friction and separation of three degrees of freedom: one curve a preload, however long the search
  * is. */
 static void nothing_where_nothing_is(void **state) {
@@ -326,6 +346,7 @@ int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(an_interrupted_search_is_told), /* first: no thread of OpenMP is there yet */
       cmocka_unit_test(doubled_periods),
+      cmocka_unit_test(flips_left_out_are_counted),
       cmocka_unit_test(nothing_where_nothing_is),
       cmocka_unit_test(threads_and_files_do_not_matter),
       cmocka_unit_test(a_search_is_resumed),

@@ -226,7 +226,8 @@ static mhb_response *with_further(void) {
         b->motion[p * PAIRS * 3 * 10 + k] = CMPLX(100 * i + p, k);
     }
   }
-  response->branch[2].searched = false;
+  response->branch[2].searched       = false;
+  response->branch[1].flips_untraced = 7;
   assert_ok(mhb_response_note_search(
       &response->branch[3],
       &(mhb_search){.value = 15, .order = 2, .starts = 5, .seed = 9, .found = 2, .untraced = 3}));
@@ -250,6 +251,7 @@ static void test_further_branches(void **state) {
     assert_true(b->origin == a->origin && b->searched == (i != 2));
     if (i >= 4) assert_same(a, b, motion, 4 * PAIRS * 3 * 10);
     assert_int_equal(b->n_searches, i == 3);
+    assert_int_equal(b->flips_untraced, i == 1 ? 7 : 0);
   }
   const mhb_search *search = &read->branch[3].search[0];
   assert_true(search->value == 15 && search->order == 2 && search->starts == 5);

@@ -48,8 +48,10 @@ static void motions_not_followed_are_told(void **state) {
     mhb_search made = {.value = 1, .order = 1, .starts = 10, .found = 1 + i, .untraced = 2 * i};
     assert_ok(mhb_response_note_search(&r->branch[2], &made));
   }
+  r->branch[2].flips_untraced = 5;
   assert_ok(post_analysis_create(r, &analysis));
   post_findings(analysis, &out);
+  assert_has(out.text, "At <b>5 of the points where the period doubles</b> no doubled curve");
   assert_has(out.text,
              ". 20 random starts there found 3. 2 more motions were found, but not "
              "followed along a curve.");
