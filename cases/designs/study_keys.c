@@ -130,7 +130,7 @@ bool study_key_number(case_issues *issues, const study_key *key, const case_node
   return true;
 }
 
-static bool take_values(case_issues *issues, const case_node *node, study_key *key, int n) {
+static bool take_values(case_issues *issues, study_key *key, int n) {
   key->n     = n;
   key->value = calloc((size_t)n + 1, sizeof *key->value);
   if (!key->value) case_issues_no_memory(issues);
@@ -140,7 +140,7 @@ static bool take_values(case_issues *issues, const case_node *node, study_key *k
 static void read_list(case_issues *issues, const case_node *node, study_key *key) {
   if (node->n == 0)
     fault(issues, node, key->path, "the list is empty; expected at least one number");
-  if (node->n == 0 || !take_values(issues, node, key, node->n)) return;
+  if (node->n == 0 || !take_values(issues, key, node->n)) return;
   for (int i = 0; i < node->n; i++) study_key_number(issues, key, &node->child[i], &key->value[i]);
 }
 
@@ -194,7 +194,7 @@ static void read_range(case_issues *issues, const case_node *node, study_key *ke
   }
   int n = key->n;
   if (n == 1) fault(issues, node, key->path, "points: a range has 2 points or more");
-  if (!take_values(issues, node, key, n)) return;
+  if (!take_values(issues, key, n)) return;
   for (int i = 0; i < n; i++) {
     double t = n > 1 ? (double)i / (n - 1) : 0;
     key->value[i] =
@@ -228,7 +228,7 @@ static void read_values(case_issues *issues, const case_node *node, study_key *k
     read_list(issues, node, key);
   } else if (node->kind == CASE_MAPPING) {
     read_range(issues, node, key);
-  } else if (node->kind == CASE_SCALAR && take_values(issues, node, key, 1)) {
+  } else if (node->kind == CASE_SCALAR && take_values(issues, key, 1)) {
     study_key_number(issues, key, node, &key->value[0]);
   } else if (node->kind == CASE_NULL) {
     fault(issues, node, node->key, "expected a list of values or {from, to, points}");
