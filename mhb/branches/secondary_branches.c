@@ -275,8 +275,8 @@ static shb_status trace(branch_search *h, subharmonic_problem *s, mhb_origin ori
   const bool  searched = origin == MHB_FROM_SEARCH;
   const int   most     = searched ? points_left(h) : h->settings->max_points;
   if (h->response->n_branches > MAX_SECONDARY || most < LEAST_POINTS) {
-    if (searched) h->untraced++;
-    if (!searched) branch_at(h, 0)->flips_untraced++;
+    h->untraced += searched;
+    branch_at(h, 0)->flips_untraced += !searched;
     return SHB_OK;
   }
   s->settings.max_points = most;

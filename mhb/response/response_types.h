@@ -174,12 +174,12 @@ typedef struct {
   int             order, n_harmonics; /* nu, m; the response's unless set before the first point */
   int             main;               /* index of the main branch of the same preload */
   bool            searched;           /* main branch: the search beside it is done, if wanted */
-  int             flips_untraced; /* main branch: flips that no doubled curve was looked for at */
-  int             n_searches;     /* main branch; 0: none was made */
-  mhb_search     *search;         /* [n_searches] */
-  char           *reason;         /* end of the branch: "end of range", or why it ended before */
-  bool            complete;       /* the range was covered */
-  mhb_unfinished *unfinished;     /* main branch under way or interrupted; else NULL */
+  int             flips_untraced;     /* main branch: flips whose doubled curve was left out */
+  int             n_searches;         /* main branch; 0: none was made */
+  mhb_search     *search;             /* [n_searches] */
+  char           *reason;     /* end of the branch: "end of range", or why it ended before */
+  bool            complete;   /* the range was covered */
+  mhb_unfinished *unfinished; /* main branch under way or interrupted; else NULL */
   int             n_points, capacity;
   double         *frequency;    /* [point] Hz, of the excitation's first harmonic */
   double         *n0;           /* [point] N, total of the interface, or of the leading one */

@@ -8,8 +8,8 @@
 #include "mesh/base/root.h"
 #include "mhb/numerics/vector.h"
 
-/* The first step along the response curve, the farthest one, and the bracket of the kink, in units
- * of |z|. */
+/* The first step along the response curve, the way in all, and the bracket of the kink, in units of
+ * |z|. */
 static const double FIRST = 1e-7, REACH = 0.03, EXACT = 1e-12;
 
 /* Newton's method for a point of the curve ends at a step of SOLVED |z|. Where steps grow again by
@@ -26,7 +26,9 @@ static const double BALANCED = 1e-8;
 /* A kink found again has its frequency to within this, relative. */
 static const double SAME = 1e-6;
 
-enum { MOST_NEWTON = 30, GROWTH = 4 /* of the bracket */ };
+static const double GROWTH = 2; /* of the steps */
+
+enum { MOST_NEWTON = 30, MOST_STEPS = 40 };
 
 /* One point of the response curve, with derivatives by s at fixed q and by q at fixed s. */
 typedef struct {
@@ -152,13 +154,15 @@ static bool measure_from_left(mhb_kink *k) {
   return settle(k, 0, &k->left);
 }
 
-/* The right point, about this far from the left one; step becomes its distance. Newton's method may
- * miss a point where slip just begins: one behind or before it is taken. */
-static bool step_right(mhb_kink *k, double *step) {
+/* The right point, about this far from the left one, at most the given way; step becomes its
+ * distance. Newton's method may miss a point where slip just begins: one behind or before it is
+ * taken. */
+static bool step_right(mhb_kink *k, double most, double *step) {
   static const double part[] = {1, 4, 16, 0.25, 0.06, 0.015};
   const double        wanted = *step;
   for (size_t i = 0; i < sizeof part / sizeof *part; i++) {
     *step = part[i] * wanted;
+    if (fabs(*step) > most) continue;
     predict(k, &k->left, k->left.s + *step, &k->right);
     if (settle(k, k->left.s + *step, &k->right)) return true;
   }
@@ -169,12 +173,14 @@ static bool step_right(mhb_kink *k, double *step) {
  * curve may bend much where slip begins: s is measured anew from point to point. */
 static bool bracket(mhb_kink *k) {
   const double unit = mhb_norm(k->origin, k->n + 1), way = k->left.slope > 0 ? 1 : -1;
-  for (double step = way * FIRST * unit; fabs(step) < REACH * unit; step *= GROWTH) {
-    if (!step_right(k, &step)) return false;
+  double       step = way * FIRST * unit, left = REACH * unit;
+  for (int i = 0; i < MOST_STEPS && fabs(step) <= left; i++, step *= GROWTH) {
+    if (!step_right(k, left, &step)) return false;
     if (k->right.slope * k->left.slope <= 0) {
       if (way < 0) swap(&k->left, &k->right);
       return true;
     }
+    left -= fabs(step);
     swap(&k->left, &k->right);
     if (!measure_from_left(k)) return false;
   }
@@ -299,9 +305,11 @@ double mhb_kink_maximum(mhb_kink *k, double *x, double by[MHB_PEAK_PARAMETERS]) 
   const double jump = l->slope - r->slope, share = jump > 0 ? l->slope / jump : 0.5;
   double       before[MHB_PEAK_PARAMETERS];
   memcpy(x, l->z, sizeof(double) * (size_t)k->n);
-  side_gradient(k, l, before);
-  side_gradient(k, r, by);
-  for (int i = 0; i < MHB_PEAK_PARAMETERS; i++) by[i] = share * by[i] + (1 - share) * before[i];
+  if (by) {
+    side_gradient(k, l, before);
+    side_gradient(k, r, by);
+    for (int i = 0; i < MHB_PEAK_PARAMETERS; i++) by[i] = share * by[i] + (1 - share) * before[i];
+  }
   return fmin(l->slip, r->slip);
 }
 

@@ -24,7 +24,7 @@ bool mhb_kink_start(mhb_kink *kink, const double *x, mhb_peak_place *at, mhb_end
 
 /* The maximum that was found last, smooth or not.
  *   x   out  [n] its motion
- *   by  out  dA/dq by all parameters. The weights of both sides are those above.
+ *   by  out  dA/dq by all parameters; NULL: not wanted. The weights of both sides are those above.
  *            At a smooth maximum they lead to G = 0, which the law's error hides.
  * Returns the smaller slip share (peak_system.h) of both sides. */
 double mhb_kink_maximum(mhb_kink *kink, double *x, double by[MHB_PEAK_PARAMETERS]);

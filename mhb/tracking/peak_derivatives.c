@@ -132,7 +132,8 @@ static void without_slip(const search *s, mhb_corner *corner, mhb_peak_derivativ
   double       distance = INFINITY;
   pair[n]               = -1; /* the stuck peak */
   for (int i = 0; i <= n; i++) {
-    double omega, amplitude, here = distance_to(s, corner, pair[i], &omega, &amplitude);
+    double omega = s->omega, amplitude = s->found;
+    double here = distance_to(s, corner, pair[i], &omega, &amplitude);
     if (!(here < distance)) continue;
     distance       = here;
     nearest        = i;
@@ -165,13 +166,12 @@ static void take_bracketed(const search *s, mhb_kink *kink, mhb_peak_derivatives
   const bool     found = mhb_kink_start(kink, s->x, &at, &why), on_kink = found && at.margin > JUMP;
   if (!found && why != MHB_END_SMOOTH) return;
   if (!(on_kink ? is_same : is_near)(s, at.omega, at.amplitude)) return;
-  double x[s->balance->n], by[MHB_PEAK_PARAMETERS];
-  if (!(mhb_kink_maximum(kink, x, by) > 0)) return; /* at the corner, or stuck */
+  double x[s->balance->n];
+  if (!(mhb_kink_maximum(kink, x, NULL) > 0)) return; /* at the corner, or stuck */
   out->kind      = on_kink ? MHB_PEAK_KINK : MHB_PEAK_SMOOTH;
   out->omega     = at.omega;
   out->amplitude = at.amplitude;
-  memcpy(s->x, x, sizeof x);
-  if (!s->near.no_derivatives) memcpy(out->by, by, sizeof by);
+  mhb_kink_maximum(kink, s->x, s->near.no_derivatives ? NULL : out->by);
 }
 
 static shb_status bracketed(const search *s, const mhb_tracking *tracking,
@@ -202,6 +202,9 @@ shb_status mhb_peak_derivatives_find(mhb_balance *balance, int output, mhb_size 
                                  .high      = n0,
                                  .frequency = {SHB_TWO_PI * range[0], SHB_TWO_PI * range[1]},
                                  .size      = size};
-  SHB_TRY(bracketed(&s, &tracking, out));
-  return out->kind == MHB_PEAK_UNJUDGED ? find_without_slip(&s, &tracking, out) : SHB_OK;
+  const bool         stuck    = mhb_balance_is_linear(balance);
+  if (stuck) SHB_TRY(find_without_slip(&s, &tracking, out));
+  if (out->kind == MHB_PEAK_STUCK) return SHB_OK;
+  SHB_TRY(bracketed(&s, &tracking, out)); /* where it is, it is higher than the corner */
+  return out->kind == MHB_PEAK_UNJUDGED && !stuck ? find_without_slip(&s, &tracking, out) : SHB_OK;
 }

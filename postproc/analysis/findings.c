@@ -459,14 +459,14 @@ static void put_searches(const post_analysis *analysis, post_buffer *out) {
              "<code>mhb.search</code> does.</li>\n");
 }
 
-/* Doubled curves that were not looked for. */
+/* Doubled curves that were left out. */
 static void put_flips(const mhb_response *r, post_buffer *out) {
   int untraced = 0;
   for (int b = 0; b < r->n_branches; b++) untraced += r->branch[b].flips_untraced;
   if (untraced > 0)
     post_put(out,
-             "<li>At <b>%d of the points where the period doubles</b> no doubled curve was looked "
-             "for: there are too many other curves.</li>\n",
+             "<li>At <b>%d of the points where the period doubles</b> the doubled curve was left "
+             "out: a main curve has at most 24 others beside it.</li>\n",
              untraced);
 }
 

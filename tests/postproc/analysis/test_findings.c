@@ -51,7 +51,8 @@ static void motions_not_followed_are_told(void **state) {
   r->branch[2].flips_untraced = 5;
   assert_ok(post_analysis_create(r, &analysis));
   post_findings(analysis, &out);
-  assert_has(out.text, "At <b>5 of the points where the period doubles</b> no doubled curve");
+  assert_has(out.text,
+             "At <b>5 of the points where the period doubles</b> the doubled curve was left out");
   assert_has(out.text,
              ". 20 random starts there found 3. 2 more motions were found, but not "
              "followed along a curve.");
