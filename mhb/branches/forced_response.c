@@ -512,6 +512,25 @@ static shb_status check_load(const modal_model *model, const mhb_settings *setti
   return SHB_OK;
 }
 
+/* The linear limits and all preloads. They share one copy of the residual matrices in the axes of
+ * the pairs, which grow with the square of the pairs. */
+static shb_status all_curves(sweep *s, const modal_model *model, mhb_settings *settings) {
+  mhb_receptance *alike = NULL;
+  if (!settings->alike && !settings->ring && !settings->run_up) {
+    SHB_TRY(mhb_receptance_create(model, settings, 0, &alike));
+    settings->alike = alike;
+  }
+  shb_status status = linear_limits(model, settings, s->response);
+  if (status == SHB_OK) status = all_preloads(s, model);
+  if (status == SHB_OK) status = lasting_motion(s, model);
+  if (status == SHB_OK) s->response->unfinished = shb_interrupted() || settings->ring;
+  if (status == SHB_OK) status = take_curves(s);
+  if (status == SHB_OK) status = mhb_modal_motion_keep(model, settings, s->response);
+  if (alike) settings->alike = NULL;
+  mhb_receptance_destroy(alike);
+  return status;
+}
+
 shb_status mhb_forced_response(const modal_model *model, const mhb_settings *asked,
                                const char *path, const shb_provenance *provenance,
                                shb_progress *progress, mhb_response **out) {
@@ -538,12 +557,7 @@ shb_status mhb_forced_response(const modal_model *model, const mhb_settings *ask
       s.response && s.preload ? SHB_OK : shb_fail(SHB_ERR_IO, __FILE__, __LINE__, "out of memory");
   if (status == SHB_OK) s.response->unfinished = true;
   if (status == SHB_OK) status = mhb_response_describe(s.response, model, settings);
-  if (status == SHB_OK) status = linear_limits(model, settings, s.response);
-  if (status == SHB_OK) status = all_preloads(&s, model);
-  if (status == SHB_OK) status = lasting_motion(&s, model);
-  if (status == SHB_OK) s.response->unfinished = shb_interrupted() || settings->ring;
-  if (status == SHB_OK) status = take_curves(&s);
-  if (status == SHB_OK) status = mhb_modal_motion_keep(model, settings, s.response);
+  if (status == SHB_OK) status = all_curves(&s, model, &first);
   if (status == SHB_OK && settings->face) {
     s.response->face = settings->face;
     status           = mhb_face_wear_keep(model, settings, s.response);

@@ -120,6 +120,9 @@ typedef struct {
   /* NULL: equal blades that move as one wave. Else every blade has its own model, and the modal
    * model of the balance is that of the whole ring (mhb/mistuning/mistuned_ring.h). */
   const struct mhb_mistuned_ring *ring;
+  /* A receptance of the same model. Receptances with its axes of the pairs use its residual
+   * matrices; it must outlive them. NULL: each makes its own. */
+  const struct mhb_receptance *alike;
   /* Equal groups of consecutive pairs, each a contact with the stiffness and preload of the case.
    * 0, 1: all pairs are one contact. */
   int                              contacts;

@@ -48,10 +48,16 @@ static void set_single(mhb_cyclic_flexibility *f) {
 }
 
 const float *mhb_cyclic_flexibility_single(mhb_cyclic_flexibility *f) {
-  if (f->single) return f->single;
-  f->single = shb_arena_take(&f->arena, (size_t)f->n * (size_t)f->n, sizeof(float));
-  set_single(f);
-  return f->single;
+  const float *single = NULL;
+#pragma omp critical(single_flexibility)
+  {
+    if (!f->single) {
+      f->single = shb_arena_take(&f->arena, (size_t)f->n * (size_t)f->n, sizeof(float));
+      set_single(f);
+    }
+    single = f->single;
+  }
+  return single;
 }
 
 shb_status mhb_cyclic_flexibility_create(const double *matrix, int nc, const double *T0,

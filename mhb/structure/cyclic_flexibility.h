@@ -52,7 +52,7 @@ void mhb_cyclic_flexibility_add_product(const mhb_cyclic_flexibility *flexibilit
 /* out[n][n] <- C + sign C^T */
 void mhb_cyclic_flexibility_both(const mhb_cyclic_flexibility *flexibility, int sign, double *out);
 
-/* self[n][n] in single precision, made by the first call. NULL: no memory. */
+/* self[n][n] in single precision, made by the first call, of whatever thread. NULL: no memory. */
 const float *mhb_cyclic_flexibility_single(mhb_cyclic_flexibility *flexibility);
 
 #endif

@@ -155,11 +155,22 @@ static shb_status find_waves(const mhb_receptance *r, const mhb_settings *settin
   return status;
 }
 
+/* The residual matrices that settings->alike lends; NULL: it has none that fit. */
+static const mhb_residual_terms *terms_alike(const mhb_receptance *r, const mhb_settings *s) {
+  const mhb_receptance *of = s->alike;
+  if (!of || of->ring || of->at || of->model != r->model) return NULL;
+  const bool same = of->part->relative.sides == (s->to_ground ? 1 : 2) &&
+                    memcmp(of->T0, r->T0, 3 * (size_t)r->n * sizeof *r->T0) == 0;
+  return same ? of->residual_terms : NULL;
+}
+
 static shb_status make_part(mhb_receptance *r, const mhb_settings *settings,
                             const mhb_residual_terms *like) {
   const mhb_relative relative  = {r->n, settings->to_ground ? 1 : 2, r->T0};
-  mhb_harmonics      harmonics = {
-           .nu = r->nu, .n_harmonics = r->n_harmonics, .phase = r->phase, .like = like};
+  mhb_harmonics      harmonics = {.nu          = r->nu,
+                                  .n_harmonics = r->n_harmonics,
+                                  .phase       = r->phase,
+                                  .like        = like ? like : terms_alike(r, settings)};
   if (!settings->nodal_diameters)
     return mhb_modal_part_create(r->model, relative, &harmonics, &r->part);
   modal_wave *wave = NULL;

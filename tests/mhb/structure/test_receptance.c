@@ -227,6 +227,45 @@ static void one_beside_another_has_the_same_numbers(void **state) {
   modal_model_free(&model);
 }
 
+/* Receptances of the same model and axes use the residual matrices of one of them, with the same
+ * numbers. Other axes, another model and contact to the ground have their own. */
+static void receptances_alike_share_their_matrices(void **state) {
+  (void)state;
+  modal_model     model, other;
+  mhb_receptance *lender, *alike, *alone, *apart;
+  mhb_settings    s = random_settings(2), free = s;
+  random_model(3, WITH_LEFT | WITH_RESIDUAL | WITH_RESIDUAL_MODES, 31, &model);
+  random_model(3, WITH_LEFT | WITH_RESIDUAL | WITH_RESIDUAL_MODES, 31, &other);
+  assert_ok(mhb_receptance_create(&model, &s, 0, &lender));
+  s.alike = lender;
+  assert_ok(mhb_receptance_create(&model, &s, 4, &alike));
+  assert_ok(mhb_receptance_create(&model, &free, 4, &alone));
+  const void *lent = lender->residual_terms->contact[0];
+  assert_ptr_equal(alike->residual_terms->contact[0], lent);
+  assert_ptr_not_equal(alone->residual_terms->contact[0], lent);
+  mhb_receptance_at(alike, 1.07, 4);
+  mhb_receptance_at(alone, 1.07, 4);
+  const size_t n = (size_t)lender->n;
+  assert_memory_equal(alike->R, alone->R, 5 * n * n * sizeof(double complex));
+  mhb_receptance_destroy(alike);
+  assert_ok(mhb_receptance_create(&model, &s, 4, &alike)); /* they are still there */
+  mhb_receptance_at(alike, 1.07, 4);
+  assert_memory_equal(alike->R, alone->R, 5 * n * n * sizeof(double complex));
+  for (int i = 0; i < 3; i++) {
+    mhb_settings differs = s;
+    if (i == 0) differs.has_psi = true, differs.psi = 0.1;
+    if (i == 1) differs.to_ground = true;
+    assert_ok(mhb_receptance_create(i == 2 ? &other : &model, &differs, 1, &apart));
+    assert_ptr_not_equal(apart->residual_terms->contact[0], lent);
+    mhb_receptance_destroy(apart);
+  }
+  mhb_receptance_destroy(alike);
+  mhb_receptance_destroy(alone);
+  mhb_receptance_destroy(lender);
+  modal_model_free(&model);
+  modal_model_free(&other);
+}
+
 /* r_cc is complex symmetric, so that reversing the wave transposes R. It takes energy out:
  * Im p^H R p <= 0. */
 static void receptance_is_reciprocal_and_passive(void **state) {
@@ -412,6 +451,7 @@ int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(condensation_is_the_dense_sum),
       cmocka_unit_test(one_beside_another_has_the_same_numbers),
+      cmocka_unit_test(receptances_alike_share_their_matrices),
       cmocka_unit_test(receptance_is_reciprocal_and_passive),
       cmocka_unit_test(slopes_are_derivatives),
       cmocka_unit_test(subharmonics_close_around_the_ring),
