@@ -21,7 +21,7 @@ shb_status mhb_linear_exponents_create(const mhb_modal_structure *s, mhb_linear_
   } else {
     x->A     = shb_arena_take(&x->arena, 4 * m * m, sizeof *x->A);
     x->left  = shb_arena_take(&x->arena, n3 * m, sizeof *x->left);
-    x->R     = shb_arena_take(&x->arena, n3 * n3, sizeof *x->R);
+    x->R     = shb_arena_take(&x->arena, 3 * n3, sizeof *x->R);
     x->S     = shb_arena_take(&x->arena, n3 * (n3 + m), sizeof *x->S);
     x->work  = shb_arena_take(&x->arena, 40 * m, sizeof *x->work);
     x->rwork = shb_arena_take(&x->arena, 4 * m, sizeof *x->rwork);
@@ -63,15 +63,17 @@ static void relative_shapes(mhb_linear_exponents *x, int d, double complex step)
   }
 }
 
-/* Residual flexibility R of nodal diameter d. */
-static void relative_flexibility(mhb_linear_exponents *x, int d, double complex step) {
-  const mhb_modal_structure *s      = x->structure;
-  const size_t               square = 9 * (size_t)s->pairs * (size_t)s->pairs;
-  memset(x->R, 0, sizeof *x->R * square);
+/* Rows of contact a in the residual flexibility R of nodal diameter d. */
+static void relative_flexibility(mhb_linear_exponents *x, int a, int d, double complex step) {
+  const mhb_modal_structure *s    = x->structure;
+  const size_t               rows = 3 * (size_t)s->pairs, square = rows * rows, count = 3 * rows;
+  const size_t               from = (size_t)a * count;
+  memset(x->R, 0, sizeof *x->R * count);
   if (s->disc && s->disc->flexibility)
-    memcpy(x->R, s->disc->flexibility + (size_t)d * square, sizeof *x->R * square);
-  for (size_t i = 0; i < square && s->block; i++)
-    x->R[i] = s->block[i] + step * s->block[square + i] + conj(step) * s->block[2 * square + i];
+    memcpy(x->R, s->disc->flexibility + (size_t)d * square + from, sizeof *x->R * count);
+  for (size_t i = from; i < from + count && s->block; i++)
+    x->R[i - from] =
+        s->block[i] + step * s->block[square + i] + conj(step) * s->block[2 * square + i];
 }
 
 /* Element c of the row K of contact a times [R B], c < n3 + modes. */
@@ -79,20 +81,19 @@ static double complex stiffness_row(const mhb_linear_exponents *x, const double 
                                     int c) {
   int            n3 = 3 * x->structure->pairs, m = x->structure->modes;
   double complex sum = 0;
-  for (int k = 0; k < 3; k++) {
-    int row = 3 * a + k;
-    sum += K[k] * (c < n3 ? x->R[row * n3 + c] : x->left[row * m + c - n3]);
-  }
+  for (int k = 0; k < 3; k++)
+    sum += K[k] * (c < n3 ? x->R[k * n3 + c] : x->left[(3 * a + k) * m + c - n3]);
   return sum;
 }
 
-/* S B into the columns n3.. of x->S, from I + diag(kv, Ku) R in those before. Returns 0 if
- * singular. */
-static int contact_stiffness(mhb_linear_exponents *x) {
+/* S B of nodal diameter d into the columns n3.. of x->S, from I + diag(kv, Ku) R in those before.
+ * Returns 0 if singular. */
+static int contact_stiffness(mhb_linear_exponents *x, int d, double complex step) {
   int    n3 = 3 * x->structure->pairs, m = x->structure->modes;
   size_t rows = (size_t)n3;
   double K[3][3];
   for (int row = 0; row < n3; row++) {
+    if (row % 3 == 0) relative_flexibility(x, row / 3, d, step);
     stiffness(x->state[row / 3], &x->law[row / 3], K);
     for (int c = 0; c < n3 + m; c++)
       x->S[(size_t)c * rows + (size_t)row] = (c == row) + stiffness_row(x, K[row % 3], row / 3, c);
@@ -110,8 +111,7 @@ static int nodal_diameter(mhb_linear_exponents *x, int d) {
   const double              *zeta    = s->disc ? s->disc->zeta + d * m : s->zeta;
   const mhb_coupled_modes   *coupled = s->disc ? s->disc->coupled : NULL;
   relative_shapes(x, d, step);
-  relative_flexibility(x, d, step);
-  if (!contact_stiffness(x)) return 0;
+  if (!contact_stiffness(x, d, step)) return 0;
   const double complex *SB = x->S + (size_t)n3 * (size_t)n3;
   memset(x->A, 0, sizeof *x->A * (size_t)(n * n));
   for (int i = 0; i < m; i++) {

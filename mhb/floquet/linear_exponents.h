@@ -25,8 +25,9 @@ typedef struct {
   int                        orbits; /* contacts with a state of their own: pairs; mistuned: all */
   int                       *state;  /* [orbit] */
   mhb_law                   *law;    /* [orbit] */
-  double complex            *exponent;                /* [n] 1/s */
-  double complex            *A, *left, *R, *S, *work; /* of one nodal diameter */
+  double complex            *exponent;            /* [n] 1/s */
+  double complex            *A, *left, *S, *work; /* of one nodal diameter */
+  double complex            *R;                   /* [3][3 pairs] its rows of one contact */
   double                    *ring; /* mistuned, in their place: A [n][n], then [n3][n3 + n/2] and
                                       [10 n] */
   double                    *rwork;
