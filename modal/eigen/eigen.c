@@ -417,13 +417,19 @@ PetscErrorCode modal_eigen_solve(const fem_system *system, const modal_eigen_set
   PetscFunctionReturn(0);
 }
 
+PetscErrorCode modal_eigen_drop_factor(modal_eigen *eigen) {
+  PetscFunctionBeginUser;
+  PetscCall(EPSDestroy(&eigen->eps));
+  PetscCall(fem_factor_destroy(&eigen->factor));
+  PetscFunctionReturn(0);
+}
+
 PetscErrorCode modal_eigen_destroy(modal_eigen *eigen) {
   PetscFunctionBeginUser;
   PetscCall(PetscFree2(eigen->lambda, eigen->eigen_residual));
   PetscCall(MatDestroy(&eigen->phi));
   PetscCall(MatDestroy(&eigen->m_phi));
-  PetscCall(EPSDestroy(&eigen->eps));
-  PetscCall(fem_factor_destroy(&eigen->factor));
+  PetscCall(modal_eigen_drop_factor(eigen));
   memset(eigen, 0, sizeof *eigen);
   PetscFunctionReturn(0);
 }

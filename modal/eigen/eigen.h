@@ -60,6 +60,9 @@ PetscErrorCode modal_eigen_project_out(const fem_system *system, const modal_eig
 /* A dense matrix of n columns, distributed like the system's vectors. */
 PetscErrorCode modal_dense_create(const fem_system *system, int n, Mat *X);
 
+/* Free the factor, the largest part. Modes stay; nothing can be solved any more. */
+PetscErrorCode modal_eigen_drop_factor(modal_eigen *eigen);
+
 PetscErrorCode modal_eigen_destroy(modal_eigen *eigen); /* also on a zeroed struct */
 
 #endif

@@ -182,14 +182,6 @@ static void note(const work *w, shb_progress *progress) {
                       modal_check_frequency(&w->out->check[i]), w->out->check[i].method);
 }
 
-/* Free the factor of nodal diameter 0, the largest part of a result. */
-static PetscErrorCode drop_factor(modal_result *first) {
-  PetscFunctionBeginUser;
-  PetscCall(EPSDestroy(&first->eigen.eps));
-  PetscCall(fem_factor_destroy(&first->eigen.factor));
-  PetscFunctionReturn(0);
-}
-
 static shb_status allocate(modal_sector *out, work *w) {
   const size_t n = (size_t)out->models.n;
   out->check     = calloc(n, sizeof *out->check);
@@ -206,7 +198,7 @@ static shb_status solve(work *w, shb_progress *progress, modal_result *first) {
   SHB_TRY(allocate(w->out, w));
   w->out->models.model[0] = first->model;
   w->out->check[0]        = first->eigen.check;
-  FEM_PETSC(drop_factor(first));
+  FEM_PETSC(modal_eigen_drop_factor(&first->eigen));
   if (!has_columns(first, w->out->models.n)) first->residual.n = 0;
   FEM_PETSC(fem_sector_create(w->body, w->state, &first->system, &w->matrices));
   SHB_TRY(fem_sector_analyse(&w->matrices, &w->order));

@@ -96,14 +96,6 @@ static PetscErrorCode copy_shapes(const modal_result *r, Mat *before) {
   PetscFunctionReturn(0);
 }
 
-/* Free the factor, the largest part of a result. */
-static PetscErrorCode drop_factor(modal_result *r) {
-  PetscFunctionBeginUser;
-  PetscCall(EPSDestroy(&r->eigen.eps));
-  PetscCall(fem_factor_destroy(&r->eigen.factor));
-  PetscFunctionReturn(0);
-}
-
 /* All that the speeds of a range share. */
 typedef struct {
   MPI_Comm            comm;
@@ -154,7 +146,7 @@ static shb_status solve_speed(speed_work *r, int s, modal_result *result) {
   if (status == SHB_OK) status = fem_petsc_status(store_overlap(r->shapes[0], s, &now, out));
   if (status == SHB_OK && s == 0) status = fem_petsc_status(copy_shapes(&now, &r->shapes[0]));
   if (status == SHB_OK) status = fem_petsc_status(copy_shapes(&now, &r->shapes[1]));
-  if (status == SHB_OK) status = fem_petsc_status(drop_factor(&now));
+  if (status == SHB_OK) status = fem_petsc_status(modal_eigen_drop_factor(&now.eigen));
   if (status == SHB_OK && r->sector) status = solve_sector(r, &here, s, &now);
   if (status == SHB_OK) out->model[s] = now.model; /* moved, or shared with result */
   if (status == SHB_OK && here.speed == r->settings.speed) {

@@ -187,6 +187,7 @@ static shb_status run(MPI_Comm comm, int rank, const char *out_path, const mesh_
     status = modal_sector_solve_enough(comm, mesh, settings, progress, &result, &sector);
   else
     status = modal_solve(comm, mesh, settings, progress, &result);
+  if (status == SHB_OK) status = fem_petsc_status(modal_eigen_drop_factor(&result.eigen));
   if (status == SHB_OK) status = gather_shapes(&result, rank, &of.shape);
   if (status == SHB_OK)
     status = modal_agree(comm, rank == 0 ? find_stresses(mesh, settings, &result, &of) : SHB_OK);

@@ -69,6 +69,9 @@ static void steel_bar(void **state) {
       if (i < 3) check_close(frequency, timoshenko[i], 1e-2, "frequency against Timoshenko");
     }
     check_modes(&system, &eigen);
+    assert_int_equal(modal_eigen_drop_factor(&eigen), 0);
+    assert_null(eigen.factor);
+    check_modes(&system, &eigen); /* they do without the factor */
     release(&system, &eigen);
   }
   mesh_fe_free(&mesh);
