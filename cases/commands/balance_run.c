@@ -9,7 +9,9 @@
 #include "mesh/base/progress.h"
 #include "mesh/base/publish.h"
 #include "mhb/amplification/ring_response.h"
+#include "mhb/balance/balance.h"
 #include "mhb/branches/forced_response.h"
+#include "mhb/branches/lasting_motion.h"
 #include "mhb/tracking/tracked_response.h"
 
 mhb_sampling balance_sampling(const case_file *file) {
@@ -85,6 +87,26 @@ static void note_points(shb_progress *progress, const case_file *file, const cas
                       model->model.n_pairs, file->points_tolerance);
 }
 
+/* With many pairs the sweep reads residual matrices in the axes of the pairs, which alike lends. R3
+ * is released, and so are R and R2 where no motion that lasts is computed from them. */
+static shb_status release_terms(case_model *m, mhb_receptance **alike) {
+  if (m->model.n_pairs < MHB_MANY_PAIRS || m->disc || m->run_up) return SHB_OK;
+  SHB_TRY(mhb_receptance_create(&m->model, &m->settings, 0, alike));
+  m->settings.alike = *alike;
+  return modal_model_release_terms(&m->model, mhb_lasting_refusal(&m->model, &m->settings) ? 0 : 2);
+}
+
+static shb_status sweep(case_model *m, const char *output, const shb_provenance *provenance,
+                        shb_progress *progress, mhb_response **response) {
+  mhb_receptance *alike  = NULL;
+  shb_status      status = release_terms(m, &alike);
+  if (status == SHB_OK)
+    status = mhb_forced_response(&m->model, &m->settings, output, provenance, progress, response);
+  m->settings.alike = NULL;
+  mhb_receptance_destroy(alike);
+  return status;
+}
+
 static shb_status solve(const case_file *file, const char *modal, char *settings,
                         const char *output, const mhb_sample_crew *crew, shb_progress *progress) {
   case_model     model;
@@ -104,8 +126,7 @@ static shb_status solve(const case_file *file, const char *modal, char *settings
     status =
         mhb_ring_response(&model.settings, &sampling, output, &provenance, progress, &response);
   else if (status == SHB_OK)
-    status = mhb_forced_response(&model.model, &model.settings, output, &provenance, progress,
-                                 &response);
+    status = sweep(&model, output, &provenance, progress, &response);
   shb_progress_clear(progress);
   if (response) summarise(progress, response);
   shb_progress_note(progress, "%.2f s in all", shb_seconds() - progress->started);

@@ -27,7 +27,7 @@ static double series_ratio(const modal_model *model, double w) {
   for (int i = 0; i < n; i++) {
     double error = modal_series_error(model, w, i);
     if (error < 0) return w * w / (top * top);
-    double term = weight * model->residual_fourth[(size_t)i * (size_t)(n + 1)];
+    double term = weight * modal_series_diagonal(model, 2, i);
     if (term > 0) worst = fmax(worst, error / term);
   }
   return worst;

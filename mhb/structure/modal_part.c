@@ -102,7 +102,7 @@ static shb_status make(mhb_modal_part *b, const mhb_harmonics *harmonics) {
     b->G          = shb_arena_take(&b->arena, K * m * m, sizeof *b->G);
     b->gyroscopic = shb_arena_take(&b->arena, K, sizeof *b->gyroscopic);
   }
-  if (b->arena.failed) return SHB_ERR_IO;
+  SHB_CHECK(!b->arena.failed, SHB_ERR_IO, "out of memory for the receptance");
   for (size_t k = 0; k < K; k++)
     b->wave[k] = harmonics->wave ? harmonics->wave[k] : modal_wave_real(b->model);
   mhb_harmonics own = *harmonics;
@@ -114,16 +114,17 @@ shb_status mhb_modal_part_create(const modal_model *model, mhb_relative relative
                                  const mhb_harmonics *harmonics, mhb_modal_part **out) {
   mhb_modal_part *b = calloc(1, sizeof *b);
   SHB_CHECK(b, SHB_ERR_IO, "out of memory");
-  *b = (mhb_modal_part){.model       = model,
-                        .relative    = relative,
-                        .n           = relative.n,
-                        .n_modes     = model->n_modes,
-                        .n_harmonics = harmonics->n_harmonics,
-                        .nu          = harmonics->nu,
-                        .phase       = harmonics->phase};
-  if (make(b, harmonics) != SHB_OK) {
+  *b                      = (mhb_modal_part){.model       = model,
+                                             .relative    = relative,
+                                             .n           = relative.n,
+                                             .n_modes     = model->n_modes,
+                                             .n_harmonics = harmonics->n_harmonics,
+                                             .nu          = harmonics->nu,
+                                             .phase       = harmonics->phase};
+  const shb_status status = make(b, harmonics);
+  if (status != SHB_OK) {
     mhb_modal_part_destroy(b);
-    SHB_FAIL(SHB_ERR_IO, "out of memory for the receptance");
+    return status;
   }
   set(b);
   *out = b;

@@ -35,7 +35,7 @@ typedef struct {
 } mhb_modal_part;
 
 /* model, relative.T0 and the arrays of harmonics must outlive it. harmonics->wave NULL: all have
- * the model. SHB_ERR_IO: no memory. */
+ * the model. Errors: as mhb_residual_terms_create. */
 shb_status mhb_modal_part_create(const modal_model *model, mhb_relative relative,
                                  const mhb_harmonics *harmonics, mhb_modal_part **part);
 void       mhb_modal_part_destroy(mhb_modal_part *part);

@@ -22,6 +22,14 @@ static double shape_of(const mhb_receptance *r, int side, int row, int mode) {
   return side ? -sum : sum;
 }
 
+/* Residual flexibility of a model that has released it: the first side has the sum of both. */
+static double lent_flexibility(const mhb_receptance *r, int s, int row, int t, int column) {
+  const mhb_cyclic_flexibility *f = r->residual_terms->contact[0];
+  const size_t                  n = (size_t)r->n, at = (size_t)row * n + (size_t)column;
+  if (s == t) return s ? 0 : f->self[at];
+  return s ? f->coupling[at] : f->coupling[(size_t)column * n + (size_t)row];
+}
+
 /* Motion on side s by a unit contact force on side t of the same blade: modes from `first` on, and
  * residual flexibility. */
 static double flexibility(const mhb_receptance *r, int s, int row, int t, int column, int first) {
@@ -34,6 +42,8 @@ static double flexibility(const mhb_receptance *r, int s, int row, int t, int co
            r->T0[(column / 3) * 9 + k % 3 * 3 + column % 3] *
            model->residual_flexibility[(size_t)to * (size_t)nc + (size_t)by];
   }
+  if (!model->residual_flexibility && r->residual_terms->contact[0])
+    sum = lent_flexibility(r, s, row, t, column);
   if (s != t) sum = -sum;
   for (int i = first; i < r->n_modes; i++) {
     double w = SHB_TWO_PI * model->frequency[i];
@@ -109,7 +119,9 @@ static const mhb_receptance *blade_of(const mhb_receptance *r, int blade) {
 static void take_arrays(const mhb_receptance *r, bool whole, mhb_modal_structure *s) {
   const mhb_receptance *blade = blade_of(r, 0);
   const size_t n = 3 * (size_t)s->contacts, m = (size_t)s->modes, side = m * 3 * (size_t)s->pairs;
-  const bool   flexible = blade->model->residual_flexibility || s->modes < blade->n_modes;
+  const modal_model *model = blade->model;
+  const bool         flexible =
+      model->residual_flexibility || model->residual_diagonal || s->modes < blade->n_modes;
   if (!s->disc) {
     s->omega = shb_arena_take(&s->arena, m * (s->mistuned ? (size_t)s->blades : 1), sizeof(double));
     s->zeta  = shb_arena_take(&s->arena, m, sizeof(double));

@@ -143,6 +143,9 @@ void mhb_residual_terms_update(mhb_residual_terms *l) {
 
 static shb_status make(mhb_residual_terms *l, const mhb_residual_terms *like, bool own) {
   const terms from = terms_of(l->model, l->model);
+  SHB_CHECK(like || !l->model->residual_diagonal, SHB_ERR_INPUT,
+            "the model has released its residual matrices, and no receptance with the same axes of "
+            "the pairs lends them");
   SHB_CHECK(take_arrays(l, &from, own), SHB_ERR_IO, "out of memory for the residual terms");
   l->borrowed = like != NULL;
   for (int t = 0; t < MODAL_TERMS && like; t++) l->contact[t] = like->contact[t];

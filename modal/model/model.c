@@ -720,6 +720,24 @@ shb_status modal_model_read(const char *path, modal_model *model) {
   return status;
 }
 
+shb_status modal_model_release_terms(modal_model *model, int first) {
+  enum { TERMS = 3 };
+  double **const term[TERMS] = {&model->residual_flexibility, &model->residual_inertia,
+                                &model->residual_fourth};
+  const size_t   n           = (size_t)modal_model_contact_dofs(model);
+  if (model->residual_diagonal || !*term[0] || !*term[1] || !*term[2]) return SHB_OK;
+  double *diagonal = malloc((TERMS * n + 1) * sizeof *diagonal);
+  SHB_CHECK(diagonal, SHB_ERR_IO, "out of memory for the residual terms");
+  for (size_t t = 0; t < TERMS; t++)
+    for (size_t i = 0; i < n; i++) diagonal[t * n + i] = (*term[t])[i * (n + 1)];
+  model->residual_diagonal = diagonal;
+  for (int t = first; t < TERMS; t++) {
+    free(*term[t]);
+    *term[t] = NULL;
+  }
+  return SHB_OK;
+}
+
 void modal_model_free(modal_model *model) {
   if (!model) return;
   for (int i = 0; model->probe_name && i < model->n_probes; i++) free(model->probe_name[i]);
@@ -735,6 +753,7 @@ void modal_model_free(modal_model *model) {
                   model->residual_flexibility,
                   model->residual_inertia,
                   model->residual_fourth,
+                  model->residual_diagonal,
                   model->residual_frequency,
                   model->residual_shape,
                   model->residual_force,

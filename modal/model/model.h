@@ -33,11 +33,14 @@ typedef struct {
   double *residual_flexibility; /* [n_contact][n_contact] m/N, or NULL */
   double *residual_inertia;     /* [n_contact][n_contact] m s2/N, or NULL: coefficient of omega^2 */
   double *residual_fourth;      /* [n_contact][n_contact] m s4/N, or NULL: coefficient of omega^4 */
-  int     n_residual;           /* residual modes that stand for the modes left out; 0: none */
-  double *residual_frequency;   /* [r] Hz, ascending */
-  double *residual_shape;       /* [n_contact][r] kg^-1/2 */
-  double complex *residual_force; /* [K+1][r] N kg^-1/2 */
-  double         *residual_probe; /* [3 q][r] kg^-1/2 */
+  /* [term][n_contact] of R, R2, R3: a contact dof with itself, where matrices are released; NULL:
+   * none is */
+  double         *residual_diagonal;
+  int             n_residual; /* residual modes that stand for the modes left out; 0: none */
+  double         *residual_frequency; /* [r] Hz, ascending */
+  double         *residual_shape;     /* [n_contact][r] kg^-1/2 */
+  double complex *residual_force;     /* [K+1][r] N kg^-1/2 */
+  double         *residual_probe;     /* [3 q][r] kg^-1/2 */
   /* Order r of the tail a w^2r + b w^(2r+2) + ... that terms and residual modes leave out. */
   int             tail_order;
   double         *contact_tail;  /* [n_contact][2] a, b of a contact dof with itself, or NULL */
@@ -100,6 +103,11 @@ shb_status modal_model_read_backward_at(hid_t at, const modal_model *model, moda
  * SHB_ERR_IO missing, not HDF5, or truncated; SHB_ERR_INPUT foreign format, missing dataset, wrong
  * shape, value not finite, frequency not positive or descending, damping outside [0, 1). */
 shb_status modal_model_read(const char *path, modal_model *model);
+
+/* Free the residual matrices from a term on (0 R, 1 R2, 2 R3). Their diagonals are kept, for the
+ * error estimate of the series. All that is made of the matrices must be made before. Nothing
+ * happens without all three of them. SHB_ERR_IO: no memory; the model is as before. */
+shb_status modal_model_release_terms(modal_model *model, int first);
 
 void modal_model_free(modal_model *model);
 

@@ -18,7 +18,15 @@ static double eigenvalue(const modal_model *model, int i) {
 }
 
 bool modal_series_has_fourth(const modal_model *model) {
-  return model->residual_flexibility && model->residual_inertia && model->residual_fourth;
+  return model->residual_diagonal ||
+         (model->residual_flexibility && model->residual_inertia && model->residual_fourth);
+}
+
+double modal_series_diagonal(const modal_model *model, int term, int dof) {
+  const double *const matrix[] = {model->residual_flexibility, model->residual_inertia,
+                                  model->residual_fourth};
+  const size_t        n = (size_t)modal_model_contact_dofs(model), i = (size_t)dof;
+  return matrix[term] ? matrix[term][i * (n + 1)] : model->residual_diagonal[(size_t)term * n + i];
 }
 
 /* Below this share of c the n-th power is lost in rounding: x = s. */
@@ -130,12 +138,11 @@ static double error_of(const modal_model *model, double omega, const moments *of
 }
 
 double modal_series_error(const modal_model *model, double omega, int dof) {
-  const size_t n = (size_t)modal_model_contact_dofs(model), p = (size_t)dof;
   if (!modal_series_has_fourth(model) || !model->contact_tail) return -1;
-  const size_t  at = p * (n + 1), r = (size_t)model->n_residual;
-  const moments of = {
-      {model->residual_flexibility[at], model->residual_inertia[at], model->residual_fourth[at]},
-      {model->contact_tail[2 * p], model->contact_tail[2 * p + 1]},
-      r ? model->residual_shape + p * r : NULL};
+  const size_t  p = (size_t)dof, r = (size_t)model->n_residual;
+  const moments of = {{modal_series_diagonal(model, 0, dof), modal_series_diagonal(model, 1, dof),
+                       modal_series_diagonal(model, 2, dof)},
+                      {model->contact_tail[2 * p], model->contact_tail[2 * p + 1]},
+                      r ? model->residual_shape + p * r : NULL};
   return error_of(model, omega, &of);
 }

@@ -47,8 +47,12 @@ double modal_series_mode(const modal_model *model, int i, const modal_series *se
 void modal_series_modes(const modal_model *model, const modal_series *series, double *weight,
                         double *slope);
 
-/* True if the model holds R, R2 and R3: R3 is used together with R and R2 only. */
+/* True if the model holds R, R2 and R3, or has released some of them. R3 is used together with R
+ * and R2 only. */
 bool modal_series_has_fourth(const modal_model *model);
+
+/* R, R2 or R3 (term 0, 1, 2) of a contact dof with itself; the model has all three. */
+double modal_series_diagonal(const modal_model *model, int term, int dof);
 
 /* Estimated error of the receptance of contact dof p with itself, m/N: the tail of the modes left
  * out plus the effect of x < s. It is at most R. It is -1 if the model has no tail. With the tail a

@@ -152,9 +152,19 @@ static shb_status walk(mhb_arclength *path, mhb_truncation *truncation, face_row
   return SHB_OK;
 }
 
+/* The model keeps no residual matrices, as in a sweep without motions that last. */
+static shb_status read_face(const char *file, modal_model *model, mhb_settings *s,
+                            mhb_receptance **alike) {
+  SHB_TRY(modal_model_read(file, model));
+  SHB_TRY(mhb_receptance_create(model, s, 0, alike));
+  s->alike = *alike;
+  return modal_model_release_terms(model, 0);
+}
+
 static shb_status run_face(const char *file, face_row *row) {
   modal_model     model;
-  mhb_settings    s = contact_faces_settings();
+  mhb_receptance *alike = NULL;
+  mhb_settings    s     = contact_faces_settings();
   mhb_balance    *b;
   mhb_arclength  *path;
   mhb_truncation *truncation;
@@ -162,7 +172,7 @@ static shb_status run_face(const char *file, face_row *row) {
   double          low = SHB_TWO_PI * s.frequency[0], started = processor_ms();
   omp_set_num_threads(1); /* processor time of one thread */
   openblas_set_num_threads(1);
-  SHB_TRY(modal_model_read(file, &model));
+  SHB_TRY(read_face(file, &model, &s, &alike));
   SHB_TRY(mhb_balance_create(&model, &s, &b));
   mhb_balance_set_preload(b, s.n0[0]);
   SHB_TRY(mhb_balance_curve_create(b, low, SHB_TWO_PI * s.frequency[1], &path));
@@ -180,6 +190,7 @@ static shb_status run_face(const char *file, face_row *row) {
   mhb_truncation_destroy(truncation);
   mhb_arclength_destroy(path);
   mhb_balance_destroy(b);
+  mhb_receptance_destroy(alike);
   modal_model_free(&model);
   return status;
 }

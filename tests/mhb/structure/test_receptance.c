@@ -11,6 +11,7 @@
 #include <cmocka.h>
 
 #include "mesh/base/constants.h"
+#include "mhb/structure/modal_structure.h"
 #include "mhb/structure/receptance.h"
 #include "tests/support/check.h"
 #include "tests/support/random_model.h"
@@ -266,6 +267,41 @@ static void receptances_alike_share_their_matrices(void **state) {
   modal_model_free(&other);
 }
 
+/* A model that has released its residual matrices works by those lent: the same bits, and the same
+ * blocks of the structure in modal coordinates. Nobody else can use it. */
+static void released_matrices_are_lent(void **state) {
+  (void)state;
+  for (int sides = 1; sides <= 2; sides++) {
+    modal_model         model;
+    mhb_receptance     *lender, *before, *after;
+    mhb_modal_structure one, other;
+    mhb_settings        s = random_settings(2);
+    s.to_ground           = sides == 1;
+    random_model(3, WITH_LEFT | WITH_RESIDUAL | WITH_NORMALS, 31, &model);
+    assert_ok(mhb_receptance_create(&model, &s, 0, &lender));
+    assert_ok(mhb_receptance_create(&model, &s, 4, &before));
+    assert_ok(mhb_modal_structure_create(before, &s, 4, MHB_STRUCTURE_LEAN, &one));
+    mhb_receptance_at(before, 1.07, 4);
+    assert_ok(modal_model_release_terms(&model, 0));
+    assert_null(model.residual_flexibility);
+    assert_refused(mhb_receptance_create(&model, &s, 4, &after), SHB_ERR_INPUT, "released");
+    s.alike = lender;
+    assert_ok(mhb_receptance_create(&model, &s, 4, &after));
+    assert_ok(mhb_modal_structure_create(after, &s, 4, MHB_STRUCTURE_LEAN, &other));
+    mhb_receptance_at(after, 1.07, 4);
+    const size_t n = (size_t)lender->n;
+    assert_memory_equal(after->R, before->R, 5 * n * n * sizeof(double complex));
+    assert_memory_equal(after->free, before->free, 5 * n * sizeof(double complex));
+    for (size_t i = 0; i < 3 * n * n; i++) assert_near(other.block[i], one.block[i], 1e-14);
+    mhb_modal_structure_destroy(&one);
+    mhb_modal_structure_destroy(&other);
+    mhb_receptance_destroy(before);
+    mhb_receptance_destroy(after);
+    mhb_receptance_destroy(lender);
+    modal_model_free(&model);
+  }
+}
+
 /* r_cc is complex symmetric, so that reversing the wave transposes R. It takes energy out:
  * Im p^H R p <= 0. */
 static void receptance_is_reciprocal_and_passive(void **state) {
@@ -452,6 +488,7 @@ int main(void) {
       cmocka_unit_test(condensation_is_the_dense_sum),
       cmocka_unit_test(one_beside_another_has_the_same_numbers),
       cmocka_unit_test(receptances_alike_share_their_matrices),
+      cmocka_unit_test(released_matrices_are_lent),
       cmocka_unit_test(receptance_is_reciprocal_and_passive),
       cmocka_unit_test(slopes_are_derivatives),
       cmocka_unit_test(subharmonics_close_around_the_ring),

@@ -142,10 +142,57 @@ static void error_is_estimated(void **state) {
   assert_true(modal_series_error(m, 1, 0) == -1);
 }
 
+/* Weights and estimate need the diagonals of the terms alone. */
+static void released_terms_leave_their_diagonals(void **state) {
+  (void)state;
+  enum { BYTES = 9 * sizeof(double) };
+  for (int first = 0; first < 3; first++) {
+    scene        s;
+    modal_model *m      = make(&s, 1);
+    double     **term[] = {&m->residual_flexibility, &m->residual_inertia, &m->residual_fourth};
+    const double error  = modal_series_error(m, 7, 0);
+    const modal_series taken = modal_series_at(m, 7);
+    for (int t = 0; t < 3; t++) {
+      *term[t] = malloc(BYTES);
+      assert_non_null(*term[t]);
+      memcpy(*term[t], s.R[t], BYTES);
+    }
+    assert_ok(modal_model_release_terms(m, first));
+    for (int t = 0; t < 3; t++) {
+      assert_true((*term[t] != NULL) == (t < first));
+      assert_true(modal_series_diagonal(m, t, 0) == s.R[t][0]);
+      assert_true(modal_series_diagonal(m, t, 2) == s.R[t][8]);
+    }
+    const modal_series now = modal_series_at(m, 7);
+    assert_true(modal_series_has_fourth(m));
+    assert_memory_equal(&now, &taken, sizeof now);
+    assert_true(modal_series_error(m, 7, 0) == error);
+    assert_ok(modal_model_release_terms(m, 0)); /* once is all */
+    assert_true((m->residual_flexibility != NULL) == (first > 0));
+    for (int t = 0; t < first; t++) free(*term[t]);
+    free(m->residual_diagonal);
+  }
+}
+
+/* Without R3 the terms stay as they are. */
+static void two_terms_are_not_released(void **state) {
+  (void)state;
+  scene        s;
+  modal_model *m     = make(&s, 0);
+  m->residual_fourth = NULL;
+  assert_ok(modal_model_release_terms(m, 0));
+  assert_ptr_equal(m->residual_flexibility, s.R[0]);
+  assert_null(m->residual_diagonal);
+  assert_false(modal_series_has_fourth(m));
+}
+
 int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(residual_modes_are_exact), cmocka_unit_test(terms_have_their_order),
-      cmocka_unit_test(series_is_bounded), cmocka_unit_test(slopes_are_derivatives),
-      cmocka_unit_test(error_is_estimated)};
+  const struct CMUnitTest tests[] = {cmocka_unit_test(residual_modes_are_exact),
+                                     cmocka_unit_test(terms_have_their_order),
+                                     cmocka_unit_test(series_is_bounded),
+                                     cmocka_unit_test(slopes_are_derivatives),
+                                     cmocka_unit_test(error_is_estimated),
+                                     cmocka_unit_test(released_terms_leave_their_diagonals),
+                                     cmocka_unit_test(two_terms_are_not_released)};
   return cmocka_run_group_tests(tests, NULL, NULL);
 }
