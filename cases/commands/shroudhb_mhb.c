@@ -8,6 +8,7 @@
 #include "cases/commands/command.h"
 #include "cases/contact/contact_command.h"
 #include "cases/schema/case.h"
+#include "mesh/base/memory.h"
 #include "mesh/base/progress.h"
 
 static const char usage[] =
@@ -38,6 +39,7 @@ int main(int argc, char **argv) {
   shb_interrupt_catch();
   /* the preloads run in parallel and their systems are small, so BLAS uses one thread */
   openblas_set_num_threads(1);
+  shb_memory_map_large(); /* those of many pairs come and go */
   file.mhb.resume = !options.force;
   status          = balance_run(&file, &options, NULL);
   case_free(&file);

@@ -1,9 +1,17 @@
 #include "mesh/base/memory.h"
 
+#include <malloc.h>
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
 #include <sys/resource.h>
+
+enum { LARGE = 1 << 21 };
+
+void shb_memory_map_large(void) {
+  mallopt(M_MMAP_THRESHOLD, LARGE);
+  mallopt(M_TRIM_THRESHOLD, 2 * LARGE); /* as glibc sets it beside the other */
+}
 
 /* Value of a line "name number kB" of a file, bytes; infinite if there is none. */
 static double kilobytes_of(const char *path, const char *name) {

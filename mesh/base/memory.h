@@ -9,6 +9,10 @@
  * can be read. */
 double shb_memory_available(void);
 
+/* From here on each array of 2 MB or more is mapped by itself, and goes back to the system when it
+ * is freed. The heap of glibc keeps arrays of up to 32 MB where anything lies above them. */
+void shb_memory_map_large(void);
+
 /* A number that memory grows with, a member of a size. */
 typedef struct {
   const char *key; /* of the case */

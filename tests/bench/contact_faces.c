@@ -10,6 +10,7 @@
 #include "child.h"
 #include "mesh/base/clock.h"
 #include "mesh/base/constants.h"
+#include "mesh/base/memory.h"
 #include "mhb/balance/truncation_error.h"
 #include "mhb/continuation/balance_curve.h"
 #include "mhb/continuation/first_solution.h"
@@ -172,6 +173,7 @@ static shb_status run_face(const char *file, face_row *row) {
   double          low = SHB_TWO_PI * s.frequency[0], started = processor_ms();
   omp_set_num_threads(1); /* processor time of one thread */
   openblas_set_num_threads(1);
+  shb_memory_map_large(); /* as the program does */
   SHB_TRY(read_face(file, &model, &s, &alike));
   SHB_TRY(mhb_balance_create(&model, &s, &b));
   mhb_balance_set_preload(b, s.n0[0]);

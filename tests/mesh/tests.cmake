@@ -1,4 +1,4 @@
-foreach(noun arena axes crash_guard phases progress publish root shortest)
+foreach(noun arena memory axes crash_guard phases progress publish root shortest)
   shb_test(mesh/base ${noun} shb_mesh_base)
 endforeach()
 foreach(noun face_match group_checks group_rules jacobian triangle)
