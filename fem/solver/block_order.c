@@ -3,6 +3,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "fem/solver/coarse_order.h"
+
 void fem_cholmod_start(cholmod_common *common) {
   cholmod_start(common);
   common->print                      = 0;
@@ -21,7 +23,11 @@ cholmod_factor *fem_block_analyse(const fem_blocks *b, cholmod_common *common, i
   if (!graph) return NULL;
   memcpy(graph->p, b->start, (n + 1) * sizeof(int));
   memcpy(graph->i, b->column, count * sizeof(int));
-  cholmod_factor *L = cholmod_analyze(graph, common);
+  int       *order           = malloc((n + 1) * sizeof *order);
+  const bool given           = order && fem_coarse_order(b, graph, common, order);
+  common->method[0].ordering = given ? CHOLMOD_GIVEN : CHOLMOD_NESDIS;
+  cholmod_factor *L          = cholmod_analyze_p(graph, given ? order : NULL, NULL, 0, common);
+  free(order);
   if (L)
     for (size_t i = 0; i < n; i++) place[((const int *)L->Perm)[i]] = (int)i;
   cholmod_free_sparse(&graph, common);

@@ -1,0 +1,19 @@
+/* Order of the nodes by nested dissection of the few that dominate the others.
+ *
+ * Node a dominates node b if every neighbour of b is a or a neighbour of a. Corners of quadratic
+ * elements dominate the nodes between them. Separators of the nodes that nobody dominates become
+ * separators of all. Constrained minimum degree (CAMD) orders the nodes in each part.
+ * Of ten-node tetrahedra an eighth of the nodes are dissected, in a tenth of the time. The factor
+ * is as small. */
+#ifndef FEM_SOLVER_COARSE_ORDER_H
+#define FEM_SOLVER_COARSE_ORDER_H
+
+#include "fem/solver/block_order.h"
+
+/*   graph  in   the pattern of b, lower triangle by columns
+ *   order  out  [n] node by its place in the order
+ * Returns false where too few nodes are dominated, or out of memory. */
+bool fem_coarse_order(const fem_blocks *b, cholmod_sparse *graph, cholmod_common *common,
+                      int *order);
+
+#endif
