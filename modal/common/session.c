@@ -1,12 +1,36 @@
 #include "modal/common/session.h"
 
+#include <malloc.h>
+#include <math.h>
 #include <slepcsys.h>
 #include <stdio.h>
+#include <stdlib.h>
+#include <sys/resource.h>
 
+#include "fem/solver/large_pages.h"
 #include "fem/solver/petsc_error.h"
+#include "mesh/base/memory.h"
 
 /* OpenBLAS's own declaration: its header clashes with PETSc's declarations of LAPACK. */
 extern void openblas_set_num_threads(int);
+
+enum { SHARES = 4 }; /* of the free memory; one is prepared for the heap */
+
+/* Let malloc take memory from one heap, in pages of 2 MB. It is extended at once by a share of the
+ * free memory. This costs addresses only; where they are limited (ulimit -v) nothing changes.
+ * Freed memory is kept for later work. */
+static void prepare_heap(int n_ranks) {
+  const double  available = shb_memory_available();
+  struct rlimit addresses;
+  if (getrlimit(RLIMIT_AS, &addresses) != 0 || addresses.rlim_cur != RLIM_INFINITY) return;
+  if (!isfinite(available)) return;
+  const size_t room = (size_t)(available / (SHARES * n_ranks));
+  mallopt(M_MMAP_MAX, 0);
+  mallopt(M_TRIM_THRESHOLD, -1);
+  void *memory = malloc(room);
+  fem_prefer_large_pages(memory, room);
+  free(memory);
+}
 
 shb_status modal_session_start(int *argc, char ***argv, modal_session *session) {
   openblas_set_num_threads(1);
@@ -18,6 +42,7 @@ shb_status modal_session_start(int *argc, char ***argv, modal_session *session) 
   PetscPushErrorHandler(fem_petsc_error_handler, &session->fault);
   MPI_Comm_rank(PETSC_COMM_WORLD, &session->rank);
   MPI_Comm_size(PETSC_COMM_WORLD, &session->n_ranks);
+  prepare_heap(session->n_ranks);
   return SHB_OK;
 }
 
