@@ -32,7 +32,8 @@ struct fem_cholesky {
   fem_lanes     *few;      /* [n_extended] right-hand sides in the factor's order */
   fem_lanes     *few_work; /* [threads][most_rows] */
   int            n_blocks; /* that there is room for */
-  double       **block;    /* [n_blocks][3 n + most_rows][BLOCK] columns in the factor's order */
+  size_t         width;    /* columns of each */
+  double       **block;    /* [n_blocks][3 n + most_rows][width] columns in the factor's order */
   cholmod_common common;
 };
 
@@ -122,18 +123,28 @@ PetscErrorCode fem_cholesky_update(fem_cholesky *factor, Mat A, bool *definite) 
 
 /* ------------------------------------------------------------------ solves */
 
+static void free_blocks(fem_cholesky *factor) {
+  for (int i = 0; i < factor->n_blocks; i++) free(factor->block[i]);
+  factor->n_blocks = 0;
+}
+
 /* Room for so many blocks of columns, kept between solves. glibc 2.36 does not use freed memory of
  * this alignment again, so that the heap would grow by it at every solve. */
-static PetscErrorCode make_block_room(fem_cholesky *factor, int blocks) {
+static PetscErrorCode make_block_room(fem_cholesky *factor, int blocks, size_t width) {
   const size_t rows = 3 * (size_t)factor->n + (size_t)factor->panels.most_rows;
   PetscFunctionBeginUser;
+  if (factor->width < width) {
+    free_blocks(factor);
+    factor->width = width;
+  }
   if (factor->n_blocks >= blocks) PetscFunctionReturn(0);
   double **more = realloc(factor->block, (size_t)blocks * sizeof *more);
   PetscCheck(more, PETSC_COMM_SELF, PETSC_ERR_MEM, "no memory");
   factor->block = more;
   for (; factor->n_blocks < blocks; factor->n_blocks++) {
-    double *own = fem_large_malloc(rows * BLOCK * sizeof *own);
-    PetscCheck(own, PETSC_COMM_SELF, PETSC_ERR_MEM, "no memory for %d solutions", BLOCK);
+    double *own = fem_large_malloc(rows * factor->width * sizeof *own);
+    PetscCheck(own, PETSC_COMM_SELF, PETSC_ERR_MEM, "no memory for %d solutions",
+               (int)factor->width);
     factor->block[factor->n_blocks] = own;
   }
   PetscFunctionReturn(0);
@@ -160,7 +171,7 @@ static PetscErrorCode solve_many(fem_cholesky *factor, const bool *needed, size_
   const int all = ((int)count + BLOCK - 1) / BLOCK, most = omp_get_max_threads();
   const int threads = all < most ? all : most;
   PetscFunctionBeginUser;
-  PetscCall(make_block_room(factor, threads));
+  PetscCall(make_block_room(factor, threads, count < BLOCK ? count : BLOCK));
 #pragma omp parallel for schedule(dynamic, 1) num_threads(threads)
   for (size_t c = 0; c < count; c += BLOCK) {
     const size_t here = count - c < BLOCK ? count - c : BLOCK;
@@ -246,7 +257,7 @@ void fem_cholesky_destroy(fem_cholesky *factor) {
   free(factor->value);
   free(factor->few);
   free(factor->few_work);
-  for (int i = 0; i < factor->n_blocks; i++) free(factor->block[i]);
+  free_blocks(factor);
   free(factor->block);
   free(factor->place);
   free(factor);

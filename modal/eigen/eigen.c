@@ -253,7 +253,7 @@ static PetscErrorCode find_some_residuals(const fem_system *system, double shift
 }
 
 static PetscErrorCode find_residuals(const fem_system *system, double shift, modal_eigen *eigen) {
-  enum { BATCH = 4 };
+  enum { BATCH = 20 }; /* columns of which the solver reads its factor once */
   Vec work;
   PetscFunctionBeginUser;
   PetscCall(MatCreateVecs(system->M, NULL, &work));
