@@ -24,7 +24,7 @@ cholmod_factor *fem_block_analyse(const fem_blocks *b, cholmod_common *common, i
   memcpy(graph->p, b->start, (n + 1) * sizeof(int));
   memcpy(graph->i, b->column, count * sizeof(int));
   int       *order           = malloc((n + 1) * sizeof *order);
-  const bool given           = order && fem_coarse_order(b, graph, common, order);
+  const bool given           = order && fem_coarse_order(graph, common, order);
   common->method[0].ordering = given ? CHOLMOD_GIVEN : CHOLMOD_NESDIS;
   cholmod_factor *L          = cholmod_analyze_p(graph, given ? order : NULL, NULL, 0, common);
   free(order);

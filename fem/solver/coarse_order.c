@@ -22,17 +22,18 @@ typedef struct {
 
 /* ------------------------------------------------------------------ neighbours */
 
-static bool list_neighbours(const fem_blocks *b, neighbours *out) {
-  const size_t n = (size_t)b->n, most = 2 * (size_t)b->start[n];
+static bool list_neighbours(const cholmod_sparse *graph, neighbours *out) {
+  const int   *start = graph->p, *column = graph->i;
+  const size_t n = graph->ncol, most = 2 * (size_t)start[n];
   int         *next;
-  out->n     = b->n;
+  out->n     = (int)n;
   out->start = calloc(n + 1, sizeof(int));
   out->node  = malloc((most + 1) * sizeof(int));
   next       = malloc((n + 1) * sizeof(int));
   for (int pass = 0; out->start && out->node && next && pass < 2; pass++) {
-    for (int r = 0; r < b->n; r++)
-      for (int k = b->start[r]; k < b->start[r + 1]; k++) {
-        const int c = b->column[k];
+    for (int r = 0; r < out->n; r++)
+      for (int k = start[r]; k < start[r + 1]; k++) {
+        const int c = column[k];
         if (c == r) continue;
         if (pass == 0) {
           out->start[r + 1]++, out->start[c + 1]++;
@@ -206,13 +207,12 @@ static bool order_by(const neighbours *g, cholmod_sparse *graph, cholmod_common 
   return good && cholmod_camd(graph, NULL, 0, set, order, common);
 }
 
-bool fem_coarse_order(const fem_blocks *b, cholmod_sparse *graph, cholmod_common *common,
-                      int *order) {
-  const size_t room   = ((size_t)b->n + 1) * sizeof(int);
+bool fem_coarse_order(cholmod_sparse *graph, cholmod_common *common, int *order) {
+  const size_t room   = (graph->ncol + 1) * sizeof(int);
   neighbours   g      = {0};
   int         *number = malloc(room), *set = malloc(room);
-  const bool   good =
-      list_neighbours(b, &g) && number && set && order_by(&g, graph, common, number, set, order);
+  const bool   good = list_neighbours(graph, &g) && number && set &&
+                    order_by(&g, graph, common, number, set, order);
   free_neighbours(&g);
   free(number);
   free(set);

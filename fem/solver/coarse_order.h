@@ -8,12 +8,12 @@
 #ifndef FEM_SOLVER_COARSE_ORDER_H
 #define FEM_SOLVER_COARSE_ORDER_H
 
-#include "fem/solver/block_order.h"
+#include <stdbool.h>
+#include <suitesparse/cholmod.h>
 
-/*   graph  in   the pattern of b, lower triangle by columns
+/*   graph  in   symmetric pattern of n nodes, lower triangle by columns, with the diagonal
  *   order  out  [n] node by its place in the order
  * Returns false where too few nodes are dominated, or out of memory. */
-bool fem_coarse_order(const fem_blocks *b, cholmod_sparse *graph, cholmod_common *common,
-                      int *order);
+bool fem_coarse_order(cholmod_sparse *graph, cholmod_common *common, int *order);
 
 #endif

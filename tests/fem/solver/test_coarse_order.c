@@ -7,6 +7,7 @@
 
 #include <cmocka.h>
 
+#include "fem/solver/block_order.h"
 #include "fem/solver/coarse_order.h"
 
 /* Upper triangle of a graph, and CHOLMOD's copy. */
@@ -85,7 +86,7 @@ static void check_fill(const int cells[3], int bodies, double most) {
   pattern   p     = make_grid(cells, 2, bodies);
   const int n     = p.blocks.n;
   int      *order = malloc((size_t)n * sizeof *order);
-  assert_true(fem_coarse_order(&p.blocks, p.graph, &p.common, order));
+  assert_true(fem_coarse_order(p.graph, &p.common, order));
   check_permutation(order, n);
   const double coarse = operations(&p, order), fine = operations(&p, NULL);
   print_message("%d nodes: %.3g operations, %.3g by dissection of all\n", n, coarse, fine);
@@ -111,7 +112,7 @@ static void small_ones(void **state) {
   const int cells[3] = {1, 1, 1};
   pattern   p        = make_grid(cells, 2, 1);
   int       order[27];
-  assert_true(fem_coarse_order(&p.blocks, p.graph, &p.common, order));
+  assert_true(fem_coarse_order(p.graph, &p.common, order));
   check_permutation(order, 27);
   free_pattern(&p);
 }
@@ -122,7 +123,7 @@ static void needs_corners(void **state) {
   const int cells[3] = {12, 9, 7};
   pattern   p        = make_grid(cells, 1, 1);
   int      *order    = malloc((size_t)p.blocks.n * sizeof *order);
-  assert_false(fem_coarse_order(&p.blocks, p.graph, &p.common, order));
+  assert_false(fem_coarse_order(p.graph, &p.common, order));
   free(order);
   free_pattern(&p);
 }
