@@ -88,9 +88,11 @@ static void note_points(shb_progress *progress, const case_file *file, const cas
 }
 
 /* With many pairs the sweep reads residual matrices in the axes of the pairs, which alike lends. R3
- * is released, and so are R and R2 where no motion that lasts is computed from them. */
+ * is released, and so are R and R2 where no motion that lasts is computed from them. The stability
+ * of gyroscopic modes reads the model's own. */
 static shb_status release_terms(case_model *m, mhb_receptance **alike) {
-  if (m->model.n_pairs < MHB_MANY_PAIRS || m->disc || m->run_up) return SHB_OK;
+  const bool reads_own = m->disc || m->run_up || m->model.coriolis;
+  if (m->model.n_pairs < MHB_MANY_PAIRS || reads_own) return SHB_OK;
   SHB_TRY(mhb_receptance_create(&m->model, &m->settings, 0, alike));
   m->settings.alike = *alike;
   return modal_model_release_terms(&m->model, mhb_lasting_refusal(&m->model, &m->settings) ? 0 : 2);

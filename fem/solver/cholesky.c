@@ -9,7 +9,8 @@
 #include "fem/solver/supernodal_factor.h"
 #include "fem/solver/supernodal_solve.h"
 
-/* MANY: right-hand sides from which BLAS is faster. BLOCK: columns that a thread solves at once. */
+/* MANY: right-hand sides from which BLAS is faster. BLOCK: most columns that a thread solves at
+ * once. */
 enum { MANY = 12, BLOCK = 40 };
 
 /* Upper triangle of a symmetric matrix (sequential SBAIJ, block size 3) by block rows. */
@@ -128,8 +129,8 @@ static void free_blocks(fem_cholesky *factor) {
   factor->n_blocks = 0;
 }
 
-/* Room for so many blocks of columns, kept between solves. glibc 2.36 does not use freed memory of
- * this alignment again, so that the heap would grow by it at every solve. */
+/* Room for so many blocks of columns, kept between solves. glibc does not always use freed memory
+ * of an alignment again: the heap would grow. */
 static PetscErrorCode make_block_room(fem_cholesky *factor, int blocks, size_t width) {
   const size_t rows = 3 * (size_t)factor->n + (size_t)factor->panels.most_rows;
   PetscFunctionBeginUser;
@@ -166,15 +167,18 @@ static void solve_block(const fem_cholesky *factor, double *own, const bool *nee
   }
 }
 
+/* Two threads share even few columns. The blocks do not depend on the number of threads, and so the
+ * numbers do not. */
 static PetscErrorCode solve_many(fem_cholesky *factor, const bool *needed, size_t count,
                                  const double *b, size_t ldb, double *x, size_t ldx) {
-  const int all = ((int)count + BLOCK - 1) / BLOCK, most = omp_get_max_threads();
-  const int threads = all < most ? all : most;
+  const size_t half = (count + 1) / 2, width = half < BLOCK ? half : BLOCK;
+  const int    all = (int)((count + width - 1) / width), most = omp_get_max_threads();
+  const int    threads = all < most ? all : most;
   PetscFunctionBeginUser;
-  PetscCall(make_block_room(factor, threads, count < BLOCK ? count : BLOCK));
+  PetscCall(make_block_room(factor, threads, width));
 #pragma omp parallel for schedule(dynamic, 1) num_threads(threads)
-  for (size_t c = 0; c < count; c += BLOCK) {
-    const size_t here = count - c < BLOCK ? count - c : BLOCK;
+  for (size_t c = 0; c < count; c += width) {
+    const size_t here = count - c < width ? count - c : width;
     solve_block(factor, factor->block[omp_get_thread_num()], needed, here, b + c * ldb, ldb,
                 x + c * ldx, ldx);
   }

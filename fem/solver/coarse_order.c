@@ -121,10 +121,12 @@ static cholmod_sparse *kept_graph(const neighbours *g, const int *number, int ke
  * Returns the number of sets, -1 on failure. */
 static int dissect(cholmod_sparse *graph, cholmod_common *common, separators *tree, int *set,
                    int *work) {
-  common->current            = 0;
-  common->method[0].nd_small = SMALLEST;
-  common->method[0].nd_camd  = 0;
+  const struct cholmod_method_struct before = common->method[0];
+  common->current                           = 0;
+  common->method[0].nd_small                = SMALLEST;
+  common->method[0].nd_camd                 = 0;
   const int sets = (int)cholmod_nested_dissection(graph, NULL, 0, work, tree->parent, set, common);
+  common->method[0] = before;
   for (int i = 0; i < sets; i++) tree->first[i] = i;
   for (int i = 0; i < sets; i++) {
     const int up = tree->parent[i];

@@ -17,8 +17,8 @@ static inline void fem_prefer_large_pages(void *memory, size_t bytes) {
     madvise((char *)memory + (begin - (uintptr_t)memory), end - begin, MADV_HUGEPAGE);
 }
 
-/* As malloc; to be freed by free. It begins at a cache line: glibc 2.36 does not use memory of a
- * greater alignment again. */
+/* As malloc; to be freed by free. It begins at a cache line. Greater alignments leave gaps in
+ * glibc's heap. */
 static inline void *fem_large_malloc(size_t bytes) {
   const size_t line   = 64;
   void        *memory = aligned_alloc(line, (bytes + line) / line * line);

@@ -516,7 +516,7 @@ static shb_status check_load(const modal_model *model, const mhb_settings *setti
  * the pairs, which grow with the square of the pairs. */
 static shb_status all_curves(sweep *s, const modal_model *model, mhb_settings *settings) {
   mhb_receptance *alike = NULL;
-  if (!settings->alike && !settings->ring && !settings->run_up) {
+  if (!settings->alike && !settings->ring && !settings->run_up && !settings->nodal_diameters) {
     SHB_TRY(mhb_receptance_create(model, settings, 0, &alike));
     settings->alike = alike;
   }

@@ -16,18 +16,27 @@ extern void openblas_set_num_threads(int);
 
 enum { SHARES = 4 }; /* of the free memory; one is prepared for the heap */
 
+static bool is_limited(int resource) {
+  struct rlimit limit;
+  return getrlimit((__rlimit_resource_t)resource, &limit) != 0 || limit.rlim_cur != RLIM_INFINITY;
+}
+
 /* Let malloc take memory from one heap, in pages of 2 MB. It is extended at once by a share of the
- * free memory. This costs addresses only; where they are limited (ulimit -v) nothing changes.
- * Freed memory is kept for later work. */
+ * free memory. This costs addresses only, unless the system counts those too
+ * (vm.overcommit_memory = 2). Where they are limited (ulimit -v, -d) nothing changes. Freed memory
+ * is kept for later work; shb_memory_available counts it. */
 static void prepare_heap(int n_ranks) {
-  const double  available = shb_memory_available();
-  struct rlimit addresses;
-  if (getrlimit(RLIMIT_AS, &addresses) != 0 || addresses.rlim_cur != RLIM_INFINITY) return;
-  if (!isfinite(available)) return;
+  enum { MOST_MAPPED = 65536, TRIM = 1 << 17 }; /* of glibc itself */
+  const double available = shb_memory_available();
+  if (is_limited(RLIMIT_AS) || is_limited(RLIMIT_DATA) || !isfinite(available)) return;
   const size_t room = (size_t)(available / (SHARES * n_ranks));
   mallopt(M_MMAP_MAX, 0);
   mallopt(M_TRIM_THRESHOLD, -1);
   void *memory = malloc(room);
+  if (!memory) {
+    mallopt(M_MMAP_MAX, MOST_MAPPED);
+    mallopt(M_TRIM_THRESHOLD, TRIM);
+  }
   fem_prefer_large_pages(memory, room);
   free(memory);
 }
