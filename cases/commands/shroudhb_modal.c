@@ -13,6 +13,7 @@
 #include "cases/schema/case_paths.h"
 #include "cases/schema/nodal_diameters.h"
 #include "mesh/base/publish.h"
+#include "mesh/gmsh/provenance.h"
 #include "modal/common/session.h"
 #include "modal/hdf5/h5.h"
 #include "modal/hdf5/stamp.h"
@@ -275,7 +276,8 @@ static void warn(const case_file *file) {
 }
 
 /* Makes the mesh of the case with shroudhb-mesh if there is none, on rank 0 before MPI starts. The
- * others wait in MPI_Init. Returns the exit code. */
+ * others wait in MPI_Init. Warns of a mesh that is there and of other keys. Returns the exit
+ * code. */
 static int make_mesh(const case_file *file, const command_options *options) {
   if (launch_rank() != 0 || (file->mesh_file && !case_mesh_is_made(file))) return SHB_OK;
   const char       *list[COMMAND_WORDS];
@@ -287,6 +289,11 @@ static int make_mesh(const case_file *file, const command_options *options) {
     list[0] = program;
     command_forward(options, list, 1);
     status = subprocess_run((char *const *)list, &result);
+  } else if (status == SHB_OK) {
+    char *made_from = NULL;
+    if (mesh_settings_read(mesh, &made_from) == SHB_OK)
+      up_to_date_warn_of(file, CASE_MESH, mesh, made_from);
+    free(made_from);
   }
   free(mesh);
   free(program);

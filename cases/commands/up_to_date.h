@@ -24,4 +24,9 @@ bool up_to_date_keys(const case_file *file, case_stage stage, const char *path);
  * that cannot be read is no reason to warn. */
 void up_to_date_warn(const case_file *file, case_stage stage, const char *path);
 
+/* The same where the settings that the file was made from are read already. NULL or empty:
+ * unknown. */
+void up_to_date_warn_of(const case_file *file, case_stage stage, const char *path,
+                        const char *settings);
+
 #endif

@@ -52,19 +52,32 @@ static void subtract_ritz_tails(workspace *w, const modal_residual_modes *ritz, 
   }
 }
 
+/* The sign of mode i that does not depend on round-off: its largest motion at the contact, or at
+ * any column without one, is positive. Of motions that are alike the first counts. */
+static double sign_of(const workspace *w, int n, const double *psi, int i) {
+  const double alike   = 0.999;
+  const int    columns = w->n_contact > 0 ? w->n_contact : w->n_column;
+  double       most    = 0;
+  for (int c = 0; c < columns; c++) most = fmax(most, fabs(psi[c * n + i]));
+  for (int c = 0; c < columns; c++)
+    if (fabs(psi[c * n + i]) >= alike * most) return psi[c * n + i] < 0 ? -1 : 1;
+  return 1;
+}
+
 static void store_residual_modes(const workspace *w, const modal_residual_modes *ritz, int kept,
                                  const double *psi, const double *at_probe, modal_model *model) {
   const modal_load *load = &w->to->load;
   const int         n = ritz->n, nc = w->n_contact;
   for (int i = 0; i < kept; i++) {
+    const double sign            = sign_of(w, n, psi, i);
     model->residual_frequency[i] = sqrt(ritz->lambda[i]) / SHB_TWO_PI;
-    for (int c = 0; c < nc; c++) model->residual_shape[c * kept + i] = psi[c * n + i];
+    for (int c = 0; c < nc; c++) model->residual_shape[c * kept + i] = sign * psi[c * n + i];
     for (int c = 0; c < w->to->probe.n; c++)
-      model->residual_probe[c * kept + i] = at_probe[c * n + i];
+      model->residual_probe[c * kept + i] = sign * at_probe[c * n + i];
     for (int k = 0; k <= load->n_harmonics; k++)
       for (int c = 0; c < load->dofs.n; c++)
         model->residual_force[k * kept + i] +=
-            load->weight[k * load->dofs.n + c] * psi[(nc + c) * n + i];
+            load->weight[k * load->dofs.n + c] * sign * psi[(nc + c) * n + i];
   }
 }
 

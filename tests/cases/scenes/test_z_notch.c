@@ -181,6 +181,14 @@ static void a_stale_file_is_told(void **state) {
       " | grep -q 'response.h5 was made from other settings'",
       folder, SHROUDHB);
   assert_int_equal(system(command), 0);
+  snprintf(command, sizeof command,
+           "cd '%s' && '%s' modal --quiet --set 'mesh.blade.size=8 mm' case.yaml 2>&1"
+           " | grep -q 'z_notch_blade.msh was made from other settings; run `shroudhb mesh` first'",
+           folder, SHROUDHB);
+  assert_int_equal(system(command), 0);
+  snprintf(command, sizeof command,
+           "cd '%s' && '%s' modal --quiet case.yaml 2>&1 | grep -q warning", folder, SHROUDHB);
+  assert_int_not_equal(system(command), 0);
 }
 
 static void memory_stays_below_two_gigabytes(void **state) {
