@@ -146,12 +146,11 @@ static void swap(side *a, side *b) {
   *b              = kept;
 }
 
-/* Measure s from the left point, along its tangent. */
-static bool measure_from_left(mhb_kink *k) {
+/* Measure s from the left point, along its tangent. The point is to be settled anew. */
+static void measure_from_left(mhb_kink *k) {
   const double length = mhb_norm(k->left.along, k->n + 1);
   for (int j = 0; j <= k->n; j++) k->border[j] = k->left.along[j] / length;
   memcpy(k->origin, k->left.z, sizeof(double) * ((size_t)k->n + 1));
-  return settle(k, 0, &k->left);
 }
 
 /* The right point, about this far from the left one, at most the given way; step becomes its
@@ -182,7 +181,8 @@ static bool bracket(mhb_kink *k) {
     }
     left -= fabs(step);
     swap(&k->left, &k->right);
-    if (!measure_from_left(k)) return false;
+    measure_from_left(k);
+    if (!settle(k, 0, &k->left)) return false;
   }
   return false;
 }
@@ -276,7 +276,8 @@ bool mhb_kink_start(mhb_kink *k, const double *x, mhb_peak_place *at, mhb_end *w
   k->border[n] = 1;
   mhb_balance_go_to(k->base.balance, k->base.tracking->parameter, at->value);
   memcpy(k->left.z, k->origin, sizeof(double) * ((size_t)n + 1));
-  if (!settle(k, 0, &k->left) || !measure_from_left(k)) return false;
+  if (!settle(k, 0, &k->left)) return false;
+  measure_from_left(k);
   if (!find(k, at, why)) return false;
   k->first.value = k->last.value;
   memcpy(k->first.z, k->last.z, sizeof(double) * ((size_t)n + 1));
@@ -300,17 +301,19 @@ static void side_gradient(mhb_kink *k, const side *at, double by[MHB_PEAK_PARAME
   mhb_peak_gradient(b, at->z, &a, adjoint, k->r, by);
 }
 
-double mhb_kink_maximum(mhb_kink *k, double *x, double by[MHB_PEAK_PARAMETERS]) {
+double mhb_kink_slip_share(const mhb_kink *k) {
+  return fmin(k->left.slip, k->right.slip);
+}
+
+void mhb_kink_maximum(mhb_kink *k, double *x, double by[MHB_PEAK_PARAMETERS]) {
   const side  *l = &k->left, *r = &k->right;
   const double jump = l->slope - r->slope, share = jump > 0 ? l->slope / jump : 0.5;
   double       before[MHB_PEAK_PARAMETERS];
   memcpy(x, l->z, sizeof(double) * (size_t)k->n);
-  if (by) {
-    side_gradient(k, l, before);
-    side_gradient(k, r, by);
-    for (int i = 0; i < MHB_PEAK_PARAMETERS; i++) by[i] = share * by[i] + (1 - share) * before[i];
-  }
-  return fmin(l->slip, r->slip);
+  if (!by) return;
+  side_gradient(k, l, before);
+  side_gradient(k, r, by);
+  for (int i = 0; i < MHB_PEAK_PARAMETERS; i++) by[i] = share * by[i] + (1 - share) * before[i];
 }
 
 /* ---- creation ---- */

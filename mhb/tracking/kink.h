@@ -22,12 +22,14 @@ void       mhb_kink_destroy(mhb_kink *kink);
  *   why  out  MHB_END_SMOOTH: the next maximum of the response curve is smooth; it is in at */
 bool mhb_kink_start(mhb_kink *kink, const double *x, mhb_peak_place *at, mhb_end *why);
 
-/* The maximum that was found last, smooth or not.
+/* The smaller slip share (peak_system.h) of both sides of the maximum found last, smooth or not. */
+double mhb_kink_slip_share(const mhb_kink *kink);
+
+/* That maximum.
  *   x   out  [n] its motion
  *   by  out  dA/dq by all parameters; NULL: not wanted. The weights of both sides are those above.
- *            At a smooth maximum they lead to G = 0, which the law's error hides.
- * Returns the smaller slip share (peak_system.h) of both sides. */
-double mhb_kink_maximum(mhb_kink *kink, double *x, double by[MHB_PEAK_PARAMETERS]);
+ *            At a smooth maximum they lead to G = 0, which the law's error hides. */
+void mhb_kink_maximum(mhb_kink *kink, double *x, double by[MHB_PEAK_PARAMETERS]);
 
 /* Follow the peak on a kink from a seed both ways into an empty branch (peak_places.h). It ends
  * where the peak leaves the kink (MHB_END_SMOOTH).

@@ -166,8 +166,7 @@ static void take_bracketed(const search *s, mhb_kink *kink, mhb_peak_derivatives
   const bool     found = mhb_kink_start(kink, s->x, &at, &why), on_kink = found && at.margin > JUMP;
   if (!found && why != MHB_END_SMOOTH) return;
   if (!(on_kink ? is_same : is_near)(s, at.omega, at.amplitude)) return;
-  double x[s->balance->n];
-  if (!(mhb_kink_maximum(kink, x, NULL) > 0)) return; /* at the corner, or stuck */
+  if (!(mhb_kink_slip_share(kink) > 0)) return; /* at the corner, or stuck */
   out->kind      = on_kink ? MHB_PEAK_KINK : MHB_PEAK_SMOOTH;
   out->omega     = at.omega;
   out->amplitude = at.amplitude;

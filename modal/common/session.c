@@ -18,7 +18,7 @@ enum { SHARES = 4 }; /* of the free memory; one is prepared for the heap */
 
 static bool is_limited(int resource) {
   struct rlimit limit;
-  return getrlimit((__rlimit_resource_t)resource, &limit) != 0 || limit.rlim_cur != RLIM_INFINITY;
+  return getrlimit(resource, &limit) != 0 || limit.rlim_cur != RLIM_INFINITY;
 }
 
 /* Let malloc take memory from one heap, in pages of 2 MB. It is extended at once by a share of the
