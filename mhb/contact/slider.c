@@ -96,7 +96,6 @@ static void run_stick(mhb_contact_evaluator *c, slider *s, double end) {
   s->state = MHB_SLIDE;
   s->onset = until;
   mhb_note_transition(c, until, MHB_SLIDE);
-  c->slip.initial_rate = mhb_slip_rate(&c->slip, s->theta, y, dy);
   mhb_sensitivity_stick_to_slip(c, until, s->theta, y[0]);
 }
 
@@ -128,7 +127,6 @@ static int run_slip(mhb_contact_evaluator *c, slider *s, double end, int opening
 }
 
 static int run_closed(mhb_contact_evaluator *c, slider *s, double end, int opening) {
-  c->panel.h = 0; /* nothing to predict from */
   for (int events = 0; s->t < end; events++) {
     if (events > MAX_EVENTS) return 0;
     if (s->state == MHB_STICK) {
@@ -170,17 +168,15 @@ int mhb_slider_with_openings(mhb_contact_evaluator *c) {
   set_panels(c, c->tolerance);
   for (int i = 0; i < c->intervals.n; i++) {
     slider s = {.t = c->intervals.closing[i], .onset = -1};
-    double y[3], dy[3], ddy[3], d[2], D;
-    mhb_signals_at(&c->signals, s.t, y, dy, ddy);
+    double y[3], dy[3], d[2];
+    mhb_signals_at(&c->signals, s.t, y, dy, NULL);
     double pull = length_of(dy[1], dy[2]), limit = c->slip.mu * dy[0];
     s.z[0]  = y[1];
     s.z[1]  = y[2];
     s.state = pull < limit ? MHB_STICK : MHB_SLIDE;
     if (s.state == MHB_SLIDE) {
       mhb_slip_return(c->K, limit, dy + 1, d);
-      s.theta              = atan2(d[1], d[0]);
-      mhb_direction at     = mhb_slip_direction(c->K, s.theta);
-      c->slip.initial_rate = mhb_slip_closing_rate(&c->slip, &at, dy, ddy, &D);
+      s.theta = atan2(d[1], d[0]);
     }
     mhb_sensitivity_closing(c, s.t, s.state, s.theta);
     mhb_note_transition(c, s.t, s.state);
@@ -222,7 +218,6 @@ static int run_from(mhb_contact_evaluator *c, double t0, const double z0[2], dou
     if (pull || size > limit) mhb_sensitivity_stick_to_slip(c, t0, s.theta, y[0]);
     if (!pull && size > limit) mhb_sensitivity_slip_to_stick(c, t0, s.theta, y[0]);
     if (pull) s.state = MHB_SLIDE;
-    if (pull) c->slip.initial_rate = mhb_slip_rate(&c->slip, s.theta, y, dy);
     if (!pull && size > limit)
       for (int k = 0; k < 2; k++) s.z[k] = y[1 + k] - limit * d[k];
   }

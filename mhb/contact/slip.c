@@ -47,22 +47,18 @@ static double binomial(int n, int k) {
 
 /* Column j of the tables, of the values one at node j and zero at the others. */
 static void table_column(mhb_collocation *rule, const double *node, const double *weight, int j) {
-  enum { FIT = 5 };
   double c[MHB_NODES], x = 2 * node[j] - 1;
   lagrange_monomials(node, j, c);
   rule->end[j] = 0;
   for (int i = 0; i < MHB_NODES; i++) {
     rule->A[j][i]        = lagrange_integral(c, node[i]);
+    rule->between[j][i]  = rule->A[j][i] - (i > 0 ? rule->A[j][i - 1] : 0);
     rule->monomial[j][i] = c[i];
     rule->end[j] += c[i];
-    /* s^k = sum_i C(i,k)/C(7,k) B_i;  P_k(2s-1) = sum_i C(k,i) C(k+i,i) (s-1)^i */
-    double bernstein = 0, extrapolation = 0;
+    /* s^k = sum_i C(i,k)/C(7,k) B_i */
+    double bernstein = 0;
     for (int k = 0; k <= i; k++) bernstein += binomial(i, k) / binomial(MHB_NODES - 1, k) * c[k];
-    for (int k = i; k <= FIT; k++)
-      extrapolation +=
-          (2 * k + 1) * weight[j] * legendre(k, x, NULL) * binomial(k, i) * binomial(k + i, i);
-    rule->bernstein[j][i]     = bernstein;
-    rule->extrapolation[j][i] = extrapolation;
+    rule->bernstein[j][i] = bernstein;
   }
   for (int k = 0; k < MHB_NODES; k++)
     rule->legendre[j][k] = (2 * k + 1) * weight[j] * legendre(k, x, NULL);
@@ -108,6 +104,12 @@ shb_status mhb_collocation_create(mhb_collocation *rule) {
   rule->node   = lanes_load(node);
   rule->weight = lanes_load(weight);
   for (int j = 0; j < MHB_NODES; j++) table_column(rule, node, weight, j);
+  for (int i = 0; i < MHB_NODES; i++) {
+    double length = node[i] - (i > 0 ? node[i - 1] : 0);
+    /* before the first node b is the straight line through the first two */
+    rule->stretch[i]    = length;
+    rule->commutator[i] = length * length / 24 * (i > 0 ? 1 : node[0] / (node[1] - node[0]));
+  }
   return take_modes(rule);
 }
 
@@ -320,17 +322,20 @@ MHB_HOT void mhb_slip_response(const mhb_slip *slip, const mhb_panel *p,
   }
 }
 
-/* Newton's method on the collocation equations from theta; the matrix is kept while it converges
- * well. 1: converged.
+/* Newton's method on the collocation equations from theta, F, F_theta; the matrix is kept while it
+ * converges well. over = 1/(mu n); solved: theta is final. 1: converged.
  *
  * Gauss collocation carries an error of the start to the end undamped where h F_theta -> -infinity,
  * though it hardly shows at the nodes. There the end is extrapolated from the nodes. */
-MHB_INLINE int collocate(const mhb_slip *slip, mhb_panel *p) {
-  const mhb_collocation *rule = slip->rule;
-  mhb_lanes              over = 1 / (slip->mu * p->y[0]), weight = over;
+MHB_INLINE int collocate(const mhb_slip *slip, mhb_lanes over, int solved, mhb_panel *p) {
+  const mhb_collocation *rule   = slip->rule;
+  mhb_lanes              weight = over;
   double                 before = INFINITY, left = INFINITY, enough = .3 * slip->tolerance;
   int                    fresh = 0, isotropic = slip->half == 0 && slip->skew == 0;
-  rate(slip, over, p);
+  if (solved) {
+    left = 0;
+    if (!linearise(slip, MILD, p)) return 0;
+  }
   for (int i = 0; left > enough; i++) {
     if (i == 16) return 0;
     if (!fresh) {
@@ -368,27 +373,65 @@ MHB_INLINE int collocate(const mhb_slip *slip, mhb_panel *p) {
 
 /* ---- prediction and end of a panel ---- */
 
-/* th' extrapolated from the panel before, in powers of (t - t0). */
+/* exp of a symmetric matrix of trace 0 plus a rotation, up to a factor: rows (a, b), (c, d). */
 typedef struct {
-  double power[6];
-} predictor;
+  mhb_lanes a, b, c, d;
+} mobius;
 
-MHB_HOT static void extrapolate(const mhb_slip *slip, const mhb_panel *p, double t,
-                                predictor *guess) {
-  memset(guess, 0, sizeof *guess);
-  if (!(p->h > 0) || p->t0 + p->h != t) {
-    guess->power[0] = slip->initial_rate;
-    return;
-  }
-  mhb_lanes c     = apply(slip->rule->extrapolation, p->F);
-  double    scale = 1;
-  for (int k = 0; k < 6; k++, scale /= p->h) guess->power[k] = c[k] * scale;
+/* x after the lanes n below it, as far as there are any */
+MHB_INLINE mobius compose(mobius x, int n) {
+  mhb_lanes zero = lanes_all(0), one = lanes_all(1);
+  mobius    y = {lanes_rise(one, x.a, n), lanes_rise(zero, x.b, n), lanes_rise(zero, x.c, n),
+                 lanes_rise(one, x.d, n)};
+  return (mobius){x.a * y.a + x.b * y.c, x.a * y.b + x.b * y.d, x.c * y.a + x.d * y.c,
+                  x.c * y.b + x.d * y.d};
 }
 
-MHB_INLINE void predict(const mhb_slip *slip, const predictor *guess, double h, mhb_panel *p) {
-  mhb_lanes x = h * slip->rule->node, sum = lanes_all(0);
-  for (int k = 5; k >= 0; k--) sum = sum * x + guess->power[k] / (k + 1);
-  p->theta = p->theta0 + sum * x;
+/* Square of a stretch's exponent above which its flow is held to end at its last b. */
+static const double FAR = 12;
+
+/* theta - theta0 at the nodes where th' = b.(-sin, cos)(theta - theta0), known to some 1e-4.
+ *
+ * u = (cos, sin) of half of it obeys u' = (1/2) [b_1 b_2; b_2 -b_1] u, up to its length. Each
+ * stretch between nodes is Magnus' exponential of fourth order; products of them are the flow.
+ * tanh(r)/r is Pade's. Next to n = 0 b is no polynomial: there it is held over each stretch. */
+MHB_INLINE mhb_lanes flow(const mhb_collocation *rule, double h, mhb_lanes b1, mhb_lanes b2) {
+  mhb_lanes turned = b1 * lanes_rise(b2, b2, 1) - b2 * lanes_rise(b1, b1, 1);
+  turned[0]        = turned[1];
+  mhb_lanes p = .5 * h * apply(rule->between, b1), q = .5 * h * apply(rule->between, b2);
+  mhb_lanes r = h * h * rule->commutator * turned, s = p * p + q * q - r * r;
+  int       far = lanes_top(s) > FAR;
+  if (far) {
+    p = .5 * h * rule->stretch * b1;
+    q = .5 * h * rule->stretch * b2;
+    r = lanes_all(0);
+    s = p * p + q * q;
+  }
+  mhb_lanes tanh = (105 + 10 * s) / (105 + s * (45 + s));
+  if (far) tanh = lanes_where(s > FAR, .99 / lanes_sqrt(s), tanh);
+  mobius    step = {1 + tanh * p, tanh * (q + r), tanh * (q - r), 1 - tanh * p};
+  mobius    all  = compose(compose(compose(step, 1), 2), 4);
+  mhb_lanes size = lanes_sqrt(all.a * all.a + all.c * all.c);
+  mhb_lanes tan  = lanes_min(all.c / (size + all.a), lanes_all(1)); /* of a quarter */
+  return 4 * lanes_atan_rough(lanes_max(tan, lanes_all(-1)));
+}
+
+/* theta, F, F_theta at the nodes. F and F_theta at theta0 give the flow. For K = k I it is th'
+ * itself. Else F and F_theta at the flow's theta give the next one, which is Newton's step for that
+ * flow. 1: theta does not turn, and is final. */
+MHB_INLINE int predict(const mhb_slip *slip, mhb_lanes over, mhb_panel *p) {
+  p->theta = lanes_all(p->theta0);
+  rate(slip, over, p);
+  if (p->h * lanes_top(lanes_abs(p->F)) < 1e-5 * slip->tolerance) return 1;
+  mhb_lanes e0 = p->e[0], e1 = p->e[1];
+  p->theta += flow(slip->rule, p->h, -p->F_theta, p->F);
+  rate(slip, over, p);
+  if (slip->half == 0 && slip->skew == 0) return 0;
+  mhb_lanes c = e0 * p->e[0] + e1 * p->e[1], s = e0 * p->e[1] - e1 * p->e[0];
+  p->theta =
+      p->theta0 + flow(slip->rule, p->h, -c * p->F_theta - s * p->F, c * p->F - s * p->F_theta);
+  rate(slip, over, p);
+  return 0;
 }
 
 /* theta at the nodes of the panel's first fraction, from the interpolant of th'. */
@@ -400,19 +443,21 @@ MHB_INLINE void shorten_theta(const mhb_slip *slip, double fraction, mhb_panel *
 }
 
 /* A panel of length h from (t, theta). 1 if Newton converged. */
-MHB_HOT static int solve_panel(const mhb_slip *slip, const predictor *guess, double t, double h,
-                               double theta, mhb_panel *p) {
+MHB_HOT static int solve_panel(const mhb_slip *slip, double t, double h, double theta,
+                               mhb_panel *p) {
   p->theta0 = theta;
   place_nodes(slip, t, h, p);
-  predict(slip, guess, h, p);
-  return collocate(slip, p);
+  mhb_lanes over = 1 / (slip->mu * p->y[0]);
+  return collocate(slip, over, predict(slip, over, p), p);
 }
 
 /* The first fraction of a panel that is solved. */
 MHB_HOT static int solve_part(const mhb_slip *slip, double fraction, mhb_panel *p) {
   shorten_theta(slip, fraction, p);
   place_nodes(slip, p->t0, fraction * p->h, p);
-  return collocate(slip, p);
+  mhb_lanes over = 1 / (slip->mu * p->y[0]);
+  rate(slip, over, p);
+  return collocate(slip, over, 0, p);
 }
 
 /* c <- gamma over the panel, in powers of the fraction. */
@@ -563,16 +608,12 @@ mhb_slip_outcome mhb_slip_panel(const mhb_slip *slip, double t, double theta, do
     return MHB_SLIP_INTERVAL_ENDS;
   }
   panel->remaining = opening ? left : 1;
-  predictor guess;
-  extrapolate(slip, panel, t, &guess);
   double h = opening ? mhb_least(*suggested, .8 * left) : left / ceil(left / *suggested - 1e-9);
   for (;;) {
     double shrink = .5;
-    if (solve_panel(slip, &guess, t, h, theta, panel)) {
+    if (solve_panel(slip, t, h, theta, panel)) {
       if (panel->error < slip->tolerance || h < 1e-4 * panel->remaining) break;
       shrink = mhb_most(.9 * sqrt(sqrt(sqrt(sqrt(slip->tolerance / panel->error)))), .25);
-    } else {
-      memset(&guess, 0, sizeof guess);
     }
     h *= shrink;
     if (h < SHORTEST) return MHB_SLIP_FAILED;
@@ -592,12 +633,6 @@ double mhb_slip_closing_rate(const mhb_slip *slip, const mhb_direction *d, const
   *D            = along + d->beta * across + mhb_slip_gamma(slip, d, dy) * d->beta_theta;
   double rotate = g[0] * ddy[1] + g[1] * ddy[2] + d->beta * slip->mu * ddy[0];
   return rotate / (slip->mu * dy[0] + *D);
-}
-
-double mhb_slip_rate(const mhb_slip *slip, double theta, const double y[3], const double dy[3]) {
-  mhb_direction d      = mhb_slip_direction(slip->K, theta);
-  double        across = d.q[0] * dy[1] + d.q[1] * dy[2];
-  return (across - d.beta * mhb_slip_gamma(slip, &d, dy)) / (slip->mu * y[0]);
 }
 
 /* In the eigenbasis of K: sum_i (x_i/(a + lambda k_i))^2 = 1, lambda >= 0. The sum is decreasing

@@ -25,12 +25,13 @@ enum { MHB_NODES = MHB_LANES };
  * value[j], value at the nodes. */
 typedef struct {
   mhb_lanes node, weight;
-  mhb_lanes A[MHB_NODES];             /* A[j][i] = int_0^{c_i} l_j */
-  mhb_lanes monomial[MHB_NODES];      /* coefficients of 1, s, ... s^7 of the interpolant */
-  mhb_lanes extrapolation[MHB_NODES]; /* coefficients of (s - 1)^k of the fit of degree 5 */
-  mhb_lanes bernstein[MHB_NODES];     /* Bernstein coefficients of the interpolant, degree 7 */
-  mhb_lanes end;                      /* weights of the interpolant's value at s = 1 */
-  mhb_lanes legendre[MHB_NODES];      /* Legendre coefficients of the interpolant */
+  mhb_lanes A[MHB_NODES];         /* A[j][i] = int_0^{c_i} l_j */
+  mhb_lanes between[MHB_NODES];   /* the same from the node before, or from 0 */
+  mhb_lanes stretch, commutator;  /* its length; factor of b_i x b_i-1, see flow in slip.c */
+  mhb_lanes monomial[MHB_NODES];  /* coefficients of 1, s, ... s^7 of the interpolant */
+  mhb_lanes bernstein[MHB_NODES]; /* Bernstein coefficients of the interpolant, degree 7 */
+  mhb_lanes end;                  /* weights of the interpolant's value at s = 1 */
+  mhb_lanes legendre[MHB_NODES];  /* Legendre coefficients of the interpolant */
   /* the eigenvectors V of A in real form, two lanes a conjugate pair: V, V^-1, V^-1 1 */
   mhb_lanes from_modes[MHB_NODES], to_modes[MHB_NODES], one_in_modes;
   mhb_lanes real, imag, modulus2; /* of the eigenvalues; imag with both signs of a pair */
@@ -51,7 +52,6 @@ typedef struct {
   double                 longest_panel; /* rad; at most 1.5 */
   double                 tolerance;     /* bound on a panel's error, force units */
   double                 frozen_length; /* rad before an opening over which theta is held */
-  double                 initial_rate;  /* th' where slip begins: predicts the first panel */
   double                 mild;          /* exponent up to which T needs no inverse: see slip.c */
   int                    linearized;    /* F_theta and inverse are wanted at the solution itself */
 } mhb_slip;
@@ -89,7 +89,6 @@ typedef enum {
 /* Advance from (t, theta) by one panel, at most to limit.
  *   opening    in      n = 0 at limit
  *   suggested  in out  panel length to try, rad
- *   panel      in out  the one before: it predicts the new one if it ends at t
  * At MHB_SLIP_ENDS panel->h may be 0: slip ended at once. */
 mhb_slip_outcome mhb_slip_panel(const mhb_slip *slip, double t, double theta, double limit,
                                 int opening, double *suggested, mhb_panel *panel);
@@ -107,10 +106,7 @@ mhb_direction mhb_slip_direction(const double (*K)[2], double theta);
 /* gamma = e.x' - mu n' */
 double mhb_slip_gamma(const mhb_slip *slip, const mhb_direction *d, const double dy[3]);
 
-/* th' = F */
-double mhb_slip_rate(const mhb_slip *slip, double theta, const double y[3], const double dy[3]);
-
-/* The same at a closing, n = 0 < n', where slip begins in direction d. The regular solution is
+/* th' at a closing, n = 0 < n', where slip begins in direction d. The regular solution is
  * th' = [q.x'' - beta (e.x'' - mu n'')]/(mu n' + D), D = e.x' + beta q.x' + gamma beta'. */
 double mhb_slip_closing_rate(const mhb_slip *slip, const mhb_direction *d, const double dy[3],
                              const double ddy[3], double *D);

@@ -101,6 +101,19 @@ MHB_INLINE mhb_lanes lanes_swap(mhb_lanes x) {
 #endif
 }
 
+/* x moved up by n lanes, n = 1, 2, 4 a constant; `low` fills the lanes below. */
+MHB_INLINE mhb_lanes lanes_rise(mhb_lanes low, mhb_lanes x, int n) {
+#ifdef __clang__
+  return n == 1   ? __builtin_shufflevector(x, low, 8, 0, 1, 2, 3, 4, 5, 6)
+         : n == 2 ? __builtin_shufflevector(x, low, 8, 9, 0, 1, 2, 3, 4, 5)
+                  : __builtin_shufflevector(x, low, 8, 9, 10, 11, 0, 1, 2, 3);
+#else
+  return n == 1   ? __builtin_shuffle(x, low, (mhb_lanes_bits){8, 0, 1, 2, 3, 4, 5, 6})
+         : n == 2 ? __builtin_shuffle(x, low, (mhb_lanes_bits){8, 9, 0, 1, 2, 3, 4, 5})
+                  : __builtin_shuffle(x, low, (mhb_lanes_bits){8, 9, 10, 11, 0, 1, 2, 3});
+#endif
+}
+
 MHB_INLINE double lanes_sum(mhb_lanes x) {
   return ((x[0] + x[4]) + (x[2] + x[6])) + ((x[1] + x[5]) + (x[3] + x[7]));
 }
@@ -119,6 +132,11 @@ MHB_INLINE mhb_lanes lanes_max(mhb_lanes a, mhb_lanes b) {
 
 MHB_INLINE mhb_lanes lanes_abs(mhb_lanes x) {
   return (mhb_lanes)((mhb_lanes_bits)x & LLONG_MAX); /* all but the sign */
+}
+
+MHB_INLINE mhb_lanes lanes_sqrt(mhb_lanes x) {
+  for (int i = 0; i < MHB_LANES; i++) x[i] = sqrt(x[i]);
+  return x;
 }
 
 /* Largest and smallest lane; NaN lanes may be ignored. */
@@ -147,6 +165,14 @@ MHB_INLINE void lanes_cos_sin_small(mhb_lanes r, mhb_lanes *cosine, mhb_lanes *s
       z * (-1.38888888888741095749e-03 + z * (2.48015872894767294178e-05 + z * c));
   *sine   = r + r * z * s;
   *cosine = 1 - .5 * z + z * z * c;
+}
+
+/* atan x to 4e-7 for |x| <= 1: interpolated in x^2 at Chebyshev's points. */
+MHB_INLINE mhb_lanes lanes_atan_rough(mhb_lanes x) {
+  mhb_lanes z = x * x, z2 = z * z;
+  mhb_lanes low = .99999923 - .33325678 * z, high = .083126453 - .036360431 * z;
+  mhb_lanes middle = .1987204 - .13447864 * z;
+  return x * (low + z2 * (middle + z2 * (high + z2 * .0076483539)));
 }
 
 /* cos x and sin x to rounding for |x| < 1e5. The argument is reduced by multiples of pi/2, which is

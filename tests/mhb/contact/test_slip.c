@@ -53,13 +53,10 @@ static void circular_motion(void **state) {
   const double n[SIZE] = {2}, x1[SIZE] = {0, 3}, x2[SIZE] = {0, 0, -3}, mu = .4;
   const double r = 3 / (mu * 2), c = sqrt((r - 1) / (r + 1)), phi0 = .3;
   const double b = atanh(tan(phi0 / 2) / c), end = 5;
-  double       t = 0, theta = phi0, suggested = 1, y[3], dy[3];
+  double       t = 0, theta = phi0, suggested = 1;
   fixture      f;
-  mhb_panel    panel = {.h = 0};
+  mhb_panel    panel;
   start(&f, n, x1, x2, mu);
-  mhb_signals_at(&f.signals, 0, y, dy, NULL);
-  f.slip.initial_rate = mhb_slip_rate(&f.slip, theta, y, dy);
-  assert_near(f.slip.initial_rate, r * cos(phi0), 1e-14);
   int              panels  = 0;
   double           worst   = 0;
   mhb_slip_outcome outcome = MHB_SLIP_CONTINUES;
@@ -86,12 +83,11 @@ static mhb_lanes linearised_panel(double mild, double h, double *end, double *mi
   double       suggested = h, growth    = 1;
   mhb_lanes    response[MHB_NODES], sum = lanes_all(0), drive;
   fixture      f;
-  mhb_panel    panel = {.h = 0};
+  mhb_panel    panel;
   start(&f, n, x1, x2, mu);
-  f.slip.initial_rate = r * cos(phi0);
-  f.slip.linearized   = 1;
-  f.slip.mild         = mild;
-  f.slip.tolerance    = 1e-6; /* one panel */
+  f.slip.linearized = 1;
+  f.slip.mild       = mild;
+  f.slip.tolerance  = 1e-6; /* one panel */
   assert_int_equal(mhb_slip_panel(&f.slip, 0, phi0, 9, 0, &suggested, &panel), MHB_SLIP_CONTINUES);
   assert_int_equal(panel.dense, mild == 0);
   for (int i = 0; i < 2; i++) { /* dtheta/db late over dtheta/db at 0 */
@@ -135,7 +131,7 @@ static void slip_ends_where_the_motion_turns(void **state) {
   const double n[SIZE] = {1}, x1[SIZE] = {0, 0, -2}, x2[SIZE] = {0};
   double       t = .6, theta = 0, suggested = 1;
   fixture      f;
-  mhb_panel    panel = {.h = 0};
+  mhb_panel    panel;
   start(&f, n, x1, x2, .5);
   mhb_slip_outcome outcome = MHB_SLIP_CONTINUES;
   while (outcome == MHB_SLIP_CONTINUES) {
@@ -155,7 +151,7 @@ static void slip_may_end_at_once(void **state) {
   const double n[SIZE] = {4, 0, -3}, x1[SIZE] = {0, 0, -1}, x2[SIZE] = {0};
   double       suggested = 1;
   fixture      f;
-  mhb_panel    panel = {.h = 0};
+  mhb_panel    panel;
   start(&f, n, x1, x2, .9);
   assert_int_equal(mhb_slip_panel(&f.slip, .2, 0, 1, 0, &suggested, &panel), MHB_SLIP_ENDS);
   assert_near(panel.h, 0, 0);
