@@ -28,9 +28,9 @@ static void take_arrays(mhb_contact_evaluator *c) {
   c->Z[0]            = shb_arena_take(a, stride, real);
   c->Z[1]            = shb_arena_take(a, stride, real);
   c->T               = shb_arena_take(a, stride, real);
-  c->rhs             = shb_arena_take(a, MHB_NODES * stride, real);
+  c->rhs             = shb_arena_take(a, MHB_NODES * (stride + MHB_LANES), real);
   c->T_nodes         = shb_arena_take(a, MHB_NODES * stride, real);
-  c->node_basis      = shb_arena_take(a, 3 * nf, sizeof(mhb_lanes));
+  c->node_basis      = shb_arena_take(a, sums + 2 * nf + MHB_LANES, sizeof(mhb_lanes));
   c->event_basis     = shb_arena_take(a, 2 * nb, real);
   c->history_force   = shb_arena_take(a, 3 * nf, real);
 }

@@ -58,11 +58,11 @@ struct mhb_contact_evaluator {
   /* derivatives of the state */
   mhb_sensitivity_mode   mode;
   mhb_slider_sensitivity lap;
-  double                *Z[2];        /* [stride] of the slider while stuck */
-  double                *T;           /* [stride] of theta while slipping */
-  double                *rhs;         /* [nodes][stride] of the linearised slip equation */
-  double                *T_nodes;     /* [nodes][stride] T at the nodes of a panel */
-  mhb_lanes             *node_basis;  /* [nf], then [2][nf] times mu n w q */
+  double                *Z[2];    /* [stride] of the slider while stuck */
+  double                *T;       /* [stride] of theta while slipping */
+  double                *rhs;     /* [nodes][stride + MHB_LANES] of the linearised slip equation */
+  double                *T_nodes; /* [nodes][stride] T at the nodes of a panel */
+  mhb_lanes             *node_basis;  /* [sums], then [2][nf] times mu n w q */
   double                *event_basis; /* [2][nb] basis and slope at an event */
   /* results */
   int               record; /* this lap's force is wanted */

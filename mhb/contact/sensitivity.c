@@ -124,26 +124,44 @@ MHB_HOT static void add_force(mhb_contact_evaluator *c, double growth) {
       growth * lanes_sum(weight * p->transfer / p->eKe * (across - 2 * p->beta * p->gamma));
 }
 
-/* The basis at the nodes by lanes, [nf], and its rows times mu n w q_k, [2][nf]. */
+/* The basis at the nodes by lanes, [sums], and its first rows times mu n w q_k, [2][nf]. Two
+ * recurrences, of odd and of even harmonics, do not wait for each other. */
 MHB_INLINE void basis_lanes(const mhb_contact_evaluator *c) {
-  const mhb_panel *p = &c->panel;
-  mhb_lanes       *b = c->node_basis, cs = lanes_all(1), sn = lanes_all(0);
-  b[0] = cs;
-  for (int k = 1; k <= c->H; k++) {
-    mhb_lanes next = cs * p->cosine - sn * p->sine;
-    sn             = sn * p->cosine + cs * p->sine;
-    cs             = next;
-    b[2 * k - 1]   = cs;
-    b[2 * k]       = -sn;
+  const mhb_panel *p   = &c->panel;
+  int              top = c->H + c->m;
+  mhb_lanes       *b = c->node_basis, *row = b + mhb_real_size(top);
+  mhb_lanes        c2 = p->cosine * p->cosine - p->sine * p->sine, s2 = 2 * p->sine * p->cosine;
+  mhb_lanes        cs[2] = {p->cosine, c2}, sn[2] = {p->sine, s2};
+  b[0] = lanes_all(1);
+  for (int k = 1; k <= top; k += 2) {
+    for (int i = 0; i < 2; i++) { /* one beyond top is the first row, set below */
+      b[2 * (k + i) - 1] = cs[i];
+      b[2 * (k + i)]     = -sn[i];
+      mhb_lanes next     = cs[i] * c2 - sn[i] * s2;
+      sn[i]              = sn[i] * c2 + cs[i] * s2;
+      cs[i]              = next;
+    }
   }
   mhb_lanes weight    = p->h * c->slip.mu * c->rule.weight * p->y[0];
   mhb_lanes across[2] = {-weight * p->e[1], weight * p->e[0]};
   for (int k = 0; k < 2; k++)
-    for (int i = 0; i < c->nf; i++) b[(1 + k) * c->nf + i] = across[k] * b[i];
+    for (int i = 0; i < c->nf; i++) row[k * c->nf + i] = across[k] * b[i];
+}
+
+/* Integrals of mu kv e times the basis. */
+MHB_INLINE void add_load(const mhb_contact_evaluator *c) {
+  const mhb_panel *p      = &c->panel;
+  mhb_lanes        weight = p->h * c->slip.mu * c->kv * c->rule.weight;
+  mhb_lanes        g[2] = {weight * p->e[0], weight * p->e[1]}, *sum = c->load_sums;
+  const mhb_lanes *b = c->node_basis, *end = b + mhb_real_size(c->H + c->m);
+  for (; b < end; b++, sum += 2)
+    for (int k = 0; k < 2; k++) sum[k] += g[k] * *b;
 }
 
 /* Right-hand side of the linearised slip equation, rows by node, for columns v_i, u_i, w_i:
- *   kv (beta/n b'_i - F/n b_i),  a_u b'_i,  a_w b'_i  with a = ((q - beta e) K)/(mu n). */
+ *   kv (beta/n b'_i - F/n b_i),  a_u b'_i,  a_w b'_i  with a = ((q - beta e) K)/(mu n).
+ * Eight columns are written at once. Those beyond the last harmonic are overwritten by what
+ * follows, or are the room behind a row. */
 MHB_INLINE void fill_drive(const mhb_contact_evaluator *c) {
   const mhb_panel *p    = &c->panel;
   mhb_lanes        over = p->frozen ? lanes_all(0) : 1 / p->y[0], limit = over * (1 / c->slip.mu);
@@ -151,16 +169,27 @@ MHB_INLINE void fill_drive(const mhb_contact_evaluator *c) {
   mhb_lanes slope[3] = {c->kv * p->beta * over, g0 * c->K[0][0] + g1 * c->K[1][0],
                         g0 * c->K[0][1] + g1 * c->K[1][1]};
   mhb_lanes value    = -c->kv * p->F * over;
-  int       nb       = c->nb;
-  for (int i = 0; i < nb; i++) {
-    int       k = (i + 1) / 2;
-    mhb_lanes b = c->node_basis[i], db = i == 0  ? lanes_all(0)
-                                         : i % 2 ? k * c->node_basis[i + 1]
-                                                 : -k * c->node_basis[i - 1];
-    mhb_lanes r[3] = {slope[0] * db + value * b, slope[1] * db, slope[2] * db};
-    for (int kind = 0; kind < 3; kind++)
-      for (int l = 0; l < MHB_NODES; l++) c->rhs[l * c->stride + kind * nb + i] = r[kind][l];
+  int       nb = c->nb, row = c->stride + MHB_LANES;
+  double   *rhs   = c->rhs;
+  mhb_lanes order = {1, -1, 2, -2, 3, -3, 4, -4}, sign = {1, -1, 1, -1, 1, -1, 1, -1};
+  for (int kind = 0; kind < 3; kind++) {
+    mhb_lanes harmonic = order;
+    for (int l = 0; l < MHB_NODES; l++) rhs[l * row + kind * nb] = kind == 0 ? value[l] : 0;
+    for (int i = 1; i < nb; i += MHB_LANES, harmonic += 4 * sign) {
+      mhb_lanes basis[MHB_NODES];
+#pragma GCC unroll 8
+      for (int k = 0; k < MHB_NODES; k++) basis[k] = c->node_basis[i + k];
+      lanes_transpose(basis);
+#pragma GCC unroll 8
+      for (int l = 0; l < MHB_NODES; l++) {
+        mhb_lanes r = slope[kind][l] * harmonic * lanes_swap(basis[l]);
+        if (kind == 0) r += value[l] * basis[l];
+        lanes_store(rhs + l * row + kind * nb + i, r);
+      }
+    }
   }
+  for (int l = 0; l < MHB_NODES; l++)
+    for (int j = c->slider_column; j < c->stride; j++) rhs[l * row + j] = 0;
 }
 
 /* T_nodes and T at the panel's end: the collocation equations linearised, with the same matrix. */
@@ -170,59 +199,94 @@ MHB_INLINE void columns_through(const mhb_contact_evaluator *c) {
   mhb_lanes        last = p->stiff ? c->rule.end : end * p->F_theta;
   double           keep = p->stiff ? 0 : 1;
   if (p->stiff) end = lanes_all(0);
+  double       *T_end = c->T, *T_nodes = c->T_nodes;
+  const double *rhs    = c->rhs;
+  const int     stride = c->stride, row = stride + MHB_LANES;
   mhb_slip_response(&c->slip, p, hA);
-  for (int j = 0; j < c->stride; j += MHB_LANES) {
-    mhb_lanes T = lanes_load(c->T + j), sum = keep * T, value[MHB_NODES];
+  for (int j = 0; j < stride; j += MHB_LANES) {
+    mhb_lanes T = lanes_load(T_end + j), sum = keep * T, value[MHB_NODES];
 #pragma GCC unroll 8
     for (int l = 0; l < MHB_NODES; l++) value[l] = p->transfer[l] * T;
 #pragma GCC unroll 8
     for (int q = 0; q < MHB_NODES; q++) {
-      mhb_lanes r = lanes_load(c->rhs + q * c->stride + j);
+      mhb_lanes r = lanes_load(rhs + q * row + j);
       sum += end[q] * r;
 #pragma GCC unroll 8
       for (int l = 0; l < MHB_NODES; l++) value[l] += hA[q][l] * r;
     }
 #pragma GCC unroll 8
     for (int l = 0; l < MHB_NODES; l++) {
-      lanes_store(c->T_nodes + l * c->stride + j, value[l]);
+      lanes_store(T_nodes + l * stride + j, value[l]);
       sum += last[l] * value[l];
     }
-    lanes_store(c->T + j, sum);
+    lanes_store(T_end + j, sum);
   }
 }
 
-/* J[row][j] += sum_l b[row][l] y[l][j] for a few rows at once. */
-MHB_INLINE void add_rows(int rows, int stride, const mhb_lanes *b, const double *y, double *J) {
-  for (int j = 0; j < stride; j += MHB_LANES) {
-    mhb_lanes sum[6];
-    for (int r = 0; r < rows; r++) sum[r] = lanes_load(J + r * stride + j);
+/* J[row][j] += sum_l b[row][l] y[l][j] for a few rows and vectors at once. */
+MHB_INLINE void add_block(int rows, int vectors, int stride, const mhb_lanes *b, const double *y,
+                          double *J) {
+  mhb_lanes sum[6][2];
+  for (int r = 0; r < rows; r++)
+    for (int v = 0; v < vectors; v++) sum[r][v] = lanes_load(J + r * stride + v * MHB_LANES);
 #pragma GCC unroll 8
-    for (int l = 0; l < MHB_NODES; l++) {
-      mhb_lanes column = lanes_load(y + l * stride + j);
-      for (int r = 0; r < rows; r++) sum[r] += b[r][l] * column;
-    }
-    for (int r = 0; r < rows; r++) lanes_store(J + r * stride + j, sum[r]);
+  for (int l = 0; l < MHB_NODES; l++) {
+    mhb_lanes column[2];
+    for (int v = 0; v < vectors; v++) column[v] = lanes_load(y + l * stride + v * MHB_LANES);
+    for (int r = 0; r < rows; r++)
+      for (int v = 0; v < vectors; v++) sum[r][v] += b[r][l] * column[v];
   }
+  for (int r = 0; r < rows; r++)
+    for (int v = 0; v < vectors; v++) lanes_store(J + r * stride + v * MHB_LANES, sum[r][v]);
+}
+
+MHB_INLINE void add_rows(int rows, int vectors, int stride, const mhb_lanes *b, const double *y,
+                         double *J) {
+  int j = 0;
+  for (; j + vectors * MHB_LANES <= stride; j += vectors * MHB_LANES)
+    add_block(rows, vectors, stride, b, y + j, J + j);
+  for (; j < stride; j += MHB_LANES) add_block(rows, 1, stride, b, y + j, J + j);
 }
 
 /* The hot loop of the derivative. Six rows hide the latency of a multiplication; two and one make
- * up the rest. */
-MHB_INLINE void add_outer(int rows, int stride, const mhb_lanes *b, const double *y, double *J) {
+ * up the rest. Two vectors at once load half as often, where the registers suffice. */
+MHB_INLINE void add_outer(int rows, int vectors, int stride, const mhb_lanes *b, const double *y,
+                          double *J) {
   int row = 0;
-  for (; row + 6 <= rows; row += 6) add_rows(6, stride, b + row, y, J + row * stride);
-  for (; row + 2 <= rows; row += 2) add_rows(2, stride, b + row, y, J + row * stride);
-  for (; row < rows; row++) add_rows(1, stride, b + row, y, J + row * stride);
+  for (; row + 6 <= rows; row += 6) add_rows(6, vectors, stride, b + row, y, J + row * stride);
+  for (; row + 2 <= rows; row += 2) add_rows(2, vectors, stride, b + row, y, J + row * stride);
+  for (; row < rows; row++) add_rows(1, vectors, stride, b + row, y, J + row * stride);
 }
 
-MHB_HOT static void add_derivative(const mhb_contact_evaluator *c) {
-  const mhb_panel *p      = &c->panel;
-  mhb_lanes        weight = p->h * c->slip.mu * c->kv * c->rule.weight,
-            g[2]          = {weight * p->e[0], weight * p->e[1]};
-  add_to_sums(p, c->H + c->m, 2, 2, g, c->load_sums);
+MHB_HOT static void add_product(int rows, int stride, const mhb_lanes *b, const double *y,
+                                double *J) {
+  add_outer(rows, 1, stride, b, y, J);
+}
+
+#ifdef MHB_HAS_WIDE
+MHB_WIDE static void add_product_wide(int rows, int stride, const mhb_lanes *b, const double *y,
+                                      double *J) {
+  add_outer(rows, 2, stride, b, y, J);
+}
+#else
+#define add_product_wide add_product
+#endif
+
+MHB_HOT static void propagate_columns(const mhb_contact_evaluator *c) {
   basis_lanes(c);
+  add_load(c);
   fill_drive(c);
   columns_through(c);
-  add_outer(2 * c->nf, c->stride, c->node_basis + c->nf, c->T_nodes, c->J);
+}
+
+static void add_derivative(const mhb_contact_evaluator *c) {
+  const mhb_lanes *rows = c->node_basis + mhb_real_size(c->H + c->m);
+  propagate_columns(c);
+  if (mhb_has_wide()) {
+    add_product_wide(2 * c->nf, c->stride, rows, c->T_nodes, c->J);
+  } else {
+    add_product(2 * c->nf, c->stride, rows, c->T_nodes, c->J);
+  }
 }
 
 void mhb_sensitivity_panel(mhb_contact_evaluator *c) {

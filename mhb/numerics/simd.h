@@ -114,6 +114,35 @@ MHB_INLINE mhb_lanes lanes_rise(mhb_lanes low, mhb_lanes x, int n) {
 #endif
 }
 
+/* The rows x of an 8 by 8 matrix become its columns. */
+MHB_INLINE void lanes_transpose(mhb_lanes x[MHB_LANES]) {
+#ifdef __clang__
+#define MHB_SHUFFLE(a, b, ...) __builtin_shufflevector(a, b, __VA_ARGS__)
+#else
+#define MHB_SHUFFLE(a, b, ...) __builtin_shuffle(a, b, (mhb_lanes_bits){__VA_ARGS__})
+#endif
+#pragma GCC unroll 8
+  for (int i = 0; i < 4; i++) {
+    mhb_lanes a = x[i], b = x[i + 4];
+    x[i]     = MHB_SHUFFLE(a, b, 0, 1, 2, 3, 8, 9, 10, 11);
+    x[i + 4] = MHB_SHUFFLE(a, b, 4, 5, 6, 7, 12, 13, 14, 15);
+  }
+#pragma GCC unroll 8
+  for (int k = 0; k < 4; k++) {
+    int       i = k / 2 * 4 + k % 2;
+    mhb_lanes a = x[i], b = x[i + 2];
+    x[i]     = MHB_SHUFFLE(a, b, 0, 1, 8, 9, 4, 5, 12, 13);
+    x[i + 2] = MHB_SHUFFLE(a, b, 2, 3, 10, 11, 6, 7, 14, 15);
+  }
+#pragma GCC unroll 8
+  for (int i = 0; i < MHB_LANES; i += 2) {
+    mhb_lanes a = x[i], b = x[i + 1];
+    x[i]     = MHB_SHUFFLE(a, b, 0, 8, 2, 10, 4, 12, 6, 14);
+    x[i + 1] = MHB_SHUFFLE(a, b, 1, 9, 3, 11, 5, 13, 7, 15);
+  }
+#undef MHB_SHUFFLE
+}
+
 MHB_INLINE double lanes_sum(mhb_lanes x) {
   return ((x[0] + x[4]) + (x[2] + x[6])) + ((x[1] + x[5]) + (x[3] + x[7]));
 }
