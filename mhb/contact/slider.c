@@ -127,6 +127,7 @@ static int run_slip(mhb_contact_evaluator *c, slider *s, double end, int opening
 }
 
 static int run_closed(mhb_contact_evaluator *c, slider *s, double end, int opening) {
+  c->panel.error = INFINITY; /* no panel before */
   for (int events = 0; s->t < end; events++) {
     if (events > MAX_EVENTS) return 0;
     if (s->state == MHB_STICK) {
@@ -147,6 +148,7 @@ static void set_panels(mhb_contact_evaluator *c, double tolerance) {
   c->slip.longest_panel = mhb_least(1.5, reach / (wanted + 2 * c->mean_harmonic + 1));
   c->slip.tolerance     = .2 * tolerance * c->force_level;
   c->slip.mild          = 4 * sqrt(sqrt(sqrt(400 * tolerance)));
+  c->slip.newton_mild   = mhb_most(3, mhb_least(8, 3 * sqrt(sqrt(sqrt(3e7 * c->slip.tolerance)))));
 }
 
 /* theta may be held over tau before an opening: the error in force is about mu |n'| tau^2/2. */

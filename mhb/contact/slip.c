@@ -176,7 +176,7 @@ static const mhb_lanes UNIT[MHB_NODES] = {{1, 0, 0, 0, 0, 0, 0, 0}, {0, 1, 0, 0,
 /* The inverse of M = I - h A diag(F_theta), by columns. Gauss-Jordan in place on the transpose,
  * whose rows are the columns that it wants. Pivoting is not needed: the diagonal of Gauss' matrix
  * rule->A is positive, and F_theta <= 0 where slip is stiff. Returns 0 if a pivot vanishes. */
-MHB_INLINE int invert(const mhb_collocation *rule, mhb_panel *p) {
+MHB_HOT static int invert(const mhb_collocation *rule, mhb_panel *p) {
   mhb_lanes M[MHB_NODES], scale = -p->h * p->F_theta, pivots = lanes_all(0);
 #pragma GCC unroll 8
   for (int j = 0; j < MHB_NODES; j++) M[j] = UNIT[j] + rule->A[j] * lanes_pick(scale, j);
@@ -195,7 +195,8 @@ MHB_INLINE int invert(const mhb_collocation *rule, mhb_panel *p) {
   return lanes_bottom(lanes_abs(pivots)) > .02;
 }
 
-/* Exponents of a panel up to which Newton's steps need no inverse, and what they err by there. */
+/* Exponent of a panel up to which Newton's steps and T need no inverse, and what a step errs by
+ * there. Beyond it that is like its eighth power. */
 static const double MILD = 3, ROUGH = 1e-4;
 
 MHB_INLINE void place_nodes(const mhb_slip *slip, double t, double h, mhb_panel *p) {
@@ -273,105 +274,18 @@ MHB_INLINE int linearise(const mhb_slip *slip, double mildest, mhb_panel *p) {
   const mhb_collocation *rule = slip->rule;
   p->mean                     = lanes_sum(rule->weight * p->F_theta);
   mhb_lanes apart             = p->h * (p->F_theta - p->mean);
-  p->dense                    = !(lanes_top(lanes_abs(apart)) < mildest);
+  p->apart                    = lanes_top(lanes_abs(apart));
+  p->dense                    = !(p->apart < mildest);
   if (p->dense) return invert(rule, p);
   double    hm   = p->h * p->mean;
   mhb_lanes over = 1 / (1 - 2 * hm * rule->real + hm * hm * rule->modulus2);
-  p->swing       = lanes_exp(apply(rule->A, apart));
-  p->even        = p->h * over * (rule->real - hm * rule->modulus2);
-  p->odd         = p->h * over * rule->imag;
+  mhb_lanes less;
+  p->swing  = lanes_exp(apply(rule->A, apart), &less);
+  p->weight = p->F_theta * less;
+  p->even   = p->h * over * (rule->real - hm * rule->modulus2);
+  p->odd    = p->h * over * rule->imag;
   return 1;
 }
-
-/* (I - h A diag(F_theta))^-1 r = r + s (I - h m A)^-1 h A (F_theta/s r); weight = F_theta/s */
-MHB_INLINE mhb_lanes newton_step(const mhb_slip *slip, const mhb_panel *p, mhb_lanes weight,
-                                 mhb_lanes r) {
-  const mhb_collocation *rule = slip->rule;
-  if (p->dense) return apply(p->inverse, r);
-  return r + p->swing * apply(rule->from_modes,
-                              in_modes(p->even, p->odd, apply(rule->to_modes, weight * r)));
-}
-
-/* T at the nodes and the end for T = 1 at the start: s (I - h m A)^-1 1. */
-MHB_INLINE void set_transfer(const mhb_slip *slip, mhb_panel *p) {
-  const mhb_collocation *rule = slip->rule;
-  if (p->dense) {
-    p->transfer = p->inverse[0];
-    for (int j = 1; j < MHB_NODES; j++) p->transfer += p->inverse[j];
-  } else { /* 1/(1 - h m lambda) = 1 + m (h lambda/(1 - h m lambda)) */
-    p->transfer = p->swing * (1 + p->mean * apply(rule->from_modes,
-                                                  in_modes(p->even, p->odd, rule->one_in_modes)));
-  }
-  p->growth = p->stiff ? lanes_sum(rule->end * p->transfer)
-                       : 1 + p->h * lanes_sum(rule->weight * p->F_theta * p->transfer);
-}
-
-MHB_HOT void mhb_slip_response(const mhb_slip *slip, const mhb_panel *p,
-                               mhb_lanes response[MHB_NODES]) {
-  const mhb_collocation *rule = slip->rule;
-  mhb_lanes              over = 1 / p->swing;
-  for (int q = 0; q < MHB_NODES; q++) {
-    if (p->dense) {
-      mhb_lanes sum = p->inverse[0] * rule->A[q][0];
-      for (int j = 1; j < MHB_NODES; j++) sum += p->inverse[j] * rule->A[q][j];
-      response[q] = p->h * sum;
-    } else {
-      response[q] = p->swing * over[q] *
-                    apply(rule->from_modes, in_modes(p->even, p->odd, rule->to_modes[q]));
-    }
-  }
-}
-
-/* Newton's method on the collocation equations from theta, F, F_theta; the matrix is kept while it
- * converges well. over = 1/(mu n); solved: theta is final. 1: converged.
- *
- * Gauss collocation carries an error of the start to the end undamped where h F_theta -> -infinity,
- * though it hardly shows at the nodes. There the end is extrapolated from the nodes. */
-MHB_INLINE int collocate(const mhb_slip *slip, mhb_lanes over, int solved, mhb_panel *p) {
-  const mhb_collocation *rule   = slip->rule;
-  mhb_lanes              weight = over;
-  double                 before = INFINITY, left = INFINITY, enough = .3 * slip->tolerance;
-  int                    fresh = 0, isotropic = slip->half == 0 && slip->skew == 0;
-  if (solved) {
-    left = 0;
-    if (!linearise(slip, MILD, p)) return 0;
-  }
-  for (int i = 0; left > enough; i++) {
-    if (i == 16) return 0;
-    if (!fresh) {
-      if (!linearise(slip, MILD, p)) return 0;
-      weight = p->F_theta / p->swing;
-    }
-    mhb_lanes step =
-        newton_step(slip, p, weight, p->theta0 + p->h * apply(rule->A, p->F) - p->theta);
-    double size    = lanes_top(lanes_abs(step));
-    int    stalled = i > 1 && size > .5 * before && size < 1e-7; /* at the rounding of F */
-    if (!(size < 4) || (i > 5 && size > .5 * before && size > 1e-7)) return 0;
-    p->theta += step;
-    /* the error is quadratic in the last step, or its product with the one before; or that of the
-     * matrix */
-    left  = size * mhb_most(mhb_least(1, fresh ? size / before : size), p->dense ? 0 : ROUGH);
-    fresh = size < .1 * before || i == 0; /* as good a matrix as any */
-    if (size > .05) fresh = 0;
-    before = size;
-    if (isotropic) {
-      turn(p, step, size);
-    } else {
-      rate(slip, over, p);
-    }
-    if (size < 1e-14 || stalled) break;
-  }
-  if (isotropic) p->gamma = -p->F_theta / over - slip->mu * p->dy[0];
-  if (slip->linearized && !linearise(slip, slip->mild, p)) return 0;
-  p->stiff  = p->h * lanes_top(p->F_theta) < -20;
-  p->theta1 = p->stiff ? lanes_sum(rule->end * p->theta)
-                       : p->theta0 + p->h * lanes_sum(rule->weight * p->F);
-  set_transfer(slip, p);
-  p->error = panel_error(slip, p);
-  return isfinite(p->theta1);
-}
-
-/* ---- prediction and end of a panel ---- */
 
 /* exp of a symmetric matrix of trace 0 plus a rotation, up to a factor: rows (a, b), (c, d). */
 typedef struct {
@@ -395,7 +309,8 @@ static const double FAR = 12;
  * u = (cos, sin) of half of it obeys u' = (1/2) [b_1 b_2; b_2 -b_1] u, up to its length. Each
  * stretch between nodes is Magnus' exponential of fourth order; products of them are the flow.
  * tanh(r)/r is Pade's. Next to n = 0 b is no polynomial: there it is held over each stretch. */
-MHB_INLINE mhb_lanes flow(const mhb_collocation *rule, double h, mhb_lanes b1, mhb_lanes b2) {
+MHB_INLINE mhb_lanes flow(const mhb_collocation *rule, double h, mhb_lanes b1, mhb_lanes b2,
+                          mhb_lanes e[2]) {
   mhb_lanes turned = b1 * lanes_rise(b2, b2, 1) - b2 * lanes_rise(b1, b1, 1);
   turned[0]        = turned[1];
   mhb_lanes p = .5 * h * apply(rule->between, b1), q = .5 * h * apply(rule->between, b2);
@@ -411,28 +326,131 @@ MHB_INLINE mhb_lanes flow(const mhb_collocation *rule, double h, mhb_lanes b1, m
   if (far) tanh = lanes_where(s > FAR, .99 / lanes_sqrt(s), tanh);
   mobius    step = {1 + tanh * p, tanh * (q + r), tanh * (q - r), 1 - tanh * p};
   mobius    all  = compose(compose(compose(step, 1), 2), 4);
-  mhb_lanes size = lanes_sqrt(all.a * all.a + all.c * all.c);
-  mhb_lanes tan  = lanes_min(all.c / (size + all.a), lanes_all(1)); /* of a quarter */
+  mhb_lanes aa = all.a * all.a, cc = all.c * all.c, one = 1 / (aa + cc), size = lanes_sqrt(aa + cc);
+  e[0]          = one * (aa - cc);
+  e[1]          = 2 * one * all.a * all.c;
+  mhb_lanes tan = lanes_min(all.c / (size + all.a), lanes_all(1)); /* of a quarter */
   return 4 * lanes_atan_rough(lanes_max(tan, lanes_all(-1)));
 }
 
-/* theta, F, F_theta at the nodes. F and F_theta at theta0 give the flow. For K = k I it is th'
- * itself. Else F and F_theta at the flow's theta give the next one, which is Newton's step for that
- * flow. 1: theta does not turn, and is final. */
+/* theta, F, F_theta at the nodes, and the panel linearised there. F and F_theta at theta0 give the
+ * flow. For K = k I it is th' itself, and gives F_theta before theta is known. Else F and F_theta at
+ * the flow's theta give the next one, which is Newton's step for that flow.
+ *
+ * 1: theta does not turn, and is final; -1: the panel has no inverse. */
 MHB_INLINE int predict(const mhb_slip *slip, mhb_lanes over, mhb_panel *p) {
+  mhb_lanes e[2];
   p->theta = lanes_all(p->theta0);
   rate(slip, over, p);
-  if (p->h * lanes_top(lanes_abs(p->F)) < 1e-5 * slip->tolerance) return 1;
-  mhb_lanes e0 = p->e[0], e1 = p->e[1];
-  p->theta += flow(slip->rule, p->h, -p->F_theta, p->F);
+  if (p->h * lanes_top(lanes_abs(p->F)) < 1e-5 * slip->tolerance)
+    return linearise(slip, slip->newton_mild, p) ? 1 : -1;
+  mhb_lanes e0 = p->e[0], e1 = p->e[1], b1 = -p->F_theta, b2 = p->F;
+  p->theta += flow(slip->rule, p->h, b1, b2, e);
+  if (slip->half == 0 && slip->skew == 0) {
+    p->F_theta = -b1 * e[0] - b2 * e[1];
+    if (!linearise(slip, slip->newton_mild, p)) return -1;
+    rate(slip, over, p);
+    return 0;
+  }
   rate(slip, over, p);
-  if (slip->half == 0 && slip->skew == 0) return 0;
   mhb_lanes c = e0 * p->e[0] + e1 * p->e[1], s = e0 * p->e[1] - e1 * p->e[0];
   p->theta =
-      p->theta0 + flow(slip->rule, p->h, -c * p->F_theta - s * p->F, c * p->F - s * p->F_theta);
+      p->theta0 + flow(slip->rule, p->h, -c * p->F_theta - s * p->F, c * p->F - s * p->F_theta, e);
   rate(slip, over, p);
-  return 0;
+  return linearise(slip, slip->newton_mild, p) ? 0 : -1;
 }
+
+/* What Newton's step errs by, of its size. */
+MHB_INLINE double rough(const mhb_panel *p) {
+  double low = .5 * p->apart, high = p->apart / MILD;
+  if (p->dense) return 0;
+  if (high < 1) return ROUGH * mhb_least(1, low * low * low * low);
+  high *= high;
+  high *= high;
+  return ROUGH * high * high;
+}
+
+/* (I - h A diag(F_theta))^-1 r = r + s (I - h m A)^-1 h A (F_theta/s r) */
+MHB_INLINE mhb_lanes newton_step(const mhb_slip *slip, const mhb_panel *p, mhb_lanes r) {
+  const mhb_collocation *rule = slip->rule;
+  if (p->dense) return apply(p->inverse, r);
+  return r + p->swing * apply(rule->from_modes,
+                              in_modes(p->even, p->odd, apply(rule->to_modes, p->weight * r)));
+}
+
+/* T at the nodes and the end for T = 1 at the start: s (I - h m A)^-1 1. */
+MHB_INLINE void set_transfer(const mhb_slip *slip, mhb_panel *p) {
+  const mhb_collocation *rule = slip->rule;
+  if (p->dense) {
+    p->transfer = p->inverse[0];
+    for (int j = 1; j < MHB_NODES; j++) p->transfer += p->inverse[j];
+  } else { /* 1/(1 - h m lambda) = 1 + m (h lambda/(1 - h m lambda)) */
+    p->transfer = p->swing * (1 + p->mean * apply(rule->from_modes,
+                                                  in_modes(p->even, p->odd, rule->one_in_modes)));
+    if (p->apart > MILD)
+      p->transfer +=
+          newton_step(slip, p, 1 + p->h * apply(rule->A, p->F_theta * p->transfer) - p->transfer);
+  }
+  p->growth = p->stiff ? lanes_sum(rule->end * p->transfer)
+                       : 1 + p->h * lanes_sum(rule->weight * p->F_theta * p->transfer);
+}
+
+MHB_HOT void mhb_slip_response(const mhb_slip *slip, const mhb_panel *p,
+                               mhb_lanes response[MHB_NODES]) {
+  const mhb_collocation *rule = slip->rule;
+  mhb_lanes              over = 1 / p->swing;
+  for (int q = 0; q < MHB_NODES; q++) {
+    if (p->dense) {
+      mhb_lanes sum = p->inverse[0] * rule->A[q][0];
+      for (int j = 1; j < MHB_NODES; j++) sum += p->inverse[j] * rule->A[q][j];
+      response[q] = p->h * sum;
+    } else {
+      response[q] = p->swing * over[q] *
+                    apply(rule->from_modes, in_modes(p->even, p->odd, rule->to_modes[q]));
+    }
+  }
+}
+
+/* Newton's method on the collocation equations from theta, F, F_theta and the linearised panel. The
+ * matrix is kept while it converges well. over = 1/(mu n); solved: theta is final. 1: converged.
+ *
+ * Gauss collocation carries an error of the start to the end undamped where h F_theta -> -infinity,
+ * though it hardly shows at the nodes. There the end is extrapolated from the nodes. */
+MHB_INLINE int collocate(const mhb_slip *slip, mhb_lanes over, int solved, mhb_panel *p) {
+  const mhb_collocation *rule   = slip->rule;
+  double                 before = 1, left = solved ? 0 : INFINITY, enough = .3 * slip->tolerance;
+  int                    fresh = 1, isotropic = slip->half == 0 && slip->skew == 0;
+  for (int i = 0; left > enough; i++) {
+    if (i == 16) return 0;
+    if (!fresh && !linearise(slip, slip->newton_mild, p)) return 0;
+    mhb_lanes step    = newton_step(slip, p, p->theta0 + p->h * apply(rule->A, p->F) - p->theta);
+    double    size    = lanes_top(lanes_abs(step));
+    int       stalled = i > 1 && size > .5 * before && size < 1e-7; /* at the rounding of F */
+    if (!(size < 4) || (i > 5 && size > .5 * before && size > 1e-7)) return 0;
+    p->theta += step;
+    /* the error is quadratic in the last step, or its product with the one before; or that of the
+     * matrix */
+    left   = size * mhb_most(mhb_least(1, fresh && i > 0 ? size / before : size), rough(p));
+    fresh  = size < .05 && (size < .1 * before || i == 0); /* as good a matrix as any */
+    before = size;
+    if (isotropic) {
+      turn(p, step, size);
+    } else {
+      rate(slip, over, p);
+    }
+    if (size < 1e-14 || stalled) break;
+  }
+  if (isotropic) p->gamma = -p->F_theta / over - slip->mu * p->dy[0];
+  if (slip->linearized && !linearise(slip, slip->mild, p)) return 0;
+  p->stiff  = p->h * lanes_top(p->F_theta) < -20;
+  p->theta1 = p->stiff ? lanes_sum(rule->end * p->theta)
+                       : p->theta0 + p->h * lanes_sum(rule->weight * p->F);
+  set_transfer(slip, p);
+  p->error = panel_error(slip, p);
+  return isfinite(p->theta1);
+}
+
+/* ---- prediction and end of a panel ---- */
 
 /* theta at the nodes of the panel's first fraction, from the interpolant of th'. */
 MHB_INLINE void shorten_theta(const mhb_slip *slip, double fraction, mhb_panel *p) {
@@ -447,8 +465,9 @@ MHB_HOT static int solve_panel(const mhb_slip *slip, double t, double h, double 
                                mhb_panel *p) {
   p->theta0 = theta;
   place_nodes(slip, t, h, p);
-  mhb_lanes over = 1 / (slip->mu * p->y[0]);
-  return collocate(slip, over, predict(slip, over, p), p);
+  mhb_lanes over   = 1 / (slip->mu * p->y[0]);
+  int       solved = predict(slip, over, p);
+  return solved >= 0 && collocate(slip, over, solved, p);
 }
 
 /* The first fraction of a panel that is solved. */
@@ -457,7 +476,7 @@ MHB_HOT static int solve_part(const mhb_slip *slip, double fraction, mhb_panel *
   place_nodes(slip, p->t0, fraction * p->h, p);
   mhb_lanes over = 1 / (slip->mu * p->y[0]);
   rate(slip, over, p);
-  return collocate(slip, over, 0, p);
+  return linearise(slip, slip->newton_mild, p) && collocate(slip, over, 0, p);
 }
 
 /* c <- gamma over the panel, in powers of the fraction. */
@@ -608,7 +627,8 @@ mhb_slip_outcome mhb_slip_panel(const mhb_slip *slip, double t, double theta, do
     return MHB_SLIP_INTERVAL_ENDS;
   }
   panel->remaining = opening ? left : 1;
-  double h = opening ? mhb_least(*suggested, .8 * left) : left / ceil(left / *suggested - 1e-9);
+  double share     = panel->error < 1e-6 * slip->tolerance ? .95 : .8;
+  double h = opening ? mhb_least(*suggested, share * left) : left / ceil(left / *suggested - 1e-9);
   for (;;) {
     double shrink = .5;
     if (solve_panel(slip, t, h, theta, panel)) {
@@ -618,10 +638,11 @@ mhb_slip_outcome mhb_slip_panel(const mhb_slip *slip, double t, double theta, do
     h *= shrink;
     if (h < SHORTEST) return MHB_SLIP_FAILED;
   }
-  int    at_limit = !opening && h >= left * (1 - 1e-15);
-  double room     = slip->tolerance / mhb_most(panel->error, 1e-30);
-  *suggested      = mhb_least(slip->longest_panel, room > 100 ? 1.5 * h : h);
-  double end      = slip_end(slip, panel);
+  int at_limit = !opening && h >= left * (1 - 1e-15);
+  *suggested   = h;
+  if (__builtin_expect(panel->error < .01 * slip->tolerance, 1))
+    *suggested = mhb_least(slip->longest_panel, 1.5 * h);
+  double end = slip_end(slip, panel);
   if (end <= 1) return find_end(slip, end, panel);
   return at_limit ? MHB_SLIP_INTERVAL_ENDS : MHB_SLIP_CONTINUES;
 }

@@ -52,8 +52,9 @@ typedef struct {
   double                 longest_panel; /* rad; at most 1.5 */
   double                 tolerance;     /* bound on a panel's error, force units */
   double                 frozen_length; /* rad before an opening over which theta is held */
-  double                 mild;          /* exponent up to which T needs no inverse: see slip.c */
-  int                    linearized;    /* F_theta and inverse are wanted at the solution itself */
+  /* exponents of a panel up to which Newton's steps, and T, need no inverse: see slip.c */
+  double newton_mild, mild;
+  int    linearized; /* F_theta and inverse are wanted at the solution itself */
 } mhb_slip;
 
 /* One panel of slip. */
@@ -71,7 +72,8 @@ typedef struct {
   int       dense;              /* the matrix was inverted; else the next three stand for it */
   mhb_lanes inverse[MHB_NODES]; /* dense: columns of (I - h A diag(F_theta))^-1 */
   double    mean;               /* of F_theta over the panel */
-  mhb_lanes swing;              /* exp int (F_theta - mean) */
+  double    apart;              /* largest h |F_theta - mean| */
+  mhb_lanes swing, weight;      /* exp int (F_theta - mean); F_theta/swing */
   mhb_lanes even, odd;          /* h A (I - h mean A)^-1 in the eigenvectors of A */
   mhb_lanes transfer;           /* dtheta at the nodes by dtheta at the start */
   double    growth;             /* the same at the end */
@@ -89,6 +91,7 @@ typedef enum {
 /* Advance from (t, theta) by one panel, at most to limit.
  *   opening    in      n = 0 at limit
  *   suggested  in out  panel length to try, rad
+ *   panel      in out  the one before, whose error tells how near to an opening the next may go
  * At MHB_SLIP_ENDS panel->h may be 0: slip ended at once. */
 mhb_slip_outcome mhb_slip_panel(const mhb_slip *slip, double t, double theta, double limit,
                                 int opening, double *suggested, mhb_panel *panel);

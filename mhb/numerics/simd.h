@@ -220,20 +220,21 @@ MHB_INLINE void lanes_cos_sin(mhb_lanes x, mhb_lanes *cosine, mhb_lanes *sine) {
   *cosine = (mhb_lanes)((mhb_lanes_bits)lanes_where(swap, s, c) ^ cos_sign);
 }
 
-/* exp x for |x| < 700, to 7e-15 of the value. The argument is reduced by multiples of ln 2.
- * Taylor's series to degree 11 follows; its rest is 6.3e-15. */
-MHB_INLINE mhb_lanes lanes_exp(mhb_lanes x) {
+/* exp x and exp -x for |x| < 700, to 7e-15 of the value. The argument is reduced by multiples of
+ * ln 2. Taylor's series to degree 11 follows; its rest is 6.3e-15. */
+MHB_INLINE mhb_lanes lanes_exp(mhb_lanes x, mhb_lanes *inverse) {
   const double   magic = 6755399441055744.0;
   mhb_lanes      turns = x * 1.44269504088896338700 + magic;
   mhb_lanes_bits n     = (mhb_lanes_bits)turns << 52; /* the low bits of magic are zero */
   turns -= magic;
-  mhb_lanes r  = (x - turns * 6.93147180369123816490e-01) - turns * 1.90821492927058770002e-10;
-  mhb_lanes r2 = r * r, r4 = r2 * r2;
-  mhb_lanes low    = (1 + r) + r2 * (.5 + r * (1. / 6)),
-            middle = (1. / 24 + r * (1. / 120)) + r2 * (1. / 720 + r * (1. / 5040)),
-            high   = (1. / 40320 + r * (1. / 362880)) + r2 * (1. / 3628800 + r * (1. / 39916800));
-  mhb_lanes y      = low + r4 * (middle + r4 * high);
-  return (mhb_lanes)((mhb_lanes_bits)y + n);
+  mhb_lanes r = (x - turns * 6.93147180369123816490e-01) - turns * 1.90821492927058770002e-10;
+  mhb_lanes s = r * r, s2 = s * s;
+  mhb_lanes even =
+      (1 + s * .5) + s2 * ((1. / 24 + s * (1. / 720)) + s2 * (1. / 40320 + s * (1. / 3628800)));
+  mhb_lanes odd = (1 + s * (1. / 6)) +
+                  s2 * ((1. / 120 + s * (1. / 5040)) + s2 * (1. / 362880 + s * (1. / 39916800)));
+  *inverse = (mhb_lanes)((mhb_lanes_bits)(even - r * odd) - n);
+  return (mhb_lanes)((mhb_lanes_bits)(even + r * odd) + n);
 }
 
 #endif

@@ -43,6 +43,7 @@ static void start(fixture *f, const double *n, const double *x1, const double *x
                        .peak_load     = 10,
                        .top_harmonic  = M,
                        .longest_panel = 1,
+                       .newton_mild   = 3,
                        .tolerance     = 1e-11};
 }
 
@@ -55,7 +56,7 @@ static void circular_motion(void **state) {
   const double b = atanh(tan(phi0 / 2) / c), end = 5;
   double       t = 0, theta = phi0, suggested = 1;
   fixture      f;
-  mhb_panel    panel;
+  mhb_panel    panel = {.error = INFINITY};
   start(&f, n, x1, x2, mu);
   int              panels  = 0;
   double           worst   = 0;
@@ -83,7 +84,7 @@ static mhb_lanes linearised_panel(double mild, double h, double *end, double *mi
   double       suggested = h, growth    = 1;
   mhb_lanes    response[MHB_NODES], sum = lanes_all(0), drive;
   fixture      f;
-  mhb_panel    panel;
+  mhb_panel    panel = {.error = INFINITY};
   start(&f, n, x1, x2, mu);
   f.slip.linearized = 1;
   f.slip.mild       = mild;
@@ -131,7 +132,7 @@ static void slip_ends_where_the_motion_turns(void **state) {
   const double n[SIZE] = {1}, x1[SIZE] = {0, 0, -2}, x2[SIZE] = {0};
   double       t = .6, theta = 0, suggested = 1;
   fixture      f;
-  mhb_panel    panel;
+  mhb_panel    panel = {.error = INFINITY};
   start(&f, n, x1, x2, .5);
   mhb_slip_outcome outcome = MHB_SLIP_CONTINUES;
   while (outcome == MHB_SLIP_CONTINUES) {
@@ -151,7 +152,7 @@ static void slip_may_end_at_once(void **state) {
   const double n[SIZE] = {4, 0, -3}, x1[SIZE] = {0, 0, -1}, x2[SIZE] = {0};
   double       suggested = 1;
   fixture      f;
-  mhb_panel    panel;
+  mhb_panel    panel = {.error = INFINITY};
   start(&f, n, x1, x2, .9);
   assert_int_equal(mhb_slip_panel(&f.slip, .2, 0, 1, 0, &suggested, &panel), MHB_SLIP_ENDS);
   assert_near(panel.h, 0, 0);
