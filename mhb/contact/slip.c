@@ -233,15 +233,18 @@ static double power16(double x) {
 MHB_INLINE double panel_error(const mhb_slip *slip, const mhb_panel *p) {
   mhb_lanes values = p->stiff ? (p->theta - p->theta0) / p->h : p->F;
   mhb_lanes a      = lanes_abs(apply(slip->rule->legendre, values));
-  mhb_lanes pull   = (lanes_abs(p->dy[1]) + lanes_abs(p->dy[2])) * (1 + lanes_abs(p->beta));
-  double    noise  = p->stiff ? 0 : 1e-15 * lanes_top(pull / (slip->mu * p->y[0]));
-  double    high = a[6] + a[7] > noise ? a[6] + a[7] - noise : 0, low = a[1] + a[2];
-  double    ratio = high < low ? high / low : 1, n = lanes_top(p->y[0]);
+  double    high = a[6] + a[7], low = a[1] + a[2], ratio = high < low ? high / low : 1;
+  double    n = lanes_top(p->y[0]), scale = p->h * slip->mu;
   double    carried = p->dy[0][MHB_NODES - 1] > 0 && !p->stiff ? slip->peak_load : n;
   if (p->remaining < 1) carried *= p->remaining;
   double wave   = (slip->top_harmonic + lanes_top(lanes_abs(values))) * p->h;
-  double turned = high * ratio * (p->stiff ? p->h : ratio);
-  return p->h * slip->mu * (turned * carried + 1.7e-23 * power16(wave) * n);
+  double sums   = scale * 1.7e-23 * power16(wave) * n;
+  double turned = high * ratio * (p->stiff ? p->h : ratio) * scale * carried;
+  if (p->stiff || turned < .01 * slip->tolerance) return turned + sums;
+  mhb_lanes pull = (lanes_abs(p->dy[1]) + lanes_abs(p->dy[2])) * (1 + lanes_abs(p->beta));
+  high           = mhb_most(0, high - 1e-15 * lanes_top(pull / (slip->mu * p->y[0])));
+  ratio          = high < low ? high / low : 1;
+  return high * ratio * ratio * scale * carried + sums;
 }
 
 /* F, F_theta, e after a step of theta for K = k I. F_theta is then the quarter turn of F. The end
@@ -334,30 +337,29 @@ MHB_INLINE mhb_lanes flow(const mhb_collocation *rule, double h, mhb_lanes b1, m
 }
 
 /* theta, F, F_theta at the nodes, and the panel linearised there. F and F_theta at theta0 give the
- * flow. For K = k I it is th' itself, and gives F_theta before theta is known. Else F and F_theta at
- * the flow's theta give the next one, which is Newton's step for that flow.
- *
- * 1: theta does not turn, and is final; -1: the panel has no inverse. */
+ * flow. For K = k I it is th' itself, and gives F_theta before theta is known. Else F and F_theta
+ * at the flow's theta give the next one, which is Newton's step for that flow. There is none where
+ * theta does not turn. Returns 0 if the panel has no inverse. */
 MHB_INLINE int predict(const mhb_slip *slip, mhb_lanes over, mhb_panel *p) {
   mhb_lanes e[2];
   p->theta = lanes_all(p->theta0);
   rate(slip, over, p);
   if (p->h * lanes_top(lanes_abs(p->F)) < 1e-5 * slip->tolerance)
-    return linearise(slip, slip->newton_mild, p) ? 1 : -1;
+    return linearise(slip, slip->newton_mild, p);
   mhb_lanes e0 = p->e[0], e1 = p->e[1], b1 = -p->F_theta, b2 = p->F;
   p->theta += flow(slip->rule, p->h, b1, b2, e);
   if (slip->half == 0 && slip->skew == 0) {
     p->F_theta = -b1 * e[0] - b2 * e[1];
-    if (!linearise(slip, slip->newton_mild, p)) return -1;
+    if (!linearise(slip, slip->newton_mild, p)) return 0;
     rate(slip, over, p);
-    return 0;
+    return 1;
   }
   rate(slip, over, p);
   mhb_lanes c = e0 * p->e[0] + e1 * p->e[1], s = e0 * p->e[1] - e1 * p->e[0];
   p->theta =
       p->theta0 + flow(slip->rule, p->h, -c * p->F_theta - s * p->F, c * p->F - s * p->F_theta, e);
   rate(slip, over, p);
-  return linearise(slip, slip->newton_mild, p) ? 0 : -1;
+  return linearise(slip, slip->newton_mild, p);
 }
 
 /* What Newton's step errs by, of its size. */
@@ -411,19 +413,25 @@ MHB_HOT void mhb_slip_response(const mhb_slip *slip, const mhb_panel *p,
   }
 }
 
-/* Newton's method on the collocation equations from theta, F, F_theta and the linearised panel. The
- * matrix is kept while it converges well. over = 1/(mu n); solved: theta is final. 1: converged.
+/* What theta lacks to the collocation equations. */
+MHB_INLINE mhb_lanes residual(const mhb_slip *slip, const mhb_panel *p) {
+  return p->theta0 + p->h * apply(slip->rule->A, p->F) - p->theta;
+}
+
+/* Newton's method on the collocation equations from theta, F, F_theta, their residual r and the
+ * linearised panel. The matrix is kept while it converges well. over = 1/(mu n). 1: converged.
  *
  * Gauss collocation carries an error of the start to the end undamped where h F_theta -> -infinity,
  * though it hardly shows at the nodes. There the end is extrapolated from the nodes. */
-MHB_INLINE int collocate(const mhb_slip *slip, mhb_lanes over, int solved, mhb_panel *p) {
+MHB_INLINE int collocate(const mhb_slip *slip, mhb_lanes over, mhb_lanes r, mhb_panel *p) {
   const mhb_collocation *rule   = slip->rule;
-  double                 before = 1, left = solved ? 0 : INFINITY, enough = .3 * slip->tolerance;
+  double                 before = 1, enough = .3 * slip->tolerance, left = INFINITY;
   int                    fresh = 1, isotropic = slip->half == 0 && slip->skew == 0;
+  if (lanes_top(lanes_abs(r)) < .01 * enough) left = 0;
   for (int i = 0; left > enough; i++) {
     if (i == 16) return 0;
     if (!fresh && !linearise(slip, slip->newton_mild, p)) return 0;
-    mhb_lanes step    = newton_step(slip, p, p->theta0 + p->h * apply(rule->A, p->F) - p->theta);
+    mhb_lanes step    = newton_step(slip, p, r);
     double    size    = lanes_top(lanes_abs(step));
     int       stalled = i > 1 && size > .5 * before && size < 1e-7; /* at the rounding of F */
     if (!(size < 4) || (i > 5 && size > .5 * before && size > 1e-7)) return 0;
@@ -439,6 +447,7 @@ MHB_INLINE int collocate(const mhb_slip *slip, mhb_lanes over, int solved, mhb_p
       rate(slip, over, p);
     }
     if (size < 1e-14 || stalled) break;
+    if (left > enough) r = residual(slip, p);
   }
   if (isotropic) p->gamma = -p->F_theta / over - slip->mu * p->dy[0];
   if (slip->linearized && !linearise(slip, slip->mild, p)) return 0;
@@ -465,9 +474,8 @@ MHB_HOT static int solve_panel(const mhb_slip *slip, double t, double h, double 
                                mhb_panel *p) {
   p->theta0 = theta;
   place_nodes(slip, t, h, p);
-  mhb_lanes over   = 1 / (slip->mu * p->y[0]);
-  int       solved = predict(slip, over, p);
-  return solved >= 0 && collocate(slip, over, solved, p);
+  mhb_lanes over = 1 / (slip->mu * p->y[0]);
+  return predict(slip, over, p) && collocate(slip, over, residual(slip, p), p);
 }
 
 /* The first fraction of a panel that is solved. */
@@ -476,7 +484,7 @@ MHB_HOT static int solve_part(const mhb_slip *slip, double fraction, mhb_panel *
   place_nodes(slip, p->t0, fraction * p->h, p);
   mhb_lanes over = 1 / (slip->mu * p->y[0]);
   rate(slip, over, p);
-  return linearise(slip, slip->newton_mild, p) && collocate(slip, over, 0, p);
+  return linearise(slip, slip->newton_mild, p) && collocate(slip, over, residual(slip, p), p);
 }
 
 /* c <- gamma over the panel, in powers of the fraction. */
