@@ -84,14 +84,12 @@ enum { MAX_EVENTS = 400, MAX_PANELS = 5000 };
 
 /* Stick until the friction limit is reached or the interval ends. */
 static void run_stick(mhb_contact_evaluator *c, slider *s, double end) {
-  double onset = mhb_slip_onset(&c->signals, c->slip.mu, s->z, s->t, end);
+  double y[3], onset = mhb_slip_onset(&c->signals, c->slip.mu, s->z, s->t, end, y);
   int    slips = onset <= end;
   double until = slips ? onset : end;
   add_stick(c, s->t, until, s->z);
   s->t = until;
   if (!slips) return;
-  double y[3], dy[3];
-  mhb_signals_at(&c->signals, until, y, dy, NULL);
   s->theta = atan2(y[2] - s->z[1], y[1] - s->z[0]);
   s->state = MHB_SLIDE;
   s->onset = until;
@@ -115,12 +113,10 @@ static int run_slip(mhb_contact_evaluator *c, slider *s, double end, int opening
     s->t = end;
     return 1;
   }
-  double y[3], dy[3];
-  mhb_signals_at(&c->signals, s->t, y, dy, NULL);
-  double limit = c->slip.mu * y[0];
-  s->z[0]      = y[1] - limit * cos(s->theta);
-  s->z[1]      = y[2] - limit * sin(s->theta);
-  s->state     = MHB_STICK;
+  const double *y = c->panel.end, *e = c->panel.end_e, limit = c->slip.mu * y[0];
+  s->z[0]  = y[1] - limit * e[0];
+  s->z[1]  = y[2] - limit * e[1];
+  s->state = MHB_STICK;
   mhb_note_transition(c, s->t, MHB_STICK);
   mhb_sensitivity_slip_to_stick(c, s->t, s->theta, y[0]);
   return 1;

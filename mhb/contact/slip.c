@@ -561,24 +561,31 @@ static double first_fall(const double *c, const double *b, double lo, double hi,
   return root <= 1 ? root : first_fall(c, right, middle, hi, slack, depth + 1);
 }
 
-/* gamma itself, not its interpolant, at fraction 0 or 1 of the panel. *size: of its terms. */
-static double gamma_at(const mhb_slip *slip, const mhb_panel *p, int end, double *size) {
-  double y[3], dy[3];
-  mhb_signals_at(slip->signals, end ? p->t0 + p->h : p->t0, y, dy, NULL);
-  mhb_direction d = mhb_slip_direction(slip->K, end ? p->theta1 : p->theta0);
-  *size           = fabs(dy[1]) + fabs(dy[2]) + slip->mu * fabs(dy[0]);
-  return mhb_slip_gamma(slip, &d, dy);
+/* An end of the panel: gamma itself, not its interpolant, and the size of its terms. */
+typedef struct {
+  double gamma, size, y[3], e[2];
+} panel_end;
+
+static panel_end end_at(const mhb_slip *slip, double t, double theta) {
+  panel_end at;
+  double    dy[3];
+  mhb_signals_at(slip->signals, t, at.y, dy, NULL);
+  at.e[0]  = cos(theta);
+  at.e[1]  = sin(theta);
+  at.gamma = at.e[0] * dy[1] + at.e[1] * dy[2] - slip->mu * dy[0];
+  at.size  = fabs(dy[1]) + fabs(dy[2]) + slip->mu * fabs(dy[0]);
+  return at;
 }
 
 /* Fraction of the panel at which gamma first turns negative; > 1 if it does not. The interpolant is
  * used between the nodes only. Before the first node gamma is interpolated from the panel's
  * start. */
 static double slip_end(const mhb_slip *slip, const mhb_panel *p) {
-  double c[MHB_NODES], hull[MHB_NODES], left[MHB_NODES], right[MHB_NODES], slack, size;
+  double c[MHB_NODES], hull[MHB_NODES], left[MHB_NODES], right[MHB_NODES], slack;
   if (!gamma_falls(slip, p, hull, &slack)) return 2;
   double first = slip->rule->node[0];
   if (p->gamma[0] < 0) {
-    double start = gamma_at(slip, p, 0, &size);
+    double start = end_at(slip, p->t0, p->theta0).gamma;
     return start <= 0 ? 0 : first * start / (start - p->gamma[0]);
   }
   gamma_powers(slip, p, c);
@@ -589,22 +596,30 @@ static double slip_end(const mhb_slip *slip, const mhb_panel *p) {
 
 /* Shorten the panel until gamma = 0 at its end. If gamma only comes near zero, slip goes on. */
 static mhb_slip_outcome find_end(const mhb_slip *slip, double fraction, mhb_panel *p) {
-  double close = mhb_most(1e-12, .01 * slip->tolerance), whole = p->h;
+  double    close = mhb_most(1e-12, .01 * slip->tolerance), whole = p->h;
+  panel_end at;
   for (int i = 0; i < 8; i++) {
-    double c[MHB_NODES], slope, size;
+    double c[MHB_NODES], slope;
     if (fraction * p->h < 1e-12) {
       p->h      = 0;
       p->theta1 = p->theta0;
-      return MHB_SLIP_ENDS;
+      at        = end_at(slip, p->t0, p->theta0);
+      break;
     }
     if (!solve_part(slip, fraction, p)) return MHB_SLIP_FAILED;
     gamma_powers(slip, p, c);
     polynomial(c, 1, &slope);
-    double gamma = gamma_at(slip, p, 1, &size), step = -gamma / slope;
+    at          = end_at(slip, p->t0 + p->h, p->theta1);
+    double step = -at.gamma / slope;
     if (fabs(step * p->h) <= close) break;
-    if (!(fabs(step) <= .5)) return gamma > 1e-10 * size ? MHB_SLIP_CONTINUES : MHB_SLIP_ENDS;
+    if (!(fabs(step) <= .5)) {
+      if (at.gamma > 1e-10 * at.size) return MHB_SLIP_CONTINUES;
+      break;
+    }
     fraction = mhb_least(1 + step, whole / p->h);
   }
+  for (int k = 0; k < 3; k++) p->end[k] = at.y[k];
+  for (int k = 0; k < 2; k++) p->end_e[k] = at.e[k];
   return MHB_SLIP_ENDS;
 }
 

@@ -60,12 +60,13 @@ typedef struct {
 /* One panel of slip. */
 typedef struct {
   double    t0, h, theta0, theta1;
-  int       stiff;        /* theta1 extrapolates the nodes: see collocate in slip.c */
-  int       frozen;       /* the last stretch before an opening: theta is held */
-  double    remaining;    /* length of the closed interval from t0 on, rad */
-  double    error;        /* estimate for this panel, force units; see panel_error in slip.c */
-  mhb_lanes cosine, sine; /* of the phase at the nodes */
-  mhb_lanes theta, e[2];  /* direction of the friction */
+  int       stiff;            /* theta1 extrapolates the nodes: see collocate in slip.c */
+  int       frozen;           /* the last stretch before an opening: theta is held */
+  double    remaining;        /* length of the closed interval from t0 on, rad */
+  double    error;            /* estimate for this panel, force units; see panel_error in slip.c */
+  double    end[3], end_e[2]; /* where slip ends: signals, direction of the friction */
+  mhb_lanes cosine, sine;     /* of the phase at the nodes */
+  mhb_lanes theta, e[2];      /* direction of the friction */
   mhb_lanes F, F_theta, gamma, eKe, beta;
   mhb_lanes y[3], dy[3]; /* signals and their slopes */
   /* the panel linearised, see linearise in slip.c */

@@ -3,6 +3,7 @@
 #include <float.h>
 #include <math.h>
 #include <stdlib.h>
+#include <string.h>
 
 #include "mesh/base/constants.h"
 
@@ -70,36 +71,72 @@ static double cubic_root(const sample *lo, const sample *hi) {
   return s > 0 && s < 1 ? lo->t + h * s : lo->t - h * lo->y / rise;
 }
 
-/* Safeguarded Newton in a bracket with one sign change. */
-static double refine_root(const event_function *f, sample lo, sample hi) {
+/* A sample with y'' and the signals. */
+typedef struct {
+  sample at;
+  double bend, v[3], dv[3], ddv[3];
+} jet;
+
+static jet jet_at(const event_function *f, double t) {
+  jet s = {.at = {.t = t}};
+  mhb_signals_at(f->signals, t, s.v, s.dv, s.ddv);
+  combine(f, s.v, s.dv, &s.at);
+  const double *v = s.v, *dv = s.dv, *ddv = s.ddv, mu2 = f->mu * f->mu;
+  double        a = v[1] - f->z[0], b = v[2] - f->z[1];
+  s.bend = f->is_load ? ddv[0]
+                      : 2 * (dv[1] * dv[1] + dv[2] * dv[2] + a * ddv[1] + b * ddv[2] -
+                             mu2 * (dv[0] * dv[0] + v[0] * ddv[0]));
+  return s;
+}
+
+/* A root, and the signals there. */
+typedef struct {
+  double t, v[3];
+} crossing;
+
+static crossing crossing_at(const jet *s, double moved) {
+  crossing root = {.t = s->at.t + moved};
+  for (int i = 0; i < 3; i++) root.v[i] = s->v[i] + moved * (s->dv[i] + .5 * moved * s->ddv[i]);
+  return root;
+}
+
+/* Safeguarded Newton with the second derivative (Chebyshev), in a bracket with one sign change. The
+ * error is cubic in the step. */
+static crossing refine_root(const event_function *f, sample lo, sample hi) {
   int    rising = hi.y > lo.y;
   double t      = cubic_root(&lo, &hi);
+  jet    s;
   for (int i = 0; i < 60; i++) {
-    sample s = sample_at(f, t);
-    if ((s.y > 0) == rising) {
-      hi = s;
+    s = jet_at(f, t);
+    if ((s.at.y > 0) == rising) {
+      hi = s.at;
     } else {
-      lo = s;
+      lo = s.at;
     }
-    double next   = s.t - s.y / s.dy;
-    int    inside = next >= lo.t && next <= hi.t, close = fabs(next - t) < 1e-8;
     if (hi.t - lo.t < 1e-15) break;
-    t = inside ? next : .5 * (lo.t + hi.t);
-    if (inside && close) break; /* the error is the square */
+    double step = -s.at.y / s.at.dy, ratio = s.bend / s.at.dy, more = -.5 * ratio * step;
+    if (fabs(more) < .3) step *= 1 + more;
+    int inside = t + step >= lo.t && t + step <= hi.t;
+    if (inside && fabs(step * step * step) * (1 + ratio * ratio) < 1e-17)
+      return crossing_at(&s, step);
+    t = inside ? t + step : .5 * (lo.t + hi.t);
   }
-  return t;
+  return crossing_at(&s, 0);
 }
 
 /* First root in (a, b] where y goes from sign to -sign (sign -1: rising). 1: *root is set. */
-static int first_crossing(const event_function *f, double sign, sample a, sample b, double *root) {
+static int first_crossing(const event_function *f, double sign, sample a, sample b,
+                          crossing *root) {
   double h = b.t - a.t, slack = h * h * h * h * f->bound4 / 384;
   double p = a.y + h * a.dy / 3, q = b.y - h * b.dy / 3;
   double worst = sign > 0 ? min4(a.y, p, q, b.y) : -max4(a.y, p, q, b.y);
   if (worst > slack) return 0;
   int changes = sign * b.y < 0 && sign * a.y >= 0;
   if (h < 1e-10) {
-    *root = b.t;
-    return changes;
+    if (!changes) return 0;
+    jet s = jet_at(f, b.t);
+    *root = crossing_at(&s, 0);
+    return 1;
   }
   /* the cubic's slope has Bezier points dy0, 3 (q - p)/h, dy1, and an error below h^3 M4
    * sqrt(3)/216 */
@@ -192,14 +229,14 @@ void mhb_contact_intervals_find(const mhb_signals *signals, mhb_contact_interval
     int clear = next_candidate(&f, sign, i, first + n);
     if (clear == first + n) break;
     if (clear > i) a = sample_grid(&f, i = clear);
-    sample b = sample_grid(&f, i + 1), from = a;
-    double root;
+    sample   b = sample_grid(&f, i + 1), from = a;
+    crossing root;
     while (crossings < 2 * closed->room && first_crossing(&f, sign, from, b, &root)) {
       double *list                        = sign < 0 ? closed->closing : closed->opening;
-      list[(crossings + !began_open) / 2] = root;
+      list[(crossings + !began_open) / 2] = root.t;
       crossings++;
       sign   = -sign;
-      from   = sample_at(&f, root);
+      from   = sample_at(&f, root.t);
       from.y = 0;
     }
     a = b;
@@ -232,45 +269,40 @@ static void friction_bounds(event_function *f) {
   }
 }
 
-/* g'' at t, to step over the double zero at the end of slip. */
-static double curvature(const event_function *f, double t) {
-  double v[3], dv[3], ddv[3];
-  mhb_signals_at(f->signals, t, v, dv, ddv);
-  double a = v[1] - f->z[0], b = v[2] - f->z[1], mu2 = f->mu * f->mu;
-  return 2 * (dv[1] * dv[1] + dv[2] * dv[2] + a * ddv[1] + b * ddv[2] -
-              mu2 * (dv[0] * dv[0] + v[0] * ddv[0]));
-}
-
 /* A start strictly inside the stick region. Where g is a double zero at from,
  *   g <= t^2/2 (g'' + t M3/3) < 0  for t < -3 g''/M3. */
 static sample stick_start(const event_function *f, double from, double to) {
-  sample s     = sample_at(f, from);
+  jet    s     = jet_at(f, from);
   double scale = f->z[0] * f->z[0] + f->z[1] * f->z[1] +
                  f->signals->bound[1][0] * f->signals->bound[1][0] +
                  f->signals->bound[2][0] * f->signals->bound[2][0];
-  double v[3], dv[3];
-  mhb_signals_at(f->signals, from, v, dv, NULL);
-  double limit = f->mu * v[0];
-  if (s.y < -1e-11 * limit * limit - 4e-15 * scale) return s;
-  double second = curvature(f, from), step = 1e-6;
-  if (second < 0 && f->bound3 > 0) step = mhb_most(step, mhb_least(1.0, -1.5 * second / f->bound3));
+  double limit = f->mu * s.v[0], step = 1e-6;
+  if (s.at.y < -1e-11 * limit * limit - 4e-15 * scale) return s.at;
+  if (s.bend < 0 && f->bound3 > 0) step = mhb_most(step, mhb_least(1.0, -1.5 * s.bend / f->bound3));
   return sample_at(f, mhb_least(from + step, to));
 }
 
 double mhb_slip_onset(const mhb_signals *signals, double mu, const double z[2], double from,
-                      double to) {
+                      double to, double value[3]) {
   event_function f = {.signals = signals, .mu = mu, .z = {z[0], z[1]}};
   friction_bounds(&f);
   sample a = stick_start(&f, from, to);
   if (a.t >= to) return to + 1;
-  if (a.y > 0 && a.dy > 0) return a.t;
+  if (a.y > 0 && a.dy > 0) {
+    double slope[3];
+    mhb_signals_at(signals, a.t, value, slope, NULL);
+    return a.t;
+  }
   a.y         = mhb_least(a.y, 0); /* rounding */
   double cell = SHB_TWO_PI / signals->n_grid;
   int    i = (int)floor(a.t / cell) + 1, last = (int)floor(to / cell);
-  for (double root; a.t < to; i++) {
+  for (crossing root; a.t < to; i++) {
     sample b = cell * i < to ? sample_grid(&f, i) : sample_at(&f, to);
     if (b.t <= a.t) continue;
-    if (first_crossing(&f, -1, a, b, &root)) return root;
+    if (first_crossing(&f, -1, a, b, &root)) {
+      memcpy(value, root.v, sizeof root.v);
+      return root.t;
+    }
     a         = b;
     int clear = i < last ? next_candidate(&f, -1, i, last) : i;
     if (clear > i) a = sample_grid(&f, i = clear);

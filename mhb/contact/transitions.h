@@ -29,10 +29,10 @@ void       mhb_contact_intervals_destroy(mhb_contact_intervals *closed);
 /* Roots of n (eqs. 11, 12). Touching zero without crossing counts as closed (n >= 0). */
 void mhb_contact_intervals_find(const mhb_signals *signals, mhb_contact_intervals *closed);
 
-/* First t in (from, to] at which |x - z| reaches mu n from below (eq. 7); to + 1 if there is none.
- * from may be a double zero, where slip has just ended or the contact has just closed: it is
- * stepped over. */
+/* First t in (from, to] at which |x - z| reaches mu n from below (eq. 7), and the signals there; to
+ * + 1 if there is none. from may be a double zero, where slip has just ended or the contact has
+ * just closed: it is stepped over. */
 double mhb_slip_onset(const mhb_signals *signals, double mu, const double z[2], double from,
-                      double to);
+                      double to, double value[3]);
 
 #endif

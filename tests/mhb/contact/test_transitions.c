@@ -102,15 +102,19 @@ static void without_roots(void **state) {
 static void onset_of_slip(void **state) {
   (void)state;
   const double z[2] = {.2, 0}, mu = .9;
+  double       y[3];
   fixture      f;
   start(&f);
   f.a[0][0] = 1;
   f.a[1][2] = -2;
   find(&f);
-  double t = mhb_slip_onset(&f.signals, mu, z, 0, SHB_TWO_PI);
+  double t = mhb_slip_onset(&f.signals, mu, z, 0, SHB_TWO_PI, y);
   assert_near(t, asin(.55), 1e-14);
-  assert_true(mhb_slip_onset(&f.signals, mu, z, 0, .5) > .5); /* later than the end */
-  assert_true(mhb_slip_onset(&f.signals, 2.5, z, 0, SHB_TWO_PI) > SHB_TWO_PI);
+  assert_near(y[0], 1, 1e-15);
+  assert_near(y[1], 1.1, 1e-14);
+  assert_near(y[2], 0, 1e-15);
+  assert_true(mhb_slip_onset(&f.signals, mu, z, 0, .5, y) > .5); /* later than the end */
+  assert_true(mhb_slip_onset(&f.signals, 2.5, z, 0, SHB_TWO_PI, y) > SHB_TWO_PI);
   stop(&f);
 }
 
@@ -119,12 +123,13 @@ static void onset_of_slip(void **state) {
 static void onset_after_a_double_zero(void **state) {
   (void)state;
   const double mu = .9, z[2] = {2 - mu, 0};
+  double       y[3];
   fixture      f;
   start(&f);
   f.a[0][0] = 1;
   f.a[1][2] = -2;
   find(&f);
-  double t = mhb_slip_onset(&f.signals, mu, z, SHB_PI / 2, SHB_TWO_PI);
+  double t = mhb_slip_onset(&f.signals, mu, z, SHB_PI / 2, SHB_TWO_PI, y);
   assert_near(t, SHB_PI - asin(1 - mu), 1e-13);
   stop(&f);
 }
@@ -133,13 +138,14 @@ static void onset_after_a_double_zero(void **state) {
 static void onset_in_the_plane(void **state) {
   (void)state;
   const double mu = .7, z[2] = {2, 0};
+  double       y[3];
   fixture      f;
   start(&f);
   f.a[0][0] = 1.5;
   f.a[1][1] = 2;
   f.a[2][2] = -2;
   find(&f);
-  double t = mhb_slip_onset(&f.signals, mu, z, 0, SHB_TWO_PI);
+  double t = mhb_slip_onset(&f.signals, mu, z, 0, SHB_TWO_PI, y);
   assert_near(t, 2 * asin(mu * 1.5 / 4), 1e-14);
   stop(&f);
 }
