@@ -198,12 +198,19 @@ enum { MAX_LAPS = 100, MAX_RECORDS = 5 };
 /* Error of the slider of the contact that sticks, in units of the friction. */
 static const double FAR = .03;
 
-/* From slider z0 at phase t0 to the end of the lap: P(z0) and, in the columns, its derivative. 0: a
- * panel failed. */
-static int run_from(mhb_contact_evaluator *c, double t0, const double z0[2], double P[2]) {
-  slider s = {.state = MHB_STICK, .t = t0, .z = {z0[0], z0[1]}, .onset = -1};
-  double y[3], dy[3];
-  mhb_signals_at(&c->signals, t0, y, dy, NULL);
+static void signals_on_grid(const mhb_signals *signals, int i, double y[3], double dy[3]) {
+  for (int k = 0; k < 3; k++) {
+    y[k]  = signals->value[k][i];
+    dy[k] = signals->slope[k][i];
+  }
+}
+
+/* From slider z0 at a point of the grid to the end of the lap: P(z0) and, in the columns, its
+ * derivative. 0: a panel failed. */
+static int run_from(mhb_contact_evaluator *c, int start, const double z0[2], double P[2]) {
+  double t0 = SHB_TWO_PI * start / c->signals.n_grid, y[3], dy[3];
+  slider s  = {.state = MHB_STICK, .t = t0, .z = {z0[0], z0[1]}, .onset = -1};
+  signals_on_grid(&c->signals, start, y, dy);
   double f[2] = {y[1] - z0[0], y[2] - z0[1]}, limit = c->slip.mu * y[0],
          size = length_of(f[0], f[1]);
   mhb_sensitivity_clear(c);
@@ -223,7 +230,7 @@ static int run_from(mhb_contact_evaluator *c, double t0, const double z0[2], dou
   int       ok    = run_closed(c, &s, SHB_TWO_PI, 0);
   if (s.state != began) mhb_note_transition(c, 0, began);
   if (s.state == MHB_SLIDE) {
-    if (t0 != 0) mhb_signals_at(&c->signals, 0, y, dy, NULL);
+    signals_on_grid(&c->signals, 0, y, dy);
     limit = c->slip.mu * y[0];
     P[0]  = y[1] - limit * cos(s.theta);
     P[1]  = y[2] - limit * sin(s.theta);
@@ -239,10 +246,11 @@ static int run_lap(mhb_contact_evaluator *c, const double z0[2], double P[2]) {
   return run_from(c, 0, z0, P);
 }
 
-/* Phase at which the force of a slider that rests at z is furthest beyond the friction limit. The
- * second half of the period has precedence if the force is half as far beyond there. */
-MHB_HOT static double furthest_beyond(const mhb_signals *s, double mu, const double z[2]) {
-  double most[2] = {-INFINITY, -INFINITY}, at[2] = {0, 0};
+/* Point of the grid where the force of a slider that rests at z is furthest beyond the friction
+ * limit. The second half of the period has precedence if the force is half as far beyond there. */
+MHB_HOT static int furthest_beyond(const mhb_signals *s, double mu, const double z[2]) {
+  double most[2] = {-INFINITY, -INFINITY};
+  int    at[2]   = {0, 0};
   for (int i = 0; i < s->n_grid; i += MHB_LANES) {
     mhb_lanes n = lanes_load(s->value[0] + i), a = lanes_load(s->value[1] + i) - z[0],
               b = lanes_load(s->value[2] + i) - z[1], over = a * a + b * b - mu * mu * n * n;
@@ -251,7 +259,7 @@ MHB_HOT static double furthest_beyond(const mhb_signals *s, double mu, const dou
     if (!(top > most[half])) continue;
     most[half] = top;
     for (int l = 0; l < MHB_LANES; l++)
-      if (over[l] == top) at[half] = SHB_TWO_PI * (i + l) / s->n_grid;
+      if (over[l] == top) at[half] = i + l;
   }
   return at[most[1] > .5 * most[0]];
 }

@@ -283,7 +283,7 @@ MHB_INLINE int linearise(const mhb_slip *slip, double mildest, mhb_panel *p) {
   double    hm   = p->h * p->mean;
   mhb_lanes over = 1 / (1 - 2 * hm * rule->real + hm * hm * rule->modulus2);
   mhb_lanes less;
-  p->swing  = lanes_exp(apply(rule->A, apart), &less);
+  p->swing  = lanes_exp(p->h * apply(rule->A, p->F_theta) - hm * rule->node, &less);
   p->weight = p->F_theta * less;
   p->even   = p->h * over * (rule->real - hm * rule->modulus2);
   p->odd    = p->h * over * rule->imag;
@@ -307,11 +307,13 @@ MHB_INLINE mobius compose(mobius x, int n) {
 /* Square of a stretch's exponent above which its flow is held to end at its last b. */
 static const double FAR = 12;
 
-/* theta - theta0 at the nodes where th' = b.(-sin, cos)(theta - theta0), known to some 1e-4.
+/* theta - theta0 at the nodes where th' = b.(-sin, cos)(theta - theta0), to some 1e-4.
  *
  * u = (cos, sin) of half of it obeys u' = (1/2) [b_1 b_2; b_2 -b_1] u, up to its length. Each
  * stretch between nodes is Magnus' exponential of fourth order; products of them are the flow.
- * tanh(r)/r is Pade's. Next to n = 0 b is no polynomial: there it is held over each stretch. */
+ * tanh(r)/r is Pade's. Next to n = 0 b is no polynomial: there it is held over each stretch.
+ *
+ * e: its cosine and sine. Returns the tangent of a quarter of it. */
 MHB_INLINE mhb_lanes flow(const mhb_collocation *rule, double h, mhb_lanes b1, mhb_lanes b2,
                           mhb_lanes e[2]) {
   mhb_lanes turned = b1 * lanes_rise(b2, b2, 1) - b2 * lanes_rise(b1, b1, 1);
@@ -330,10 +332,14 @@ MHB_INLINE mhb_lanes flow(const mhb_collocation *rule, double h, mhb_lanes b1, m
   mobius    step = {1 + tanh * p, tanh * (q + r), tanh * (q - r), 1 - tanh * p};
   mobius    all  = compose(compose(compose(step, 1), 2), 4);
   mhb_lanes aa = all.a * all.a, cc = all.c * all.c, one = 1 / (aa + cc), size = lanes_sqrt(aa + cc);
-  e[0]          = one * (aa - cc);
-  e[1]          = 2 * one * all.a * all.c;
-  mhb_lanes tan = lanes_min(all.c / (size + all.a), lanes_all(1)); /* of a quarter */
-  return 4 * lanes_atan_rough(lanes_max(tan, lanes_all(-1)));
+  e[0] = one * (aa - cc);
+  e[1] = 2 * one * all.a * all.c;
+  return all.c / (size + all.a);
+}
+
+/* The angle by the tangent of a quarter. It is cut where it is half a turn and more. */
+MHB_INLINE mhb_lanes rough_angle(mhb_lanes tan) {
+  return 4 * lanes_atan_rough(lanes_max(lanes_min(tan, lanes_all(1)), lanes_all(-1)));
 }
 
 /* theta, F, F_theta at the nodes, and the panel linearised there. F and F_theta at theta0 give the
@@ -347,17 +353,26 @@ MHB_INLINE int predict(const mhb_slip *slip, mhb_lanes over, mhb_panel *p) {
   if (p->h * lanes_top(lanes_abs(p->F)) < 1e-5 * slip->tolerance)
     return linearise(slip, slip->newton_mild, p);
   mhb_lanes e0 = p->e[0], e1 = p->e[1], b1 = -p->F_theta, b2 = p->F;
-  p->theta += flow(slip->rule, p->h, b1, b2, e);
+  mhb_lanes tan = flow(slip->rule, p->h, b1, b2, e);
   if (slip->half == 0 && slip->skew == 0) {
     p->F_theta = -b1 * e[0] - b2 * e[1];
     if (!linearise(slip, slip->newton_mild, p)) return 0;
-    rate(slip, over, p);
+    if (lanes_top(lanes_abs(tan)) < MHB_ATAN_REACH) {
+      p->F    = b2 * e[0] - b1 * e[1];
+      p->e[0] = e0 * e[0] - e1 * e[1];
+      p->e[1] = e1 * e[0] + e0 * e[1];
+      p->theta += 4 * lanes_atan(tan);
+    } else {
+      p->theta += rough_angle(tan);
+      rate(slip, over, p);
+    }
     return 1;
   }
+  p->theta += rough_angle(tan);
   rate(slip, over, p);
   mhb_lanes c = e0 * p->e[0] + e1 * p->e[1], s = e0 * p->e[1] - e1 * p->e[0];
-  p->theta =
-      p->theta0 + flow(slip->rule, p->h, -c * p->F_theta - s * p->F, c * p->F - s * p->F_theta, e);
+  tan      = flow(slip->rule, p->h, -c * p->F_theta - s * p->F, c * p->F - s * p->F_theta, e);
+  p->theta = p->theta0 + rough_angle(tan);
   rate(slip, over, p);
   return linearise(slip, slip->newton_mild, p);
 }

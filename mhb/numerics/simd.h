@@ -196,6 +196,19 @@ MHB_INLINE void lanes_cos_sin_small(mhb_lanes r, mhb_lanes *cosine, mhb_lanes *s
   *cosine = 1 - .5 * z + z * z * c;
 }
 
+/* atan x to rounding for |x| < 7/16, with the coefficients of fdlibm. */
+#define MHB_ATAN_REACH .4375
+MHB_INLINE mhb_lanes lanes_atan(mhb_lanes x) {
+  mhb_lanes z = x * x, w = z * z, v = w * w;
+  mhb_lanes a = (3.33333333333329318027e-01 + w * 1.42857142725034663711e-01) +
+                v * ((9.09088713343650656196e-02 + w * 6.66107313738753120669e-02) +
+                     v * (4.97687799461593236017e-02 + w * 1.62858201153657823623e-02));
+  mhb_lanes b = (-1.99999999998764832476e-01 - w * 1.11111104054623557880e-01) +
+                v * ((-7.69187620504482999495e-02 - w * 5.83357013379057348645e-02) -
+                     v * 3.65315727442169155270e-02);
+  return x - x * (z * a + w * b);
+}
+
 /* atan x to 4e-7 for |x| <= 1: interpolated in x^2 at Chebyshev's points. */
 MHB_INLINE mhb_lanes lanes_atan_rough(mhb_lanes x) {
   mhb_lanes z = x * x, z2 = z * z;
