@@ -351,6 +351,36 @@ static double onset_of(mhb_contact_evaluator *contact, int i) {
   return high;
 }
 
+/* Columns that the motion of fewer harmonics has too. */
+static void derivative_is_that_of_fewer_harmonics(void **state) {
+  (void)state;
+  static double    all[3 * NF * COLUMNS], few[3 * NF * COLUMNS];
+  double           force[3 * NF], worst = 0, norm = 0;
+  mhb_contact_info info;
+  suite_motion     s = suite_at(2);
+  for (int m = M; m >= 1; m--) {
+    int                    nb = 2 * m + 1;
+    double                 motion[COLUMNS];
+    mhb_contact_evaluator *contact;
+    assert_int_equal(mhb_contact_evaluator_create(m, H, 1e-8, &contact), SHB_OK);
+    for (int i = 0; i < 3; i++) {
+      memcpy(motion + i * nb, s.motion[i], sizeof(double) * (size_t)nb);
+      for (int k = nb; k < NB; k++) assert_true(s.motion[i][k] == 0);
+    }
+    mhb_contact_force(contact, &s.law, motion, force, m == M ? all : few, &info);
+    for (int r = 0; r < 3 * NF && m < M; r++)
+      for (int i = 0; i < 3; i++)
+        for (int k = 0; k < nb; k++) {
+          double wanted = all[r * COLUMNS + i * NB + k];
+          norm          = fmax(norm, fabs(wanted));
+          worst         = fmax(worst, fabs(few[r * 3 * nb + i * nb + k] - wanted));
+        }
+    mhb_contact_evaluator_destroy(contact);
+  }
+  print_message("columns differ by %.1e of the largest\n", worst / norm);
+  assert_true(worst <= 1e-12 * norm);
+}
+
 /* Where slip begins under a varying load, the mean friction goes like the square root of the
  * distance, and its derivative is unbounded. The law bounds it by 3e8 times the stiffness, on both
  * sides and at any distance: the determinants are held above 1e-7 and 1e-8. The force is continuous
@@ -397,6 +427,7 @@ int main(void) {
       cmocka_unit_test(units_do_not_matter),
       cmocka_unit_test(turned_axes_turn_the_force),
       cmocka_unit_test(derivative_is_exact),
+      cmocka_unit_test(derivative_is_that_of_fewer_harmonics),
       cmocka_unit_test(derivative_is_capped_where_slip_begins),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
