@@ -71,5 +71,7 @@ set(CPACK_PACKAGING_INSTALL_PREFIX /usr)
 set(CPACK_DEBIAN_FILE_NAME DEB-DEFAULT)
 set(CPACK_DEBIAN_PACKAGE_SECTION science)
 set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS ON) # Depends: comes from the libraries that are linked
+string(REPLACE ".so." "" gmsh_package ${GMSH_SONAME}) # loaded at run time: mesh/gmsh/api.c
+set(CPACK_DEBIAN_PACKAGE_DEPENDS ${gmsh_package})
 set(CPACK_DEBIAN_PACKAGE_RECOMMENDS openmpi-bin)
 include(CPack)

@@ -1,11 +1,11 @@
 #include "mesh/blade/airfoil.h"
 
-#include <gmshc.h>
 #include <math.h>
 #include <stdbool.h>
 #include <string.h>
 
 #include "mesh/base/constants.h"
+#include "mesh/gmsh/api.h"
 #include "mesh/gmsh/session.h"
 
 enum { N = MESH_AIRFOIL_POINTS };

@@ -1,6 +1,5 @@
 #include "mesh/blade/blade.h"
 
-#include <gmshc.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -17,6 +16,7 @@
 #include "mesh/core/face_match.h"
 #include "mesh/core/fe_mesh.h"
 #include "mesh/core/jacobian.h"
+#include "mesh/gmsh/api.h"
 #include "mesh/gmsh/export.h"
 #include "mesh/gmsh/import.h"
 #include "mesh/gmsh/session.h"

@@ -1,9 +1,9 @@
 #include "mesh/blade/disc.h"
 
-#include <gmshc.h>
 #include <math.h>
 
 #include "mesh/base/constants.h"
+#include "mesh/gmsh/api.h"
 #include "mesh/gmsh/session.h"
 
 enum { CORNERS = 8 };

@@ -1,6 +1,5 @@
 #include "mesh/blade/face_groups.h"
 
-#include <gmshc.h>
 #include <math.h>
 #include <stdlib.h>
 
@@ -10,6 +9,7 @@
 #include "mesh/blade/disc.h"
 #include "mesh/blade/shroud.h"
 #include "mesh/core/fe_mesh.h"
+#include "mesh/gmsh/api.h"
 #include "mesh/gmsh/session.h"
 
 /* A face of the fused solid. */

@@ -1,9 +1,9 @@
 #include "mesh/blade/frame.h"
 
-#include <gmshc.h>
 #include <math.h>
 
 #include "mesh/base/vec3.h"
+#include "mesh/gmsh/api.h"
 #include "mesh/gmsh/session.h"
 
 mesh_frame mesh_frame_at(mesh_axis axis) {

@@ -1,6 +1,5 @@
 #include "mesh/blade/hex_sweep.h"
 
-#include <gmshc.h>
 #include <math.h>
 #include <stdbool.h>
 #include <stdlib.h>
@@ -17,6 +16,7 @@
 #include "mesh/blade/section_smoothing.h"
 #include "mesh/blade/shroud.h"
 #include "mesh/core/fe_mesh.h"
+#include "mesh/gmsh/api.h"
 #include "mesh/gmsh/session.h"
 
 enum { DISC, ROOT, AIRFOIL, SHROUD, PARTS };

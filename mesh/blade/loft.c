@@ -1,11 +1,11 @@
 #include "mesh/blade/loft.h"
 
-#include <gmshc.h>
 #include <math.h>
 #include <string.h>
 
 #include "mesh/base/root.h"
 #include "mesh/blade/airfoil.h"
+#include "mesh/gmsh/api.h"
 #include "mesh/gmsh/session.h"
 
 static const char *const case_key = "mesh.blade.sections";

@@ -1,12 +1,12 @@
 #include "mesh/blade/section_outline.h"
 
-#include <gmshc.h>
 #include <math.h>
 #include <stdbool.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "mesh/blade/section_smoothing.h"
+#include "mesh/gmsh/api.h"
 #include "mesh/gmsh/session.h"
 
 enum { GMSH_TRIANGLE = 2, GMSH_QUADRANGLE = 3 };

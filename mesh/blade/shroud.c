@@ -1,12 +1,12 @@
 #include "mesh/blade/shroud.h"
 
-#include <gmshc.h>
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
 
 #include "mesh/base/constants.h"
 #include "mesh/blade/airfoil.h"
+#include "mesh/gmsh/api.h"
 #include "mesh/gmsh/session.h"
 
 enum { CORNERS = MESH_SHROUD_LEGS + 1 };

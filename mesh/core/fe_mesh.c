@@ -39,6 +39,14 @@ void mesh_fe_note_group(mesh_fe *mesh, const char *name) {
     if ((unsigned char)*end < ' ' || *end == 127) *end = '?';
 }
 
+int mesh_fe_take_group(mesh_fe *mesh, const mesh_names *names, const char *label) {
+  if (!*label) return -1;
+  mesh_fe_note_group(mesh, label);
+  for (int set = 0; set < mesh_fe_sets(mesh); set++)
+    if (strcmp(label, mesh_names_set(names, set)) == 0) return set;
+  return -1;
+}
+
 const char *mesh_fe_found(const mesh_fe *mesh, char text[MESH_FOUND + 40]) {
   if (!*mesh->found) return "the mesh has no groups of faces";
   snprintf(text, MESH_FOUND + 40, "the mesh has the groups %s", mesh->found);

@@ -82,6 +82,9 @@ int mesh_fe_set_named(const mesh_fe *mesh, const char *name);
 /* Append a group of the file to mesh->found: as many names as fit, then "...". */
 void mesh_fe_note_group(mesh_fe *mesh, const char *name);
 
+/* Index of the set that a group of the file is, -1: none. The group is noted if it has a name. */
+int mesh_fe_take_group(mesh_fe *mesh, const mesh_names *names, const char *label);
+
 /* "the mesh has the groups a, b", for the message about a missing group. */
 const char *mesh_fe_found(const mesh_fe *mesh, char text[MESH_FOUND + 40]);
 

@@ -1,13 +1,13 @@
 #include "mesh/gmsh/export.h"
 
 #include <errno.h>
-#include <gmshc.h>
 #include <stdbool.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <unistd.h>
 
+#include "mesh/gmsh/api.h"
 #include "mesh/gmsh/provenance.h"
 #include "mesh/gmsh/session.h"
 

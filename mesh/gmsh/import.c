@@ -1,64 +1,28 @@
 #include "mesh/gmsh/import.h"
 
-#include <gmshc.h>
-#include <limits.h>
 #include <stdbool.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "mesh/core/faces.h"
 #include "mesh/core/regions.h"
+#include "mesh/core/tagged_nodes.h"
+#include "mesh/gmsh/api.h"
 #include "mesh/gmsh/session.h"
 #include "mesh/gmsh/volumes.h"
 
 enum { GMSH_TET4 = 4, GMSH_HEX8 = 5, GMSH_HEX27 = 12 };
 
-/* gmsh's nodes, sorted by tag. */
-typedef struct {
-  size_t  n;
-  size_t *tag;    /* [n] */
-  double *xyz;    /* [n][3] m */
-  size_t *by_tag; /* [n][2] tag, index in tag[]; ascending */
-  int    *index;  /* [n] index in the mesh, -1: unused */
-} node_table;
-
-static int by_first(const void *a, const void *b) {
-  size_t p = *(const size_t *)a, q = *(const size_t *)b;
-  return (p > q) - (p < q);
-}
-
-static void table_free(node_table *table) {
-  gmshFree(table->tag);
-  gmshFree(table->xyz);
-  free(table->by_tag);
-  free(table->index);
-}
-
-static shb_status table_fill(const char *name, node_table *table) {
+/* Nodes of gmsh's model; tag and xyz are freed with gmshFree. */
+static shb_status take_tags(const char *name, size_t **tag, double **xyz,
+                            mesh_tagged_nodes *table) {
   double *unused = NULL;
-  size_t  n_xyz = 0, n_unused = 0;
-  GMSH_TRY(name, gmshModelMeshGetNodes(&table->tag, &table->n, &table->xyz, &n_xyz, &unused,
-                                       &n_unused, -1, -1, 0, 0, &ierr));
+  size_t  n = 0, n_xyz = 0, n_unused = 0;
+  GMSH_TRY(name,
+           gmshModelMeshGetNodes(tag, &n, xyz, &n_xyz, &unused, &n_unused, -1, -1, 0, 0, &ierr));
   gmshFree(unused);
-  SHB_CHECK(table->n > 0 && n_xyz == 3 * table->n, SHB_ERR_INPUT, "%s: no nodes", name);
-  SHB_CHECK(table->n < INT_MAX / MESH_NODES, SHB_ERR_INPUT, "%s: %zu nodes are too many", name,
-            table->n);
-  table->by_tag = malloc(2 * table->n * sizeof *table->by_tag);
-  table->index  = malloc(table->n * sizeof *table->index);
-  SHB_CHECK(table->by_tag && table->index, SHB_ERR_IO, "%s: no memory for its nodes", name);
-  for (size_t i = 0; i < table->n; i++) {
-    table->by_tag[2 * i]     = table->tag[i];
-    table->by_tag[2 * i + 1] = i;
-    table->index[i]          = -1;
-  }
-  qsort(table->by_tag, table->n, 2 * sizeof *table->by_tag, by_first);
-  return SHB_OK;
-}
-
-/* Index of a tag in the table, or n. */
-static size_t table_find(const node_table *table, size_t tag) {
-  const size_t *found = bsearch(&tag, table->by_tag, table->n, 2 * sizeof *table->by_tag, by_first);
-  return found ? found[1] : table->n;
+  SHB_CHECK(n > 0 && n_xyz == 3 * n, SHB_ERR_INPUT, "%s: no nodes", name);
+  return mesh_tagged_nodes_create(name, n, *tag, *xyz, table);
 }
 
 static shb_status find_types(const char *name, bool has[2], int *odd) {
@@ -104,90 +68,24 @@ static shb_status check_types(const char *name, mesh_kind *kind) {
   return SHB_OK;
 }
 
-/* Set connectivity[i] to the index in the table, for take_nodes to replace; mark the nodes used. */
-static shb_status take_connectivity(const char *name, node_table *table, const size_t *tags,
-                                    const size_t *nodes, mesh_fe *mesh) {
-  const size_t each = (size_t)mesh_topology_of(mesh->kind)->nodes;
-  for (size_t i = 0; i < each * (size_t)mesh->n_elements; i++) {
-    size_t place = table_find(table, nodes[i]);
-    SHB_CHECK(place < table->n, SHB_ERR_INPUT, "%s: element %zu uses node %zu, which is absent",
-              name, tags[i / each], nodes[i]);
-    mesh->connectivity[i] = (int)place;
-    table->index[place]   = 0;
-  }
-  for (int e = 0; e < mesh->n_elements; e++) mesh->element_tag[e] = (long)tags[e];
-  return SHB_OK;
-}
-
-/* Number the used nodes by ascending tag and copy them. */
-static shb_status take_nodes(const char *name, node_table *table, mesh_fe *mesh) {
-  const size_t each = (size_t)mesh_topology_of(mesh->kind)->nodes;
-  mesh->n_nodes     = 0;
-  for (size_t i = 0; i < table->n; i++) {
-    size_t place = table->by_tag[2 * i + 1];
-    if (table->index[place] >= 0) table->index[place] = mesh->n_nodes++;
-  }
-  mesh->coordinates = malloc(3 * (size_t)mesh->n_nodes * sizeof *mesh->coordinates);
-  mesh->node_tag    = malloc((size_t)mesh->n_nodes * sizeof *mesh->node_tag);
-  SHB_CHECK(mesh->coordinates && mesh->node_tag, SHB_ERR_IO, "%s: no memory for its nodes", name);
-  for (size_t i = 0; i < table->n; i++) {
-    int at = table->index[i];
-    if (at < 0) continue;
-    memcpy(mesh->coordinates + 3 * (size_t)at, table->xyz + 3 * i, 3 * sizeof(double));
-    mesh->node_tag[at] = (long)table->tag[i];
-  }
-  for (size_t i = 0; i < each * (size_t)mesh->n_elements; i++)
-    mesh->connectivity[i] = table->index[mesh->connectivity[i]];
-  return SHB_OK;
-}
-
-static shb_status take_volume(const char *name, node_table *table, mesh_fe *mesh) {
+static shb_status take_volume(const char *name, mesh_tagged_nodes *table, mesh_fe *mesh) {
   const mesh_topology *topology = mesh_topology_of(mesh->kind);
-  const size_t         each     = (size_t)topology->nodes;
   size_t              *tags = NULL, *nodes = NULL, n = 0, n_nodes = 0;
   GMSH_TRY(name, gmshModelMeshGetElementsByType(topology->gmsh, &tags, &n, &nodes, &n_nodes, -1, 0,
                                                 1, &ierr));
-  shb_status status = SHB_OK;
-  if (n < INT_MAX / each && n_nodes == each * n) {
-    mesh->n_elements   = (int)n;
-    mesh->connectivity = malloc(each * n * sizeof *mesh->connectivity);
-    mesh->element_tag  = malloc(n * sizeof *mesh->element_tag);
-    if (mesh->connectivity && mesh->element_tag) {
-      status = take_connectivity(name, table, tags, nodes, mesh);
-    } else {
-      status = shb_fail(SHB_ERR_IO, __FILE__, __LINE__, "%s: no memory for its elements", name);
-    }
-  } else {
-    status = shb_fail(SHB_ERR_INPUT, __FILE__, __LINE__, "%s: %zu elements are too many", name, n);
-  }
+  const mesh_tagged_elements elements = {n, tags, nodes};
+  shb_status                 status   = SHB_ERR_INPUT;
+  if (n_nodes == (size_t)topology->nodes * n)
+    status = mesh_tagged_take_volume(name, &elements, table, mesh);
+  else
+    shb_fail(status, __FILE__, __LINE__, "%s: %zu elements are too many", name, n);
   gmshFree(tags);
   gmshFree(nodes);
-  if (status == SHB_OK) status = take_nodes(name, table, mesh);
   return status;
 }
 
-/* Append n faces to a set.
- *   nodes  in  [n][face_nodes] tags */
-static shb_status append_faces(const char *name, const node_table *table, const size_t *nodes,
-                               size_t n, mesh_fe *mesh, int id) {
-  const size_t   each = (size_t)mesh_topology_of(mesh->kind)->face_nodes;
-  mesh_face_set *set  = &mesh->set[id];
-  int           *grow = realloc(set->nodes, each * ((size_t)set->n + n + 1) * sizeof *grow);
-  SHB_CHECK(grow, SHB_ERR_IO, "%s: no memory for its groups", name);
-  set->nodes = grow;
-  for (size_t i = 0; i < each * n; i++) {
-    size_t place = table_find(table, nodes[i]);
-    SHB_CHECK(place < table->n && table->index[place] >= 0, SHB_ERR_INPUT,
-              "%s: group %s: node %zu belongs to no element", name, mesh_fe_set_name(mesh, id),
-              nodes[i]);
-    grow[each * (size_t)set->n + i] = table->index[place];
-  }
-  set->n += (int)n;
-  return SHB_OK;
-}
-
-static shb_status take_surface(const char *name, const node_table *table, int entity, mesh_fe *mesh,
-                               int id) {
+static shb_status take_surface(const char *name, const mesh_tagged_nodes *table, int entity,
+                               mesh_fe *mesh, int id) {
   const mesh_topology *topology = mesh_topology_of(mesh->kind);
   int                 *types    = NULL;
   size_t               n_types  = 0;
@@ -204,29 +102,28 @@ static shb_status take_surface(const char *name, const node_table *table, int en
   size_t *tags = NULL, *nodes = NULL, n = 0, n_nodes = 0;
   GMSH_TRY(name, gmshModelMeshGetElementsByType(topology->gmsh_face, &tags, &n, &nodes, &n_nodes,
                                                 entity, 0, 1, &ierr));
-  shb_status status = append_faces(name, table, nodes, n, mesh, id);
+  const mesh_tagged_elements faces  = {n, tags, nodes};
+  shb_status                 status = mesh_tagged_append_faces(name, table, &faces, id, mesh);
   gmshFree(tags);
   gmshFree(nodes);
   return status;
 }
 
-/* Set that a physical surface belongs to; mesh_fe_sets(mesh) if none. */
+/* Set that a physical surface belongs to; -1: none. */
 static shb_status which_set(const char *name, const mesh_names *names, mesh_fe *mesh, int group,
                             int *id) {
   char *label = NULL;
   GMSH_TRY(name, gmshModelGetPhysicalName(2, group, &label, &ierr));
-  for (*id = 0; *id < mesh_fe_sets(mesh); ++*id)
-    if (label && strcmp(label, mesh_names_set(names, *id)) == 0) break;
-  if (label && *label) mesh_fe_note_group(mesh, label);
+  *id = mesh_fe_take_group(mesh, names, label ? label : "");
   gmshFree(label);
   return SHB_OK;
 }
 
-static shb_status take_group(const char *name, const mesh_names *names, const node_table *table,
-                             int group, mesh_fe *mesh) {
+static shb_status take_group(const char *name, const mesh_names *names,
+                             const mesh_tagged_nodes *table, int group, mesh_fe *mesh) {
   int id = MESH_ROOT;
   SHB_TRY(which_set(name, names, mesh, group, &id));
-  if (id == mesh_fe_sets(mesh)) return SHB_OK;
+  if (id < 0) return SHB_OK;
   int   *entities = NULL;
   size_t n        = 0;
   GMSH_TRY(name, gmshModelGetEntitiesForPhysicalGroup(2, group, &entities, &n, &ierr));
@@ -237,8 +134,8 @@ static shb_status take_group(const char *name, const mesh_names *names, const no
   return status;
 }
 
-static shb_status take_groups(const char *name, const mesh_names *names, const node_table *table,
-                              mesh_fe *mesh) {
+static shb_status take_groups(const char *name, const mesh_names *names,
+                              const mesh_tagged_nodes *table, mesh_fe *mesh) {
   int   *groups = NULL;
   size_t n      = 0;
   GMSH_TRY(name, gmshModelGetPhysicalGroups(&groups, &n, 2, &ierr));
@@ -252,15 +149,19 @@ static shb_status take_groups(const char *name, const mesh_names *names, const n
 shb_status mesh_import(const char *name, const mesh_names *names, mesh_fe *mesh) {
   memset(mesh, 0, sizeof *mesh);
   mesh_regions_name(names, mesh);
-  node_table table  = {0};
-  shb_status status = check_types(name, &mesh->kind);
-  if (status == SHB_OK) status = table_fill(name, &table);
+  size_t           *tag    = NULL;
+  double           *xyz    = NULL;
+  mesh_tagged_nodes table  = {0};
+  shb_status        status = check_types(name, &mesh->kind);
+  if (status == SHB_OK) status = take_tags(name, &tag, &xyz, &table);
   if (status == SHB_OK) status = take_volume(name, &table, mesh);
   if (status == SHB_OK) status = take_groups(name, names, &table, mesh);
   if (status == SHB_OK) status = mesh_faces_orient(mesh, name);
   if (status == SHB_OK && names && names->n_volumes)
     status = mesh_volumes_assign(name, names, mesh);
-  table_free(&table);
+  mesh_tagged_nodes_free(&table);
+  gmshFree(tag);
+  gmshFree(xyz);
   if (status != SHB_OK) mesh_fe_free(mesh);
   return status;
 }

@@ -2,11 +2,12 @@
 
 #include <ctype.h>
 #include <fcntl.h>
-#include <gmshc.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <unistd.h>
+
+#include "mesh/gmsh/api.h"
 
 static const int saved_signals[MESH_SESSION_SIGNALS] = {SIGINT, SIGTERM, SIGHUP, SIGFPE, SIGSEGV};
 
@@ -63,6 +64,7 @@ shb_status mesh_session_open(mesh_session *session) {
   char                     name[]   = "shroudhb";
   char                    *argv[]   = {name, NULL};
   int                      ierr     = 0;
+  SHB_TRY(mesh_gmsh_load());
   save_handlers(session);
   gmshInitialize(1, argv, 0, &ierr);
   restore_handlers(session);

@@ -1,11 +1,11 @@
 #include "mesh/gmsh/size_estimate.h"
 
-#include <gmshc.h>
 #include <math.h>
 #include <stdlib.h>
 
 #include "mesh/base/memory.h"
 #include "mesh/base/vec3.h"
+#include "mesh/gmsh/api.h"
 #include "mesh/gmsh/session.h"
 
 /* 550 bytes a node were measured with tetrahedra, 270 with swept hexahedra: docs/user/limits.md. */

@@ -1,7 +1,6 @@
 #include "mesh/gmsh/solid.h"
 
 #include <errno.h>
-#include <gmshc.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -13,6 +12,7 @@
 #include "mesh/core/face_match.h"
 #include "mesh/core/file_format.h"
 #include "mesh/core/jacobian.h"
+#include "mesh/gmsh/api.h"
 #include "mesh/gmsh/import.h"
 #include "mesh/gmsh/size_estimate.h"
 

@@ -1,6 +1,5 @@
 #include "mesh/gmsh/volumes.h"
 
-#include <gmshc.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -9,6 +8,7 @@
 #include "mesh/base/vec3.h"
 #include "mesh/core/regions.h"
 #include "mesh/core/triangle.h"
+#include "mesh/gmsh/api.h"
 #include "mesh/gmsh/session.h"
 
 /* gmsh's volume (entity) of each element. */

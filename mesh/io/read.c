@@ -1,19 +1,21 @@
 #include "mesh/io/read.h"
 
-#include <gmshc.h>
 #include <stdbool.h>
 #include <string.h>
 
 #include "mesh/base/crash_guard.h"
 #include "mesh/core/file_format.h"
 #include "mesh/core/jacobian.h"
+#include "mesh/gmsh/api.h"
 #include "mesh/gmsh/import.h"
 #include "mesh/gmsh/session.h"
 #include "mesh/io/inp_read.h"
 #include "mesh/io/msh_check.h"
+#include "mesh/io/msh_read.h"
 
 static shb_status read_msh(const char *path, const mesh_names *names, mesh_fe *mesh) {
   SHB_TRY(mesh_msh_check(path));
+  if (mesh_msh_read(path, names, mesh)) return SHB_OK;
   mesh_session session;
   SHB_TRY(mesh_session_open(&session));
   int ierr = 0;
