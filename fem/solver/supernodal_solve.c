@@ -14,9 +14,11 @@ FEM_KERNEL void take_eight(const double *l, size_t rows, size_t j, fem_lanes *w)
   const double   *l4 = l3 + rows, *l5 = l4 + rows, *l6 = l5 + rows, *l7 = l6 + rows;
   const fem_lanes v0 = w[j], v1 = w[j + 1], v2 = w[j + 2], v3 = w[j + 3];
   const fem_lanes v4 = w[j + 4], v5 = w[j + 5], v6 = w[j + 6], v7 = w[j + 7];
-  for (size_t i = j + GROUP; i < rows; i++)
+  for (size_t i = j + GROUP; i < rows; i++) {
+    __builtin_prefetch(l + GROUP * (rows + i), 0, 2);
     w[i] -= ((l0[i] * v0 + l1[i] * v1) + (l2[i] * v2 + l3[i] * v3)) +
             ((l4[i] * v4 + l5[i] * v5) + (l6[i] * v6 + l7[i] * v7));
+  }
 }
 
 /* Solve L w = w. */
@@ -42,6 +44,7 @@ FEM_KERNEL void sum_eight(const double *l, size_t rows, size_t j, const fem_lane
   fem_lanes     s0 = {0}, s1 = {0}, s2 = {0}, s3 = {0}, s4 = {0}, s5 = {0}, s6 = {0}, s7 = {0};
   for (size_t i = j + GROUP; i < rows; i++) {
     const fem_lanes v = w[i];
+    __builtin_prefetch(l - GROUP * (rows - i), 0, 2);
     s0 += l0[i] * v, s1 += l1[i] * v, s2 += l2[i] * v, s3 += l3[i] * v;
     s4 += l4[i] * v, s5 += l5[i] * v, s6 += l6[i] * v, s7 += l7[i] * v;
   }
