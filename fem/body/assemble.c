@@ -509,38 +509,49 @@ static PetscErrorCode to_nodes(const fem_system *system, Vec all, double *nodal)
   PetscFunctionReturn(0);
 }
 
-static PetscErrorCode scatter_to(VecScatter scatter, Vec x, Vec all) {
+/* On several ranks.
+ *   here  in  this rank wants the nodal values */
+static PetscErrorCode scatter_to(const fem_system *system, VecScatter scatter, Vec x, Vec all,
+                                 bool here, double *nodal) {
   PetscFunctionBeginUser;
   PetscCall(VecScatterBegin(scatter, x, all, INSERT_VALUES, SCATTER_FORWARD));
   PetscCall(VecScatterEnd(scatter, x, all, INSERT_VALUES, SCATTER_FORWARD));
+  if (here) PetscCall(to_nodes(system, all, nodal));
+  PetscCall(VecScatterDestroy(&scatter));
+  PetscCall(VecDestroy(&all));
   PetscFunctionReturn(0);
 }
 
 PetscErrorCode fem_system_gather(const fem_system *system, Vec x, double *nodal) {
   Vec        all;
   VecScatter scatter;
-  int        rank;
+  int        rank, ranks;
 
   PetscFunctionBeginUser;
   PetscCallMPI(MPI_Comm_rank(system->comm, &rank));
+  PetscCallMPI(MPI_Comm_size(system->comm, &ranks));
+  if (ranks == 1) {
+    PetscCall(to_nodes(system, x, nodal));
+    PetscFunctionReturn(0);
+  }
   PetscCall(VecScatterCreateToZero(x, &scatter, &all));
-  PetscCall(scatter_to(scatter, x, all));
-  if (rank == 0) PetscCall(to_nodes(system, all, nodal));
-  PetscCall(VecScatterDestroy(&scatter));
-  PetscCall(VecDestroy(&all));
+  PetscCall(scatter_to(system, scatter, x, all, rank == 0, nodal));
   PetscFunctionReturn(0);
 }
 
 PetscErrorCode fem_system_share(const fem_system *system, Vec x, double *nodal) {
   Vec        all;
   VecScatter scatter;
+  int        ranks;
 
   PetscFunctionBeginUser;
+  PetscCallMPI(MPI_Comm_size(system->comm, &ranks));
+  if (ranks == 1) {
+    PetscCall(to_nodes(system, x, nodal));
+    PetscFunctionReturn(0);
+  }
   PetscCall(VecScatterCreateToAll(x, &scatter, &all));
-  PetscCall(scatter_to(scatter, x, all));
-  PetscCall(to_nodes(system, all, nodal));
-  PetscCall(VecScatterDestroy(&scatter));
-  PetscCall(VecDestroy(&all));
+  PetscCall(scatter_to(system, scatter, x, all, true, nodal));
   PetscFunctionReturn(0);
 }
 
