@@ -137,6 +137,7 @@ static modal_settings stage_settings(const case_file *file, modal_probe probe[CA
       .band             = file->band,
       .damping          = file->damping,
       .check            = file->check,
+      .spares_stiffness = true,
       .load             = file->load,
       .n_probes         = file->n_probes,
       .probe            = probe,

@@ -466,6 +466,16 @@ PetscErrorCode fem_system_create(MPI_Comm comm, const mesh_fe *mesh, const fem_m
   PetscFunctionReturn(0);
 }
 
+PetscErrorCode fem_system_restore(const fem_source *from, fem_system *system) {
+  fem_system again;
+  PetscFunctionBeginUser;
+  PetscCall(fem_system_create(system->comm, from->mesh, from->material, from->rules, &again));
+  system->K = again.K;
+  again.K   = NULL;
+  PetscCall(fem_system_destroy(&again));
+  PetscFunctionReturn(0);
+}
+
 PetscErrorCode fem_system_shifted(const fem_system *system, double shift, Mat *A) {
   Mat mass;
   PetscFunctionBeginUser;

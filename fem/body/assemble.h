@@ -21,7 +21,7 @@ typedef struct {
   PetscInt  n_free;      /* number of free nodes, all ranks */
   PetscInt  first, last; /* block rows of this rank */
   PetscInt *row;         /* [n_nodes] block row, -1 for a clamped node; the same on every rank */
-  Mat       K;           /* SBAIJ, block size 3, order 3 n_free; N/m */
+  Mat       K;           /* SBAIJ, block size 3, order 3 n_free; N/m. NULL: given up */
   Mat       M; /* MAIJ: one number a pair of nodes, times the 3x3 identity; of a sector SBAIJ; kg */
   bool     *turned;     /* [n_nodes] node that moves as turn times its partner; NULL: no sector */
   double    turn[3][3]; /* of a sector */
@@ -44,6 +44,16 @@ typedef struct {
 PetscErrorCode fem_system_create_beside(MPI_Comm comm, const mesh_fe *mesh,
                                         const fem_material *material, fem_rules rules,
                                         const fem_beside *beside, fem_system *system);
+
+/* What the matrices are assembled of. */
+typedef struct {
+  const mesh_fe      *mesh;
+  const fem_material *material;
+  fem_rules           rules;
+} fem_source;
+
+/* K again, of a system that has lost it: the same numbers. */
+PetscErrorCode fem_system_restore(const fem_source *from, fem_system *system);
 
 /* A = K - shift M, in the format of K; the caller destroys it. */
 PetscErrorCode fem_system_shifted(const fem_system *system, double shift, Mat *A);

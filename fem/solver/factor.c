@@ -130,6 +130,10 @@ const char *fem_factor_program(const fem_factor *factor) {
   return factor->cholesky ? "CHOLMOD" : "MUMPS";
 }
 
+bool fem_factor_needs_matrix(const fem_factor *factor) {
+  return factor->mumps != NULL;
+}
+
 /* ------------------------------------------------------------------ factor and solves */
 
 /* definite: MUMPS met no negative pivots. On several ranks its dense root is not counted, but must

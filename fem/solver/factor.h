@@ -42,6 +42,9 @@ PetscErrorCode fem_factor_set_pc(fem_factor *factor, PC pc);
 double      fem_factor_bytes(const fem_factor *factor);
 const char *fem_factor_program(const fem_factor *factor);
 
+/* May solves read the matrix again that was factorised? MUMPS's own refinement does. */
+bool fem_factor_needs_matrix(const fem_factor *factor);
+
 PetscErrorCode fem_factor_destroy(fem_factor **factor); /* NULL: nothing */
 
 #endif

@@ -58,13 +58,17 @@ static PetscErrorCode choose_method(const fem_system *system, int n, EPS eps) {
 
 static PetscErrorCode configure(const fem_system *system, const modal_eigen_settings *settings,
                                 monitor_context *context, modal_eigen *eigen) {
-  EPS eps = eigen->eps;
-  ST  st;
-  KSP ksp;
-  PC  pc;
+  const PetscInt order = 3 * system->n_free, n_own = 3 * (system->last - system->first);
+  EPS            eps = eigen->eps;
+  Mat            K; /* without numbers: the factor has them */
+  ST             st;
+  KSP            ksp;
+  PC             pc;
 
   PetscFunctionBeginUser;
-  PetscCall(EPSSetOperators(eps, system->K, system->M));
+  PetscCall(MatCreateShell(system->comm, n_own, n_own, order, order, NULL, &K));
+  PetscCall(EPSSetOperators(eps, K, system->M));
+  PetscCall(MatDestroy(&K));
   PetscCall(EPSSetProblemType(eps, EPS_GHEP));
   PetscCall(choose_method(system, settings->modes, eps));
   PetscCall(EPSSetPurify(eps, PETSC_FALSE)); /* M is not singular */
@@ -123,6 +127,8 @@ static PetscErrorCode factorise(const fem_system *system, const modal_eigen_sett
               fem_factor_program(eigen->factor), 1e-9 * fem_factor_bytes(eigen->factor));
   PetscCall(fem_factor_update(eigen->factor, A, &definite));
   PetscCall(MatDestroy(&A));
+  if (settings->spare && !fem_factor_needs_matrix(eigen->factor))
+    PetscCall(MatDestroy(&settings->spare->system->K));
   PetscCheck(definite, system->comm, PETSC_ERR_USER_INPUT,
              "the stiffness matrix is not positive definite: the clamp on group root does not hold "
              "the body, the material is not physical, or the equilibrium at rotor.speed is not "
@@ -281,11 +287,14 @@ static PetscErrorCode count_found(EPS eps, int modes, double limit, int *count) 
   PetscFunctionReturn(0);
 }
 
-static PetscErrorCode check_by_inertia(const fem_system *system, modal_check *check,
-                                       modal_verdict *verdict) {
-  const int found = check->count;
+static PetscErrorCode check_by_inertia(const fem_system *system, const modal_spare_stiffness *spare,
+                                       modal_check *check, modal_verdict *verdict) {
+  const int  found = check->count;
+  const bool gone  = spare && !system->K;
   PetscFunctionBeginUser;
+  if (gone) PetscCall(fem_system_restore(&spare->source, spare->system));
   PetscCall(modal_inertia_count(system, check->limit, &check->count));
+  if (gone) PetscCall(MatDestroy(&spare->system->K));
   check->method      = "inertia";
   check->probability = 0;
   *verdict           = check->count == found ? MODAL_VERDICT_COMPLETE : MODAL_VERDICT_MISSING;
@@ -326,7 +335,8 @@ static PetscErrorCode check_modes(const fem_system *system, const modal_eigen_se
   *verdict = MODAL_VERDICT_UNDECIDED;
   if (settings->check == MODAL_CHECK_AUTO)
     PetscCall(check_by_restart(eps, settings->shift, check, verdict));
-  if (*verdict == MODAL_VERDICT_UNDECIDED) PetscCall(check_by_inertia(system, check, verdict));
+  if (*verdict == MODAL_VERDICT_UNDECIDED)
+    PetscCall(check_by_inertia(system, settings->spare, check, verdict));
   modal_phase(system->comm, settings->progress, "check", "%s, %d below %.6g Hz by %s",
               *verdict == MODAL_VERDICT_COMPLETE ? "no mode is missing" : "a mode is missing",
               check->count, modal_check_frequency(check), check->method);

@@ -11,6 +11,12 @@
 #include "mesh/base/progress.h"
 #include "modal/common/completeness.h"
 
+/* A system that may give up K between its uses, since it can be assembled again. */
+typedef struct {
+  fem_system *system;
+  fem_source  source;
+} modal_spare_stiffness;
+
 typedef struct {
   int              modes;     /* wanted, >= 1 */
   double           shift;     /* rad2/s2: 0 for a clamped body, below 0 for a free one */
@@ -18,6 +24,7 @@ typedef struct {
   shb_progress    *progress;  /* or NULL */
   modal_check_kind check;
   fem_factor     **factor; /* analysed for the pattern of K, taken over; NULL: it is made */
+  const modal_spare_stiffness *spare; /* K is given up once it is factorised; NULL: it stays */
 } modal_eigen_settings;
 
 /* The residual of an eigenpair is |phi - (lambda - shift) (K - shift M)^-1 M phi| in the M norm,

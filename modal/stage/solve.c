@@ -182,11 +182,15 @@ static PetscErrorCode analyse(const fem_system *system, void *context) {
   PetscFunctionReturn(0);
 }
 
+static bool is_at_rest(const fem_body *body) {
+  return body->rotation.speed == 0 && body->pressure == 0;
+}
+
 /* Assemble the matrices of the body, at its equilibrium if it rotates. Only a body at rest has the
  * factor analysed beside. */
 static shb_status assemble(MPI_Comm comm, const fem_body *body, const modal_condensation *to,
                            shb_progress *progress, analysis *own, modal_result *result) {
-  const bool       at_rest = body->rotation.speed == 0 && body->pressure == 0;
+  const bool       at_rest = is_at_rest(body);
   const fem_beside beside  = {analyse, own};
   shb_progress_show(progress, 5, "assembling %d elements", body->mesh->n_elements);
   FEM_PETSC(fem_system_create_beside(comm, body->mesh, body->material, body->element->rules,
@@ -202,8 +206,12 @@ static shb_status assemble(MPI_Comm comm, const fem_body *body, const modal_cond
 static shb_status find_modes(const fem_body *body, const modal_settings *settings,
                              const modal_condensation *to, fem_factor **factor, int modes,
                              shb_progress *progress, modal_result *result) {
-  modal_eigen_settings eigen = {
-      .modes = modes, .progress = progress, .check = settings->check, .factor = factor};
+  const modal_spare_stiffness spare = {&result->system,
+                                       {body->mesh, body->material, body->element->rules}};
+  modal_eigen_settings        eigen = {
+             .modes = modes, .progress = progress, .check = settings->check, .factor = factor};
+  if (settings->spares_stiffness && settings->modes > 0 && is_at_rest(body) && !body->mesh->image)
+    eigen.spare = &spare;
   FEM_PETSC(modal_eigen_solve(&result->system, &eigen, &result->eigen));
   SHB_CHECK(result->eigen.n > 0, SHB_INTERRUPTED, "interrupted");
   FEM_PETSC(refine(body, result->deflection.at.displacement, &result->system, &result->eigen));

@@ -48,6 +48,7 @@ typedef struct {
   double               tolerance, band; /* of the contact receptance; Hz */
   modal_damping        damping;
   modal_check_kind     check;            /* that no mode is missing */
+  bool                 spares_stiffness; /* the system of a blade at rest has no K afterwards */
   bool                 full_integration; /* stiffness with FEM_FULL, not FEM_STANDARD */
   fem_load             load;
   bool                 unloaded; /* no load at all */

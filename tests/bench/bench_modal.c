@@ -89,11 +89,12 @@ static bool make_mesh(const rung *r, figures *out) {
 }
 
 static PetscErrorCode find_modes(const mesh_fe *mesh, figures *out) {
-  const fem_material         steel  = {.E = 2.1e11, .nu = .3, .rho = 7850};
-  const modal_eigen_settings wanted = {.modes = MODES};
-  const double               began  = processor_time();
-  fem_system                 system;
-  modal_eigen                eigen;
+  const fem_material          steel = {.E = 2.1e11, .nu = .3, .rho = 7850};
+  fem_system                  system;
+  const modal_spare_stiffness spare  = {&system, {mesh, &steel, FEM_CALCULIX}};
+  const modal_eigen_settings  wanted = {.modes = MODES, .spare = &spare};
+  const double                began  = processor_time();
+  modal_eigen                 eigen;
 
   PetscFunctionBeginUser;
   PetscCall(fem_system_create(PETSC_COMM_SELF, mesh, &steel, FEM_CALCULIX, &system));

@@ -51,8 +51,38 @@ static void inertia_counts(void **state) {
   }
 }
 
+/* A system that gives up K has the same modes to the last bit. K can be had again, and they are the
+ * same once more. */
+static void a_system_may_give_up_its_stiffness(void **state) {
+  (void)state;
+  const double          size[3]  = {0.11, 0.07, 0.05};
+  const int             cells[3] = {4, 3, 2};
+  mesh_fe               mesh     = make_box(size, cells);
+  fem_system            system;
+  modal_spare_stiffness spare    = {&system, {&mesh, &steel, FEM_STANDARD}};
+  modal_eigen_settings  settings = {.modes = 9, .check = MODAL_CHECK_INERTIA};
+  modal_eigen           kept, given;
+  assemble(&mesh, &system);
+  solve(&system, &settings, &kept);
+  assert_non_null(system.K);
+  settings.spare = &spare;
+  for (int time = 0; time < 2; time++) {
+    solve(&system, &settings, &given);
+    assert_null(system.K);
+    assert_string_equal(given.check.method, "inertia");
+    assert_int_equal(given.check.count, kept.check.count);
+    assert_memory_equal(given.lambda, kept.lambda, 9 * sizeof *kept.lambda);
+    modal_eigen_destroy(&given);
+    assert_int_equal(fem_system_restore(&spare.source, &system), 0);
+  }
+  modal_eigen_destroy(&kept);
+  fem_system_destroy(&system);
+  mesh_fe_free(&mesh);
+}
+
 int main(int argc, char **argv) {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(inertia_counts)};
+  const struct CMUnitTest tests[] = {cmocka_unit_test(inertia_counts),
+                                     cmocka_unit_test(a_system_may_give_up_its_stiffness)};
   modal_session           session;
   if (modal_session_start(&argc, &argv, &session) != SHB_OK) return 1;
   int failures = cmocka_run_group_tests(tests, NULL, NULL);
