@@ -47,7 +47,7 @@ PetscErrorCode modal_block_basis_cholesky_qr(const modal_block_basis *b, double 
                                              bool *good);
 
 /* Orthonormalise W against the basis and in itself: W = Q C + W' R. The coefficients of the last
- * block are added to D; NULL: W is no step of Lanczos. */
+ * block are added to D. D is NULL where W is no step of Lanczos. */
 PetscErrorCode modal_block_basis_orthonormalise(const modal_block_basis *b, double *D, double *R,
                                                 bool *good);
 
