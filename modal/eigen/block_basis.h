@@ -46,8 +46,8 @@ PetscErrorCode modal_block_basis_project_out(const modal_block_basis *b);
 PetscErrorCode modal_block_basis_cholesky_qr(const modal_block_basis *b, double *product,
                                              bool *good);
 
-/* Orthonormalise W against the basis and in itself: W = Q C + W' R. The coefficients of the last
- * block are added to D. D is NULL where W is no step of Lanczos. */
+/* Orthonormalise W against the basis and in itself: W = Q C + W' R.
+ *   D  in/out  the coefficients of the last block are added; NULL: W is no step of Lanczos */
 PetscErrorCode modal_block_basis_orthonormalise(const modal_block_basis *b, double *D, double *R,
                                                 bool *good);
 
