@@ -4,7 +4,7 @@
 #include <stddef.h>
 #include <stdlib.h>
 
-#include "fem/solver/hot.h"
+#include "fem/supernodal/hot.h"
 
 enum { TOGETHER = 4, ROWS = 256 }; /* columns that one pass over M serves; rows at a time */
 

@@ -5,8 +5,8 @@
 
 #include "fem/body/pressure.h"
 #include "fem/element/finite_strain.h"
-#include "fem/solver/hot.h"
-#include "fem/solver/large_pages.h"
+#include "fem/supernodal/hot.h"
+#include "fem/supernodal/large_pages.h"
 #include "mesh/base/vec3.h"
 
 /* Extrapolation from the points of a rule to the nodes by a linear function of the reference

@@ -4,10 +4,10 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "fem/solver/block_order.h"
-#include "fem/solver/large_pages.h"
-#include "fem/solver/supernodal_factor.h"
-#include "fem/solver/supernodal_solve.h"
+#include "fem/supernodal/block_order.h"
+#include "fem/supernodal/large_pages.h"
+#include "fem/supernodal/supernodal_factor.h"
+#include "fem/supernodal/supernodal_solve.h"
 
 /* MANY: right-hand sides from which BLAS is faster. BLOCK: most columns that a thread solves at
  * once. */

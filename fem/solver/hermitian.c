@@ -4,8 +4,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "fem/solver/hermitian_factor.h"
-#include "fem/solver/large_pages.h"
+#include "fem/supernodal/hermitian_factor.h"
+#include "fem/supernodal/large_pages.h"
 #include "mesh/base/memory.h"
 
 struct fem_hermitian_order {

@@ -1,6 +1,6 @@
 /* Sparse Hermitian Cholesky factor L L^H of 3x3 blocks at any theta. Free of PETSc.
  *
- * Ordered and analysed by CHOLMOD once. What does not depend on theta (fem/solver/panel_turns.h) is
+ * Ordered and analysed by CHOLMOD once. What does not depend on theta (fem/supernodal/panel_turns.h) is
  * factorised once, on all threads. The rest takes one thread: several theta may be factorised and
  * solved at a time. */
 #ifndef FEM_SOLVER_HERMITIAN_H
@@ -8,8 +8,8 @@
 
 #include <complex.h>
 
-#include "fem/solver/block_order.h"
-#include "fem/solver/panel_turns.h"
+#include "fem/supernodal/block_order.h"
+#include "fem/supernodal/panel_turns.h"
 #include "mesh/base/status.h"
 
 /* A(theta): upper triangle, each block by columns. */

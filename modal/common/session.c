@@ -7,8 +7,8 @@
 #include <stdlib.h>
 #include <sys/resource.h>
 
-#include "fem/solver/large_pages.h"
 #include "fem/solver/petsc_error.h"
+#include "fem/supernodal/large_pages.h"
 #include "mesh/base/memory.h"
 
 /* OpenBLAS's own declaration: its header clashes with PETSc's declarations of LAPACK. */

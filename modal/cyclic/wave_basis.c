@@ -5,7 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "fem/solver/large_pages.h"
+#include "fem/supernodal/large_pages.h"
 #include "mesh/base/constants.h"
 #include "modal/common/random_vector.h"
 #include "modal/cyclic/small_hermitian.h"

@@ -5,7 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "fem/solver/large_pages.h"
+#include "fem/supernodal/large_pages.h"
 #include "mesh/base/constants.h"
 #include "mesh/base/progress.h"
 #include "modal/condense/residual_terms.h"

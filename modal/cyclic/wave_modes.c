@@ -5,7 +5,7 @@
 #include <string.h>
 
 #include "fem/body/energy.h"
-#include "fem/solver/large_pages.h"
+#include "fem/supernodal/large_pages.h"
 #include "mesh/base/constants.h"
 #include "mesh/base/progress.h"
 #include "modal/common/random_vector.h"

@@ -1,5 +1,5 @@
 #include "modal/cyclic/wave_search.h"
-#include "fem/solver/large_pages.h"
+#include "fem/supernodal/large_pages.h"
 #include "modal/cyclic/small_hermitian.h"
 
 #include <math.h>

@@ -5,7 +5,7 @@
 #include <string.h>
 
 #include "fem/body/mass_product.h"
-#include "fem/solver/large_pages.h"
+#include "fem/supernodal/large_pages.h"
 #include "modal/common/random_vector.h"
 #include "modal/eigen/block_products.h"
 

@@ -3,7 +3,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "fem/solver/hot.h"
+#include "fem/supernodal/hot.h"
 
 /* PARTS: sums of rows that are made apart. CHUNK: rows that stay in the cache. */
 enum { PARTS = 32, CHUNK = 4096, LANES = 4, TOGETHER = 4 };

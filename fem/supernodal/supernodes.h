@@ -4,8 +4,8 @@
  * The supernodes are CHOLMOD's; wide ones are cut into panels. Subtrees of the elimination tree do
  * not depend on each other. They are chosen by cost alone, so results do not depend on the number
  * of threads. Free of PETSc. */
-#ifndef FEM_SOLVER_SUPERNODES_H
-#define FEM_SOLVER_SUPERNODES_H
+#ifndef FEM_SUPERNODAL_SUPERNODES_H
+#define FEM_SUPERNODAL_SUPERNODES_H
 
 #include <stdbool.h>
 #include <stddef.h>
@@ -47,7 +47,7 @@ typedef struct {
   bool        *is_top;       /* [n_panels] in no subtree */
 } fem_supernodes;
 
-/* From CHOLMOD's symbolic factor of the nodes (fem/solver/block_order.h). Returns false when out of
+/* From CHOLMOD's symbolic factor of the nodes (fem/supernodal/block_order.h). Returns false when out of
  * memory. */
 bool fem_supernodes_create(const cholmod_factor *L, fem_supernodes *out);
 void fem_supernodes_free(fem_supernodes *s); /* also of a zeroed struct */

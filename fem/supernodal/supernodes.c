@@ -1,4 +1,4 @@
-#include "fem/solver/supernodes.h"
+#include "fem/supernodal/supernodes.h"
 
 #include <stdlib.h>
 #include <string.h>

@@ -3,11 +3,11 @@
  * Left-looking: a panel collects the updates of earlier panels in their order, so the numbers do
  * not depend on the number of threads. Each thread takes the next panel, or a whole subtree, and
  * waits for the panels that it needs. BLAS should run on one thread. Free of PETSc. */
-#ifndef FEM_SOLVER_SUPERNODAL_FACTOR_H
-#define FEM_SOLVER_SUPERNODAL_FACTOR_H
+#ifndef FEM_SUPERNODAL_SUPERNODAL_FACTOR_H
+#define FEM_SUPERNODAL_SUPERNODAL_FACTOR_H
 
-#include "fem/solver/block_order.h"
-#include "fem/solver/supernodes.h"
+#include "fem/supernodal/block_order.h"
+#include "fem/supernodal/supernodes.h"
 
 typedef enum { FEM_FACTORISED, FEM_NOT_DEFINITE, FEM_NO_MEMORY } fem_factorised;
 

@@ -1,7 +1,7 @@
 /* Memory in pages of 2 MB. A page fault costs as much as filling 4 kB, and large arrays have many;
  * where the system has no large pages nothing changes. Free of PETSc. */
-#ifndef FEM_SOLVER_LARGE_PAGES_H
-#define FEM_SOLVER_LARGE_PAGES_H
+#ifndef FEM_SUPERNODAL_LARGE_PAGES_H
+#define FEM_SUPERNODAL_LARGE_PAGES_H
 
 #include <stdint.h>
 #include <stdlib.h>

@@ -1,6 +1,6 @@
 /* Order of the nodes and the pattern of the factor, by CHOLMOD. */
-#ifndef FEM_SOLVER_BLOCK_ORDER_H
-#define FEM_SOLVER_BLOCK_ORDER_H
+#ifndef FEM_SUPERNODAL_BLOCK_ORDER_H
+#define FEM_SUPERNODAL_BLOCK_ORDER_H
 
 #include <stdbool.h>
 #include <suitesparse/cholmod.h>

@@ -1,6 +1,6 @@
-#include "fem/solver/supernodal_hermitian.h"
+#include "fem/supernodal/supernodal_hermitian.h"
 
-#include "fem/solver/hot.h"
+#include "fem/supernodal/hot.h"
 
 enum { GROUP = 4 }; /* columns that are processed together */
 

@@ -1,10 +1,10 @@
-#include "fem/solver/supernodal_solve.h"
+#include "fem/supernodal/supernodal_solve.h"
 
 #include <cblas.h>
 #include <omp.h>
 #include <string.h>
 
-#include "fem/solver/hot.h"
+#include "fem/supernodal/hot.h"
 
 enum { GROUP = 8 }; /* columns that are processed together */
 

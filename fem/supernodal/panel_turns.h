@@ -8,11 +8,11 @@
  * unless the blocks of its nodes, and of those below it in the elimination tree, close a loop with
  * a phase. In a sector that meets itself at its sides only loops around the ring do.
  * Derivation: docs/theory/cyclic_sector.md. Free of PETSc. */
-#ifndef FEM_SOLVER_PANEL_TURNS_H
-#define FEM_SOLVER_PANEL_TURNS_H
+#ifndef FEM_SUPERNODAL_PANEL_TURNS_H
+#define FEM_SUPERNODAL_PANEL_TURNS_H
 
-#include "fem/solver/block_order.h"
-#include "fem/solver/supernodes.h"
+#include "fem/supernodal/block_order.h"
+#include "fem/supernodal/supernodes.h"
 
 /* FEM_ANY_BLOCK: the exponent of a block that is no real block with a phase. FEM_MOST_TURN: |g| of
  * a panel, at most; a panel with more counts as complex. */

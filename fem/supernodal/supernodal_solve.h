@@ -3,10 +3,10 @@
  * A few right-hand sides: as costly as reading the factor, so four take as long as one. Subtrees
  * of the elimination tree are solved at the same time. Many: blocks of columns by BLAS, a block a
  * thread. The numbers do not depend on the number of threads. Free of PETSc. */
-#ifndef FEM_SOLVER_SUPERNODAL_SOLVE_H
-#define FEM_SOLVER_SUPERNODAL_SOLVE_H
+#ifndef FEM_SUPERNODAL_SUPERNODAL_SOLVE_H
+#define FEM_SUPERNODAL_SUPERNODAL_SOLVE_H
 
-#include "fem/solver/supernodes.h"
+#include "fem/supernodal/supernodes.h"
 
 enum { FEM_LANES = 4 };
 

@@ -1,12 +1,12 @@
 /* Numbers of the complex panels of a Hermitian factor, on one thread.
  *
- * Left-looking, as fem/solver/supernodal_factor.h, whose real panels must be there. A product of
+ * Left-looking, as fem/supernodal/supernodal_factor.h, whose real panels must be there. A product of
  * complex panels is four of real matrices. Free of PETSc. */
-#ifndef FEM_SOLVER_HERMITIAN_FACTOR_H
-#define FEM_SOLVER_HERMITIAN_FACTOR_H
+#ifndef FEM_SUPERNODAL_HERMITIAN_FACTOR_H
+#define FEM_SUPERNODAL_HERMITIAN_FACTOR_H
 
-#include "fem/solver/supernodal_factor.h"
-#include "fem/solver/supernodal_hermitian.h"
+#include "fem/supernodal/supernodal_factor.h"
+#include "fem/supernodal/supernodal_hermitian.h"
 
 /* The matrix: the lower triangle of its pattern, blocks [9] by columns. */
 typedef struct {

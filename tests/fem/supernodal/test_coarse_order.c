@@ -7,8 +7,8 @@
 
 #include <cmocka.h>
 
-#include "fem/solver/block_order.h"
-#include "fem/solver/coarse_order.h"
+#include "fem/supernodal/block_order.h"
+#include "fem/supernodal/coarse_order.h"
 
 /* Upper triangle of a graph, and CHOLMOD's copy. */
 typedef struct {

@@ -1,7 +1,7 @@
 /* How kernels are compiled: once for AVX2, once for any processor. A kernel with FEM_HOT calls only
  * functions with FEM_KERNEL, and has no parallel region of its own. */
-#ifndef FEM_SOLVER_HOT_H
-#define FEM_SOLVER_HOT_H
+#ifndef FEM_SUPERNODAL_HOT_H
+#define FEM_SUPERNODAL_HOT_H
 
 /* clang 14 gives the clones a name that other files cannot link. */
 #if defined(__x86_64__) && defined(__gnu_linux__) && !defined(__clang__)

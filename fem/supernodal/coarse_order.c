@@ -1,4 +1,4 @@
-#include "fem/solver/coarse_order.h"
+#include "fem/supernodal/coarse_order.h"
 
 #include <stdlib.h>
 #include <string.h>

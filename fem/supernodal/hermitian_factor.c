@@ -1,4 +1,4 @@
-#include "fem/solver/hermitian_factor.h"
+#include "fem/supernodal/hermitian_factor.h"
 
 #include <cblas.h>
 #include <lapacke.h>

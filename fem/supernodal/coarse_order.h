@@ -5,8 +5,8 @@
  * separators of all. Constrained minimum degree (CAMD) orders the nodes in each part.
  * Of ten-node tetrahedra an eighth of the nodes are dissected, in a tenth of the time. The factor
  * takes 0.83 (many nodes) to 1.04 of the operations; that of twenty-node hexahedra 1.07 to 1.17. */
-#ifndef FEM_SOLVER_COARSE_ORDER_H
-#define FEM_SOLVER_COARSE_ORDER_H
+#ifndef FEM_SUPERNODAL_COARSE_ORDER_H
+#define FEM_SUPERNODAL_COARSE_ORDER_H
 
 #include <stdbool.h>
 #include <suitesparse/cholmod.h>

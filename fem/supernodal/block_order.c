@@ -1,9 +1,9 @@
-#include "fem/solver/block_order.h"
+#include "fem/supernodal/block_order.h"
 
 #include <stdlib.h>
 #include <string.h>
 
-#include "fem/solver/coarse_order.h"
+#include "fem/supernodal/coarse_order.h"
 
 void fem_cholmod_start(cholmod_common *common) {
   cholmod_start(common);

@@ -1,15 +1,15 @@
 /* A Hermitian factor L L^H by panels, and solves with it for four right-hand sides at once: the
- * complex form of fem/solver/supernodal_solve.h.
+ * complex form of fem/supernodal/supernodal_solve.h.
  *
  * Real panels belong to every theta. A complex panel has its real parts [columns][rows], then its
  * imaginary parts: products are then those of real matrices, which BLAS makes faster. */
-#ifndef FEM_SOLVER_SUPERNODAL_HERMITIAN_H
-#define FEM_SOLVER_SUPERNODAL_HERMITIAN_H
+#ifndef FEM_SUPERNODAL_SUPERNODAL_HERMITIAN_H
+#define FEM_SUPERNODAL_SUPERNODAL_HERMITIAN_H
 
 #include <complex.h>
 
-#include "fem/solver/panel_turns.h"
-#include "fem/solver/supernodal_solve.h"
+#include "fem/supernodal/panel_turns.h"
+#include "fem/supernodal/supernodal_solve.h"
 
 typedef struct {
   const fem_supernodes  *s; /* fem_panel.value is a place in real or in other */

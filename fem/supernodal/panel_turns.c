@@ -1,4 +1,4 @@
-#include "fem/solver/panel_turns.h"
+#include "fem/supernodal/panel_turns.h"
 
 #include <stdlib.h>
 #include <string.h>

@@ -1,4 +1,4 @@
-#include "fem/solver/supernodal_factor.h"
+#include "fem/supernodal/supernodal_factor.h"
 
 #include <cblas.h>
 #include <lapacke.h>
