@@ -34,7 +34,8 @@ struct fem_cholesky {
   fem_lanes     *few_work; /* [threads][most_rows] */
   int            n_blocks; /* that there is room for */
   size_t         width;    /* columns of each */
-  double       **block;    /* [n_blocks][3 n + most_rows][width] columns in the factor's order */
+  double       **block;    /* [n_blocks][3 n + most_rows][width] columns in the factor's order, and
+                              [most_rows] ints */
   cholmod_common common;
 };
 
@@ -132,7 +133,7 @@ static void free_blocks(fem_cholesky *factor) {
 /* Room for so many blocks of columns, kept between solves. glibc does not always use freed memory
  * of an alignment again: the heap would grow. */
 static PetscErrorCode make_block_room(fem_cholesky *factor, int blocks, size_t width) {
-  const size_t rows = 3 * (size_t)factor->n + (size_t)factor->panels.most_rows;
+  const size_t most = (size_t)factor->panels.most_rows, rows = 3 * (size_t)factor->n + most;
   PetscFunctionBeginUser;
   if (factor->width < width) {
     free_blocks(factor);
@@ -143,7 +144,7 @@ static PetscErrorCode make_block_room(fem_cholesky *factor, int blocks, size_t w
   PetscCheck(more, PETSC_COMM_SELF, PETSC_ERR_MEM, "no memory");
   factor->block = more;
   for (; factor->n_blocks < blocks; factor->n_blocks++) {
-    double *own = fem_large_malloc(rows * factor->width * sizeof *own);
+    double *own = fem_large_malloc(rows * factor->width * sizeof *own + most * sizeof(int));
     PetscCheck(own, PETSC_COMM_SELF, PETSC_ERR_MEM, "no memory for %d solutions",
                (int)factor->width);
     factor->block[factor->n_blocks] = own;
@@ -154,13 +155,13 @@ static PetscErrorCode make_block_room(fem_cholesky *factor, int blocks, size_t w
 /* Solve for one block of columns by BLAS; own: that of the thread. */
 static void solve_block(const fem_cholesky *factor, double *own, const bool *needed, size_t count,
                         const double *b, size_t ldb, double *x, size_t ldx) {
-  const size_t n = 3 * (size_t)factor->n;
+  const size_t n = 3 * (size_t)factor->n, work = (size_t)factor->panels.most_rows * count;
   for (size_t i = 0; i < n; i++) {
     double *at = own + (3 * (size_t)factor->place[i / 3] + i % 3) * count;
     for (size_t c = 0; c < count; c++) at[c] = b[c * ldb + i];
   }
   fem_supernodal_solve_block(&factor->panels, factor->value, needed, (int)count, own,
-                             own + n * count);
+                             own + n * count, (int *)(own + n * count + work));
   for (size_t i = 0; i < n; i++) {
     const double *at = own + (3 * (size_t)factor->place[i / 3] + i % 3) * count;
     for (size_t c = 0; c < count; c++) x[c * ldx + i] = at[c];
@@ -238,6 +239,10 @@ PetscErrorCode fem_cholesky_solve(fem_cholesky *factor, int count, const double 
     PetscCall(solve_few(factor, here, b + c * ldb, ldb, x + c * ldx, ldx));
   }
   PetscFunctionReturn(0);
+}
+
+fem_tree fem_cholesky_tree(const fem_cholesky *factor) {
+  return (fem_tree){&factor->panels, factor->value, factor->place};
 }
 
 PetscErrorCode fem_cholesky_solve_at(fem_cholesky *factor, const bool *node, int count,

@@ -11,6 +11,8 @@
 #include <petscmat.h>
 #include <stdbool.h>
 
+#include "fem/supernodal/unit_loads.h"
+
 typedef struct fem_cholesky fem_cholesky;
 
 /* Order and analyse the pattern of A.
@@ -39,6 +41,9 @@ PetscErrorCode fem_cholesky_solve(fem_cholesky *factor, int count, const double 
  *   node  in   [block rows of A] true: wanted; the other rows of x mean nothing */
 PetscErrorCode fem_cholesky_solve_at(fem_cholesky *factor, const bool *node, int count,
                                      const double *b, size_t ldb, double *x, size_t ldx);
+
+/* The numbers and their order, until the next update. */
+fem_tree fem_cholesky_tree(const fem_cholesky *factor);
 
 void fem_cholesky_destroy(fem_cholesky *factor); /* NULL: nothing */
 

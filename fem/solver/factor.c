@@ -219,6 +219,11 @@ PetscErrorCode fem_factor_solve_at(fem_factor *factor, const bool *node, Mat B, 
   PetscFunctionReturn(0);
 }
 
+bool fem_factor_tree(const fem_factor *factor, fem_tree *tree) {
+  if (factor->cholesky) *tree = fem_cholesky_tree(factor->cholesky);
+  return factor->cholesky != NULL;
+}
+
 static PetscErrorCode apply(PC pc, Vec b, Vec x) {
   void *factor;
   PetscFunctionBeginUser;

@@ -10,6 +10,8 @@
 #include <petscksp.h>
 #include <stdbool.h>
 
+#include "fem/supernodal/unit_loads.h"
+
 typedef struct fem_factor fem_factor;
 
 /* Is -st_pc_factor_mat_solver_type mumps given? */
@@ -34,6 +36,9 @@ PetscErrorCode fem_factor_solve_many(fem_factor *factor, Mat B, Mat X);
 /* The same where only the rows of some nodes are wanted; cheaper on one rank.
  *   node  in   [block rows of this rank] true: wanted; the other rows of X mean nothing */
 PetscErrorCode fem_factor_solve_at(fem_factor *factor, const bool *node, Mat B, Mat X);
+
+/* The factor of one rank by panels; false: MUMPS holds it. */
+bool fem_factor_tree(const fem_factor *factor, fem_tree *tree);
 
 /* Make pc apply the factor to one vector or many. The factor must outlive pc. */
 PetscErrorCode fem_factor_set_pc(fem_factor *factor, PC pc);

@@ -131,13 +131,6 @@ void fem_supernodal_solve(const fem_supernodes *s, const double *value, int thre
 
 /* ------------------------------------------------------------------ many columns */
 
-static void gather(const fem_supernodes *s, const fem_panel *p, int first, size_t count,
-                   const double *x, double *work) {
-  for (int i = first; i < p->rows; i++)
-    memcpy(work + (size_t)i * count, x + (size_t)fem_supernodes_row(s, p->row + (size_t)i) * count,
-           count * sizeof *x);
-}
-
 static bool is_zero(const double *x, size_t count) {
   for (size_t i = 0; i < count; i++)
     if (x[i] != 0) return false;
@@ -145,12 +138,10 @@ static bool is_zero(const double *x, size_t count) {
 }
 
 /* Right-hand sides of a few dofs touch only the panels above them in the elimination tree. */
-static void forward_block(const fem_supernodes *s, const double *value, const fem_panel *p,
-                          int count, double *x, double *work) {
-  const double *L     = value + p->value;
-  const size_t  n     = (size_t)count;
-  double       *own   = x + (size_t)p->first * n;
-  const int     below = p->rows - p->columns;
+void fem_panel_forward(const fem_panel *p, const double *L, const int *at, int count, double *own,
+                       double *x, double *work) {
+  const size_t n     = (size_t)count;
+  const int    below = p->rows - p->columns;
   if (is_zero(own, (size_t)p->columns * n)) return;
   cblas_dtrsm(CblasColMajor, CblasRight, CblasLower, CblasTrans, CblasNonUnit, count, p->columns, 1,
               L, p->rows, own, count);
@@ -158,30 +149,42 @@ static void forward_block(const fem_supernodes *s, const double *value, const fe
   cblas_dgemm(CblasColMajor, CblasNoTrans, CblasTrans, count, below, p->columns, 1, own, count,
               L + p->columns, p->rows, 0, work, count);
   for (int i = 0; i < below; i++) {
-    const size_t at = p->row + (size_t)(p->columns + i);
-    double      *to = x + (size_t)fem_supernodes_row(s, at) * n;
+    double *to = x + (size_t)at[i] * n;
     for (size_t c = 0; c < n; c++) to[c] -= work[(size_t)i * n + c];
   }
 }
 
-static void backward_block(const fem_supernodes *s, const double *value, const fem_panel *p,
-                           int count, double *x, double *work) {
-  const double *L     = value + p->value;
-  double       *own   = x + (size_t)p->first * (size_t)count;
-  const int     below = p->rows - p->columns;
-  if (below > 0) {
-    gather(s, p, p->columns, (size_t)count, x, work);
-    cblas_dgemm(CblasColMajor, CblasNoTrans, CblasNoTrans, count, p->columns, below, -1,
-                work + (size_t)p->columns * (size_t)count, count, L + p->columns, p->rows, 1, own,
-                count);
-  }
+void fem_panel_backward(const fem_panel *p, const double *L, const int *at, int count, double *own,
+                        const double *x, double *work) {
+  const size_t n     = (size_t)count;
+  const int    below = p->rows - p->columns;
+  for (int i = 0; i < below; i++)
+    memcpy(work + (size_t)i * n, x + (size_t)at[i] * n, n * sizeof *work);
+  if (below > 0)
+    cblas_dgemm(CblasColMajor, CblasNoTrans, CblasNoTrans, count, p->columns, below, -1, work,
+                count, L + p->columns, p->rows, 1, own, count);
   cblas_dtrsm(CblasColMajor, CblasRight, CblasLower, CblasNoTrans, CblasNonUnit, count, p->columns,
               1, L, p->rows, own, count);
 }
 
+static void place_rows(const fem_supernodes *s, const fem_panel *p, int *at) {
+  for (int i = p->columns; i < p->rows; i++)
+    at[i - p->columns] = fem_supernodes_row(s, p->row + (size_t)i);
+}
+
 void fem_supernodal_solve_block(const fem_supernodes *s, const double *value, const bool *needed,
-                                int count, double *x, double *work) {
-  for (int k = 0; k < s->n_panels; k++) forward_block(s, value, &s->panel[k], count, x, work);
-  for (int k = s->n_panels; k-- > 0;)
-    if (!needed || needed[k]) backward_block(s, value, &s->panel[k], count, x, work);
+                                int count, double *x, double *work, int *at) {
+  for (int k = 0; k < s->n_panels; k++) {
+    const fem_panel *p = &s->panel[k];
+    place_rows(s, p, at);
+    fem_panel_forward(p, value + p->value, at, count, x + (size_t)p->first * (size_t)count, x,
+                      work);
+  }
+  for (int k = s->n_panels; k-- > 0;) {
+    const fem_panel *p = &s->panel[k];
+    if (needed && !needed[k]) continue;
+    place_rows(s, p, at);
+    fem_panel_backward(p, value + p->value, at, count, x + (size_t)p->first * (size_t)count, x,
+                       work);
+  }
 }

@@ -24,8 +24,21 @@ void fem_supernodal_solve(const fem_supernodes *s, const double *value, int thre
  *   needed  in       [n_panels] panels whose rows are wanted (fem_supernodes_needed), or NULL: all;
  *                    the other rows of x mean nothing afterwards
  *   x       in/out   [n][count]
- *   work    scratch  [most_rows][count] */
+ *   work    scratch  [most_rows][count]
+ *   at      scratch  [most_rows] */
 void fem_supernodal_solve_block(const fem_supernodes *s, const double *value, const bool *needed,
-                                int count, double *x, double *work);
+                                int count, double *x, double *work, int *at);
+
+/* One panel of that: solve its part of L x = x, and take it off the rows below; or its part of
+ * L^T x = x.
+ *   L     in       [columns][rows] numbers of the panel
+ *   at    in       [rows - columns] places in x of the rows below its columns
+ *   own   in/out   [columns][count] rows of x of its columns
+ *   x     in/out   [][count]
+ *   work  scratch  [rows - columns][count] */
+void fem_panel_forward(const fem_panel *p, const double *L, const int *at, int count, double *own,
+                       double *x, double *work);
+void fem_panel_backward(const fem_panel *p, const double *L, const int *at, int count, double *own,
+                        const double *x, double *work);
 
 #endif

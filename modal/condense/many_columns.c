@@ -6,7 +6,9 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "fem/body/mass_product.h"
 #include "fem/solver/petsc_error.h"
+#include "mesh/base/memory.h"
 
 /* BATCH: columns of a solution. BATCH_NUMBERS: numbers in a matrix of them, more save no time but
  * need memory. CHOSEN: dofs of S, at most. HELD_OUT: those at which the error is measured. */
@@ -73,8 +75,116 @@ static shb_status show(const workspace *w, double share, int first) {
   return SHB_OK;
 }
 
+/* All contact dofs, then all probes, as weighted sums of the rows of K. */
+typedef struct {
+  int     n;
+  int    *start, *row;
+  double *weight;
+} row_sums;
+
+static void append_sums(const fem_system *system, const modal_dofs *dofs, row_sums *sums) {
+  for (int c = 0; c < dofs->n; c++) {
+    int at = sums->start[sums->n];
+    for (int e = dofs->start[c]; e < dofs->start[c + 1]; e++) {
+      const PetscInt node = system->row[dofs->node[e]];
+      if (node < 0) continue;
+      fem_system_to_row(system, dofs->node[e], dofs->weight + 3 * (size_t)e, sums->weight + at);
+      for (int d = 0; d < 3; d++) sums->row[at++] = 3 * (int)node + d;
+    }
+    sums->start[++sums->n] = at;
+  }
+}
+
+static bool list_sums(const workspace *w, row_sums *sums) {
+  const modal_dofs *contact = &w->to->contact, *probe = &w->to->probe;
+  const size_t      n = (size_t)(contact->n_entries + probe->n_entries);
+  sums->start         = calloc((size_t)(contact->n + probe->n) + 1, sizeof *sums->start);
+  sums->row           = malloc((3 * n + 1) * sizeof *sums->row);
+  sums->weight        = malloc((3 * n + 1) * sizeof *sums->weight);
+  if (!sums->start || !sums->row || !sums->weight) return false;
+  append_sums(w->system, contact, sums);
+  append_sums(w->system, probe, sums);
+  return true;
+}
+
+/* Rows of R or R2 of the contact dofs and of the probes. */
+static void put_term(const workspace *w, const double *term, double *contact, double *probe) {
+  const size_t n = (size_t)w->n, all = n + (size_t)w->to->probe.n;
+  for (size_t s = 0; s < all; s++)
+    memcpy(s < n ? contact + s * n : probe + (s - n) * n, term + s * all, n * sizeof *term);
+}
+
+static bool go_on(void *context, double share) {
+  const workspace *w = context;
+  shb_progress_show(w->progress, 80 + 12 * share, "residuals: %d columns, %.0f %%", w->n,
+                    100 * share);
+  return !shb_interrupted();
+}
+
+/* R and R2 by the condensed mass of subtrees (fem/supernodal/unit_loads.h). */
+static shb_status solve_by_tree(workspace *w, const fem_tree *tree, const fem_mass_rows *mass,
+                                fem_loads_end *end) {
+  const size_t  all  = (size_t)w->n + (size_t)w->to->probe.n;
+  double       *R    = malloc((all * all + 1) * sizeof *R);
+  double       *R2   = malloc((all * all + 1) * sizeof *R2);
+  row_sums      sums = {0};
+  const double *phi;
+  *end = FEM_LOADS_NO_ROOM;
+  if (R && R2 && list_sums(w, &sums)) {
+    FEM_PETSC(MatDenseGetArrayRead(w->eigen->phi, &phi));
+    const fem_unit_loads loads = {.tree        = *tree,
+                                  .node_start  = mass->start,
+                                  .node_column = mass->column,
+                                  .node_mass   = mass->value,
+                                  .modes       = w->eigen->n,
+                                  .phi         = phi,
+                                  .lambda      = w->eigen->lambda,
+                                  .n_loads     = sums.n,
+                                  .start       = sums.start,
+                                  .row         = sums.row,
+                                  .weight      = sums.weight,
+                                  .go_on       = go_on,
+                                  .context     = w,
+                                  .room        = shb_memory_available()};
+    *end                       = fem_unit_loads_solve(&loads, R, R2);
+    FEM_PETSC(MatDenseRestoreArrayRead(w->eigen->phi, &phi));
+  }
+  if (*end == FEM_LOADS_SOLVED) {
+    put_term(w, R, w->model->residual_flexibility, w->model->probe_contact_residual);
+    put_term(w, R2, w->model->residual_inertia, w->model->probe_contact_inertia);
+  }
+  free(sums.start);
+  free(sums.row);
+  free(sums.weight);
+  free(R);
+  free(R2);
+  SHB_CHECK(*end != FEM_LOADS_STOPPED, SHB_INTERRUPTED, "interrupted");
+  return SHB_OK;
+}
+
+/* The same if there is one rank with room for it.
+ *   done  out  false: there is not */
+static shb_status try_tree(workspace *w, bool *done) {
+  fem_tree      tree;
+  fem_mass_rows mass;
+  fem_loads_end end      = FEM_LOADS_NO_ROOM;
+  bool          by_nodes = false;
+  shb_status    status   = SHB_OK;
+  *done                  = false;
+  if (!fem_factor_tree(w->eigen->factor, &tree)) return SHB_OK;
+  FEM_PETSC(fem_mass_borrow(w->system->M, &by_nodes, &mass));
+  if (!by_nodes) return SHB_OK;
+  status = solve_by_tree(w, &tree, &mass, &end);
+  FEM_PETSC(fem_mass_give_back(w->system->M, &mass));
+  *done = end == FEM_LOADS_SOLVED;
+  return status;
+}
+
 static shb_status fill_two_terms(workspace *w) {
   const int batch = batch_size(w);
+  bool      done;
+  SHB_TRY(try_tree(w, &done));
+  if (done) return SHB_OK;
   mark(w, &w->to->contact);
   mark(w, &w->to->probe);
   FEM_PETSC(modal_residual_chain_create(w->system, w->eigen, &w->to->contact, &w->to->probe, batch,
