@@ -1,8 +1,8 @@
 /* Sparse Hermitian Cholesky factor L L^H of 3x3 blocks at any theta. Free of PETSc.
  *
- * Ordered and analysed by CHOLMOD once. What does not depend on theta (fem/supernodal/panel_turns.h) is
- * factorised once, on all threads. The rest takes one thread: several theta may be factorised and
- * solved at a time. */
+ * Ordered and analysed by CHOLMOD once. What does not depend on theta
+ * (fem/supernodal/panel_turns.h) is factorised once, on all threads. The rest takes one thread:
+ * several theta may be factorised and solved at a time. */
 #ifndef FEM_SOLVER_HERMITIAN_H
 #define FEM_SOLVER_HERMITIAN_H
 

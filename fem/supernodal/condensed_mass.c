@@ -219,7 +219,7 @@ static void place_arrays(workspace *w, step *s, const part *child) {
 /* New arrays are filled with zeros. */
 static void open_arrays(const workspace *w, step *s, part *child) {
   fem_condensed *to = &s->to->of;
-  const size_t   c = (size_t)to->loads, all = (size_t)(s->rows + to->beyond);
+  const size_t   c = (size_t)to->loads, all = (size_t)s->rows + (size_t)to->beyond;
   s->y    = w->stack + s->y_at;
   s->E    = w->stack + s->E_at;
   s->Z    = w->stack + s->Z_at;

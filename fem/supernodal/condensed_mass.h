@@ -1,8 +1,8 @@
 /* The mass of a subtree of the elimination tree, condensed to the rows beyond it.
  *
- * With the stiffness K alone, the motion of the subtree's rows follows from few coordinates q: that
- * of the rows beyond, its loads, and the parts w of modes that are taken off. Its part of a sum
- * x^T M x is then q^T Q q. Panels are eliminated from the leaves up, as in the factorisation of K.
+ * In statics the motion of the subtree's rows follows from few coordinates q. They are the motion
+ * of the rows beyond, the loads, and the parts of modes that are taken off. What its masses add to
+ * x^T M x is q^T Q q. Panels are eliminated from the leaves up, as in the factorisation of K.
  * docs/theory/receptance.md, "Many contact points". Free of PETSc. */
 #ifndef FEM_SUPERNODAL_CONDENSED_MASS_H
 #define FEM_SUPERNODAL_CONDENSED_MASS_H

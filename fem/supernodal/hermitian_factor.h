@@ -1,7 +1,7 @@
 /* Numbers of the complex panels of a Hermitian factor, on one thread.
  *
- * Left-looking, as fem/supernodal/supernodal_factor.h, whose real panels must be there. A product of
- * complex panels is four of real matrices. Free of PETSc. */
+ * Left-looking, as supernodal_factor.h, whose real panels must be there. A product of complex
+ * panels is four of real matrices. Free of PETSc. */
 #ifndef FEM_SUPERNODAL_HERMITIAN_FACTOR_H
 #define FEM_SUPERNODAL_HERMITIAN_FACTOR_H
 

@@ -175,7 +175,7 @@ static bool allocate_top(problem *p) {
   p->top_phi        = malloc((rows * (size_t)p->of->modes + 1) * sizeof *p->top_phi);
   p->subtree        = calloc((size_t)p->n_roots + 1, sizeof *p->subtree);
   p->lag            = calloc((size_t)p->n_roots + 1, sizeof *p->lag);
-  p->V              = calloc((size_t)p->n_blocks + 1, sizeof *p->V);
+  p->V              = calloc((size_t)p->n_blocks + 1, sizeof(double *));
   bool good         = p->top_phi && p->subtree && p->lag && p->V;
   for (int i = 0; good && i < p->n_blocks; i++) {
     p->V[i] = fem_large_malloc((rows * (size_t)width_of(p, i) + 1) * sizeof(double));
@@ -295,7 +295,7 @@ static fem_loads_end condense_subtrees(problem *p) {
                                    .weight  = p->weight,
                                    .go_on   = go_on,
                                    .context = p};
-  double bytes = 8. * (double)p->n_top * p->of->n_loads;
+  double bytes = 8. * p->of->n_loads * (p->n_top + 2. * p->of->n_loads); /* V, R and R2 */
   size_t most  = 0;
   for (int i = 0; good && i < p->n_roots; i++) {
     size_t stack  = 0;

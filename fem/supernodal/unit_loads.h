@@ -2,9 +2,9 @@
  *
  *   V_0 = P K^-1 b,   V_1 = P K^-1 M V_0,   P removes the modes of K phi = lambda M phi.
  *
- * Seen by another load c, they are c^T V_0 and the product of both V_0 with M. Subtrees of the
- * elimination tree take part by their condensed mass (condensed_mass.h); the vectors of the rows
- * above are computed. Free of PETSc. */
+ * Another load c sees c^T V_0 and c^T V_1. The latter is the product of both V_0 with M. Subtrees
+ * of the elimination tree take part by their condensed mass (condensed_mass.h). The rows above are
+ * solved. Free of PETSc. */
 #ifndef FEM_SUPERNODAL_UNIT_LOADS_H
 #define FEM_SUPERNODAL_UNIT_LOADS_H
 

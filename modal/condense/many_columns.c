@@ -97,7 +97,7 @@ static void append_sums(const fem_system *system, const modal_dofs *dofs, row_su
 
 static bool list_sums(const workspace *w, row_sums *sums) {
   const modal_dofs *contact = &w->to->contact, *probe = &w->to->probe;
-  const size_t      n = (size_t)(contact->n_entries + probe->n_entries);
+  const size_t      n = (size_t)contact->n_entries + (size_t)probe->n_entries;
   sums->start         = calloc((size_t)(contact->n + probe->n) + 1, sizeof *sums->start);
   sums->row           = malloc((3 * n + 1) * sizeof *sums->row);
   sums->weight        = malloc((3 * n + 1) * sizeof *sums->weight);

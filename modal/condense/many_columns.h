@@ -1,6 +1,8 @@
 /* Residual terms of more contact dofs than fit into one batch of columns.
  *
- * R and R2 are exact. They take one solution a column in full, and one at the contact alone.
+ * R and R2 are exact. They come from the condensed mass of subtrees (fem/supernodal/unit_loads.h).
+ * With MUMPS, or without room, they take one solution a column in full and one at the contact
+ * alone.
  *
  * R3 = V_1^T K V_1 falls off so fast over the face that few contact dofs S hold it. The others are
  * combinations of them, V_1 = V_1S C, where C leaves the least error in the norm of K:
