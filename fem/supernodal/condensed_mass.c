@@ -156,9 +156,10 @@ static bool begin(workspace *w, step *s, const part *child) {
   s->rows           = last->first + last->columns - s->first_row;
   to->beyond        = last->rows - last->columns;
   to->row           = malloc(((size_t)to->beyond + 1) * sizeof *to->row);
-  if (!to->row || !list_loads(w, s, child)) return false;
+  if (!to->row) return false;
   for (int i = 0; i < to->beyond; i++)
     to->row[i] = fem_supernodes_row(p, last->row + (size_t)(last->columns + i));
+  if (!list_loads(w, s, child)) return false;
   to->size = to->beyond + to->loads + w->body->modes;
   for (int i = 0; i < s->rows / 3; i++) w->local[s->first_row / 3 + i] = i;
   for (int i = 0; i < to->beyond / 3; i++) w->local[to->row[3 * i] / 3] = s->rows / 3 + i;

@@ -2,6 +2,7 @@
 
 #include <cblas.h>
 #include <omp.h>
+#include <stdatomic.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -11,6 +12,8 @@
 
 /* WIDTH: columns of a block. SHARE: a subtree has at most that part of the rows. */
 enum { WIDTH = 160, SHARE = 2, NOWHERE = -1 };
+
+static const double SUBTREES = 0.8; /* of the time, roughly */
 
 typedef struct {
   const fem_unit_loads *of;
@@ -34,7 +37,7 @@ typedef struct {
   double              **lag;      /* [n_roots][loads][modes] b^T (phi - G phi_beyond) */
   double               *R, *R2;   /* [n_loads][n_loads] */
   double               *trace;    /* [modes][n_loads] phi^T M V_0, which rounding leaves */
-  bool                  stopped;  /* by go_on */
+  atomic_bool           stopped;  /* by go_on */
 } problem;
 
 /* Of one thread. */
@@ -265,46 +268,59 @@ static bool find_lag(problem *p, int i) {
   return lag && place;
 }
 
-static bool go_on(void *context, double share) {
-  problem *p = context;
+static bool ask(problem *p, double share) {
   if (!p->of->go_on(p->of->context, share)) p->stopped = true;
   return !p->stopped;
 }
 
-static double bytes_of(const fem_condensed *c) {
-  const double loads = c->loads;
-  return 8 * ((double)fem_lower_numbers(c->size) + loads * (loads + c->beyond));
+static bool go_on(void *context, double share) {
+  return ask(context, SUBTREES * share);
+}
+
+/* Bytes that are still to be taken: vectors and modes above the subtrees, both terms, workspaces and
+ * the matrices of subtrees. The stack is freed before the workspaces are made. */
+static double bytes_needed(const problem *p, size_t stack) {
+  const double loads = p->of->n_loads, modes = p->of->modes, top = p->n_top;
+  const int    most    = omp_get_max_threads();
+  const double threads = most < p->n_blocks ? most : p->n_blocks;
+  double       numbers = loads * (top + 2 * loads) + modes * (p->n + top), size = 0;
+  for (int i = 0; i < p->n_roots; i++) {
+    const fem_condensed *c = p->subtree[i];
+    numbers += (double)fem_lower_numbers(c->size) + c->loads * ((double)c->loads + c->beyond);
+    if (c->size > size) size = c->size;
+  }
+  const double blocks = threads * WIDTH * (top + 2 * size + p->of->tree.panels->most_rows);
+  return 8 * (numbers + (blocks > (double)stack ? blocks : (double)stack));
 }
 
 static fem_loads_end condense_subtrees(problem *p) {
-  bool good    = true;
-  p->body      = (fem_loaded_body){.panels  = p->of->tree.panels,
-                                   .value   = p->of->tree.value,
-                                   .owner   = p->owner,
-                                   .below   = p->below,
-                                   .place   = p->of->tree.place,
-                                   .node    = p->node,
-                                   .start   = p->of->node_start,
-                                   .column  = p->of->node_column,
-                                   .mass    = p->of->node_mass,
-                                   .modes   = p->of->modes,
-                                   .phi     = p->phi,
-                                   .n_loads = p->of->n_loads,
-                                   .entry   = p->entry,
-                                   .load    = p->load,
-                                   .weight  = p->weight,
-                                   .go_on   = go_on,
-                                   .context = p};
-  double bytes = 8. * p->of->n_loads * (p->n_top + 2. * p->of->n_loads); /* V, R and R2 */
-  size_t most  = 0;
+  bool good   = true;
+  p->body     = (fem_loaded_body){.panels  = p->of->tree.panels,
+                                  .value   = p->of->tree.value,
+                                  .owner   = p->owner,
+                                  .below   = p->below,
+                                  .place   = p->of->tree.place,
+                                  .node    = p->node,
+                                  .start   = p->of->node_start,
+                                  .column  = p->of->node_column,
+                                  .mass    = p->of->node_mass,
+                                  .modes   = p->of->modes,
+                                  .phi     = p->phi,
+                                  .n_loads = p->of->n_loads,
+                                  .entry   = p->entry,
+                                  .load    = p->load,
+                                  .weight  = p->weight,
+                                  .go_on   = go_on,
+                                  .context = p};
+  size_t most = 0;
   for (int i = 0; good && i < p->n_roots; i++) {
     size_t stack  = 0;
     p->subtree[i] = fem_condensed_create(&p->body, p->root[i], &stack);
     good          = p->subtree[i] != NULL;
-    if (good) bytes += bytes_of(p->subtree[i]);
     if (stack > most) most = stack;
   }
-  if (!good || bytes + 8. * (double)most > p->of->room) return FEM_LOADS_NO_ROOM;
+  if (!good || bytes_needed(p, most) > p->of->room) return FEM_LOADS_NO_ROOM;
+  order_modes(p);
   double *stack = fem_large_malloc((most + 1) * sizeof *stack);
   good          = stack != NULL;
   for (int i = 0; good && i < p->n_roots; i++)
@@ -355,7 +371,8 @@ static void solve_block(const problem *p, const workspace *w, int block) {
     for (int k = 0; k < c->loads; k++) {
       if (c->load[k] < first || c->load[k] >= first + count) continue;
       for (int a = 0; a < c->beyond; a++)
-        top_row(p, V, c->row[a], n)[c->load[k] - first] += c->U[a * c->loads + k];
+        top_row(p, V, c->row[a], n)[c->load[k] - first] +=
+            c->U[(size_t)a * (size_t)c->loads + (size_t)k];
     }
   }
   solve_top(p, w, count, V);
@@ -479,9 +496,17 @@ static void mirror(const problem *p) {
     }
 }
 
-static bool run_blocks(problem *p) {
-  const int  most  = omp_get_max_threads();
-  workspace *w     = calloc((size_t)most, sizeof *w);
+/* The calling thread asks whether to go on before each of its blocks.
+ *   before  in  share of the blocks' work that is done */
+static bool blocks_go_on(problem *p, double before, int block) {
+  const double share = before + 0.5 * block / p->n_blocks;
+  if (omp_get_thread_num() == 0) ask(p, SUBTREES + (1 - SUBTREES) * share);
+  return !p->stopped;
+}
+
+static fem_loads_end run_blocks(problem *p) {
+  const int  all = omp_get_max_threads(), most = all < p->n_blocks ? all : p->n_blocks;
+  workspace *w     = calloc((size_t)most + 1, sizeof *w);
   int        ready = 0;
   for (; w && ready < most && create_workspace(p, &w[ready]);) ready++;
   const size_t n = (size_t)p->of->n_loads * (size_t)p->of->n_loads;
@@ -492,14 +517,17 @@ static bool run_blocks(problem *p) {
     {
       const workspace *own = &w[omp_get_thread_num()];
 #pragma omp for schedule(dynamic, 1)
-      for (int i = 0; i < p->n_blocks; i++) solve_block(p, own, i);
+      for (int i = 0; i < p->n_blocks; i++)
+        if (blocks_go_on(p, 0, i)) solve_block(p, own, i);
 #pragma omp for schedule(dynamic, 1)
-      for (int i = 0; i < p->n_blocks; i++) finish_block(p, own, i);
+      for (int i = 0; i < p->n_blocks; i++)
+        if (blocks_go_on(p, 0.5, i)) finish_block(p, own, i);
     }
   }
   for (int i = 0; w && i < most; i++) free_workspace(&w[i]);
   free(w);
-  return ready > 0;
+  if (p->stopped) return FEM_LOADS_STOPPED;
+  return ready > 0 ? FEM_LOADS_SOLVED : FEM_LOADS_NO_ROOM;
 }
 
 static fem_loads_end solve(problem *p) {
@@ -507,10 +535,9 @@ static fem_loads_end solve(problem *p) {
   for (int i = 0; i < p->n / 3; i++) p->node[p->of->tree.place[i]] = i;
   if (!cut(p) || !allocate_top(p)) return FEM_LOADS_NO_ROOM;
   sort_entries(p);
-  order_modes(p);
-  const fem_loads_end end = condense_subtrees(p);
+  fem_loads_end end = condense_subtrees(p);
+  if (end == FEM_LOADS_SOLVED) end = run_blocks(p);
   if (end != FEM_LOADS_SOLVED) return end;
-  if (!run_blocks(p)) return FEM_LOADS_NO_ROOM;
   remove_trace(p);
   mirror(p);
   return FEM_LOADS_SOLVED;

@@ -12,7 +12,9 @@ static const struct {
   size_t nodes; /* 0: passed over */
 } types[] = {{15, 0, 0}, {1, 1, 0}, {8, 1, 0}, {9, 2, 6}, {16, 2, 8}, {11, 3, 10}, {17, 3, 20}};
 
-enum { TYPES = sizeof types / sizeof *types };
+/* MOST_MEMBERS: with more members of groups the file goes to gmsh; each is looked at for each block
+ * of elements. */
+enum { TYPES = sizeof types / sizeof *types, MOST_MEMBERS = 5000 };
 
 static int dim_of(int type) {
   for (int i = 0; i < TYPES; i++)
@@ -103,7 +105,8 @@ static bool grow(void **list, size_t n, size_t count, size_t size) {
 }
 
 static void add_member(cursor *c, mesh_msh_text *t, int dim, size_t entity, size_t group) {
-  c->good = c->good && grow((void **)&t->member, t->n_members, 1, sizeof *t->member);
+  c->good = c->good && t->n_members < MOST_MEMBERS &&
+            grow((void **)&t->member, t->n_members, 1, sizeof *t->member);
   if (c->good) t->member[t->n_members++] = (mesh_msh_member){dim, entity, group};
 }
 

@@ -60,13 +60,16 @@ static PetscErrorCode configure(const fem_system *system, const modal_eigen_sett
                                 monitor_context *context, modal_eigen *eigen) {
   const PetscInt order = 3 * system->n_free, n_own = 3 * (system->last - system->first);
   EPS            eps = eigen->eps;
-  Mat            K; /* without numbers: the factor has them */
+  Mat            K   = system->K;
   ST             st;
   KSP            ksp;
   PC             pc;
 
   PetscFunctionBeginUser;
-  PetscCall(MatCreateShell(system->comm, n_own, n_own, order, order, NULL, &K));
+  if (settings->spare) /* one without numbers: the factor has them */
+    PetscCall(MatCreateShell(system->comm, n_own, n_own, order, order, NULL, &K));
+  else
+    PetscCall(PetscObjectReference((PetscObject)K));
   PetscCall(EPSSetOperators(eps, K, system->M));
   PetscCall(MatDestroy(&K));
   PetscCall(EPSSetProblemType(eps, EPS_GHEP));
