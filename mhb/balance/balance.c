@@ -187,6 +187,11 @@ static bool same_laws(const mhb_balance *b, const mhb_evaluation *x, const mhb_e
   return true;
 }
 
+void mhb_balance_sharpen_law(mhb_balance *b, double share) {
+  for (int i = 0; i < b->n_threads; i++)
+    mhb_contact_evaluator_set_tolerance(b->contacts[i], share * b->settings->tolerance);
+}
+
 void mhb_balance_use(mhb_balance *b, mhb_evaluation *evaluation) {
   const mhb_evaluation *last = b->eval;
   b->eval                    = evaluation ? evaluation : b->default_evaluation;

@@ -95,6 +95,9 @@ void       mhb_evaluation_destroy(mhb_evaluation *evaluation);
  * while another evaluation was in use is not known to this one. */
 void mhb_balance_use(mhb_balance *balance, mhb_evaluation *evaluation);
 
+/* The contact law of evaluations from now on has a tolerance of this share of the settings'. */
+void mhb_balance_sharpen_law(mhb_balance *balance, double share);
+
 /* Destroy an evaluation; if it is in use, the balance's own takes its place. */
 void mhb_balance_discard(mhb_balance *balance, mhb_evaluation *evaluation);
 

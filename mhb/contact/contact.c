@@ -35,6 +35,10 @@ static void take_arrays(mhb_contact_evaluator *c) {
   c->history_force   = shb_arena_take(a, 3 * nf, real);
 }
 
+void mhb_contact_evaluator_set_tolerance(mhb_contact_evaluator *c, double tolerance) {
+  c->tolerance = tolerance;
+}
+
 shb_status mhb_contact_evaluator_create(int m, int H, double tolerance,
                                         mhb_contact_evaluator **out) {
   mhb_contact_evaluator *c = aligned_alloc(64, (sizeof *c + 63) / 64 * 64); /* it holds vectors */

@@ -44,6 +44,9 @@ shb_status mhb_contact_evaluator_create(int m, int H, double tolerance,
                                         mhb_contact_evaluator **contact);
 void       mhb_contact_evaluator_destroy(mhb_contact_evaluator *contact);
 
+/* Evaluations from now on have this tolerance. */
+void mhb_contact_evaluator_set_tolerance(mhb_contact_evaluator *contact, double tolerance);
+
 /* Force harmonics (n - mean_offset, fu, fw).
  *   motion    in   [3][2m+1], m
  *   force     out  [3][2H+1], N

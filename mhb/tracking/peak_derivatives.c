@@ -24,6 +24,10 @@ static const double CANDIDATE = 0.01;
 /* On either side of a kink |G| is larger than this. */
 static const double JUMP = 1e-4;
 
+/* Where slip just begins the law's error hides G. A bracketed peak is that of a more accurate law.
+ * This is the share of its tolerance. */
+static const double SHARPER = 0.01;
+
 typedef struct {
   mhb_balance  *balance;
   int           output;
@@ -178,7 +182,9 @@ static shb_status bracketed(const search *s, const mhb_tracking *tracking,
   const mhb_operating_point at = s->balance->eval->at;
   mhb_kink                 *kink;
   SHB_TRY(mhb_kink_create(s->balance, tracking, &kink));
+  mhb_balance_sharpen_law(s->balance, SHARPER);
   take_bracketed(s, kink, out);
+  mhb_balance_sharpen_law(s->balance, 1);
   mhb_balance_set_operating_point(s->balance, &at);
   mhb_kink_destroy(kink);
   return SHB_OK;

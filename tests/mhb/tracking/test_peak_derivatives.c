@@ -83,7 +83,8 @@ static void approach_peak(fixture *f, double *most, double *omega, double best[N
       take_higher(f, *omega + side * step, most, omega, best);
 }
 
-/* Largest difference of the derivatives, relative to peak/parameter, from solved peaks. */
+/* Largest difference of the derivatives, relative to peak/parameter, from solved peaks. INFINITY:
+ * one of them is of another kind. */
 static double worst_of(double n0, double tolerance, double step, const double *from, double omega,
                        mhb_peak_kind kind) {
   fixture centre;
@@ -96,8 +97,8 @@ static double worst_of(double n0, double tolerance, double step, const double *f
   mhb_balance_linearise(centre.balance, from, omega, r, NULL);
   mhb_output_amplitude(centre.balance, from, 0, &a);
   find(&centre, from, omega, a.amplitude);
-  assert_int_equal(centre.result.kind, kind);
-  for (int p = 0; p < MHB_PEAK_PARAMETERS; p++) {
+  if (centre.result.kind != kind) worst = INFINITY;
+  for (int p = 0; p < MHB_PEAK_PARAMETERS && isfinite(worst); p++) {
     double peak[4], value = value_of(&centre, p);
     for (int i = 0; i < 4; i++) {
       fixture f;
@@ -109,29 +110,34 @@ static double worst_of(double n0, double tolerance, double step, const double *f
         approach_peak(&f, &most, &at, x);
       }
       find(&f, x, at, most);
-      assert_int_equal(f.result.kind, kind);
-      peak[i] = f.result.amplitude;
+      peak[i] = f.result.kind == kind ? f.result.amplitude : INFINITY;
       tear_down(&f);
     }
     double difference = (peak[0] - 8 * peak[1] + 8 * peak[2] - peak[3]) / (12 * step * value);
     double error      = fabs(centre.result.by[p] - difference) * value / centre.result.amplitude;
     print_message("%-8s %14.9f, by differences %14.9f, relative %.1e\n", names[p],
                   centre.result.by[p], difference, error);
-    worst = fmax(worst, error);
+    worst = isfinite(error) ? fmax(worst, error) : INFINITY;
   }
   tear_down(&centre);
   return worst;
 }
 
+/* A solution near the highest peak: the highest of 60, then ever nearer. Returns its amplitude. */
+static double highest(double n0, double tolerance, double *omega, double best[N]) {
+  fixture f;
+  double  most = 0;
+  set_up(&f, n0, tolerance, -1, 1);
+  for (int i = 0; i < 60; i++) take_higher(&f, 1.2 + 0.3 * i / 60, &most, omega, best);
+  approach_peak(&f, &most, omega, best); /* the peak must be the one that was found */
+  tear_down(&f);
+  return most;
+}
+
 /* Largest difference of the derivatives of the highest peak, which is smooth. */
 static double worst_of_highest(double n0, double tolerance, double step) {
-  fixture f;
-  double  best[N], omega = 0, most = 0;
-  set_up(&f, n0, tolerance, -1, 1);
-  for (int i = 0; i < 60; i++) /* the highest of 60 solutions */
-    take_higher(&f, 1.2 + 0.3 * i / 60, &most, &omega, best);
-  approach_peak(&f, &most, &omega, best); /* the peak must be the one that was found */
-  tear_down(&f);
+  double best[N], omega = 0;
+  highest(n0, tolerance, &omega, best);
   return worst_of(n0, tolerance, step, best, omega, MHB_PEAK_SMOOTH);
 }
 
@@ -140,10 +146,31 @@ static void a_smooth_peak_has_the_derivatives_of_solved_peaks(void **state) {
   assert_below(worst_of_highest(0.2, 1e-12, 2e-5), 1e-6);
 }
 
-/* Slip lasts for 3e-4 of the period. The law's error hides G, and Newton's method does not end. */
-static void a_peak_where_slip_just_begins_is_bracketed(void **state) {
+/* Slip lasts for some 3e-4 of the period. The law's error hides G; Newton's method does not end.
+ * Of 25 peaks a preload one may still be taken at its corner, so one preload of five may fail. */
+static void peaks_where_slip_just_begins_are_bracketed(void **state) {
+  static const double n0[] = {0.91, 0.92, 0.93, 0.94, 0.95};
+  int                 good = 0;
   (void)state;
-  assert_below(worst_of_highest(0.95, 1e-8, 1e-3), 1e-6);
+  for (int i = 0; i < 5; i++) good += worst_of_highest(n0[i], 1e-8, 1e-3) < 1e-6;
+  assert_true(good >= 4);
+}
+
+/* With a coarse law half of them would be taken at their corners. */
+static void a_coarse_law_does_not_hide_them(void **state) {
+  int corners = 0;
+  (void)state;
+  for (int i = 0; i <= 60; i++) {
+    fixture f;
+    double  best[N], omega = 0, n0 = 0.9 + 0.001 * i;
+    double  amplitude = highest(n0, 1e-3, &omega, best);
+    set_up(&f, n0, 1e-3, -1, 1);
+    find(&f, best, omega, amplitude);
+    corners += f.result.kind == MHB_PEAK_CORNER;
+    tear_down(&f);
+  }
+  print_message("%d corners of 61 peaks\n", corners);
+  assert_true(corners <= 2);
 }
 
 static void a_corner_peak_has_the_derivatives_of_solved_corners(void **state) {
@@ -173,7 +200,8 @@ static void a_corner_peak_has_the_derivatives_of_solved_corners(void **state) {
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(a_smooth_peak_has_the_derivatives_of_solved_peaks),
-      cmocka_unit_test(a_peak_where_slip_just_begins_is_bracketed),
+      cmocka_unit_test(peaks_where_slip_just_begins_are_bracketed),
+      cmocka_unit_test(a_coarse_law_does_not_hide_them),
       cmocka_unit_test(a_corner_peak_has_the_derivatives_of_solved_corners)};
   return cmocka_run_group_tests(tests, NULL, NULL);
 }
