@@ -277,7 +277,7 @@ static bool go_on(void *context, double share) {
   return ask(context, SUBTREES * share);
 }
 
-/* Bytes that are still to be taken: vectors and modes above the subtrees, both terms, workspaces and
+/* Bytes that are still to be taken: vectors above the subtrees, modes, both terms, workspaces and
  * the matrices of subtrees. The stack is freed before the workspaces are made. */
 static double bytes_needed(const problem *p, size_t stack) {
   const double loads = p->of->n_loads, modes = p->of->modes, top = p->n_top;
