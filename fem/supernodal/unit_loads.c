@@ -176,9 +176,9 @@ static bool allocate_top(problem *p) {
   const size_t rows = (size_t)p->n_top;
   p->n_blocks       = (p->of->n_loads + WIDTH - 1) / WIDTH;
   p->top_phi        = malloc((rows * (size_t)p->of->modes + 1) * sizeof *p->top_phi);
-  p->subtree        = calloc((size_t)p->n_roots + 1, sizeof *p->subtree);
+  p->subtree        = calloc((size_t)p->n_roots + 1, sizeof(fem_condensed *));
   p->lag            = calloc((size_t)p->n_roots + 1, sizeof *p->lag);
-  p->V              = calloc((size_t)p->n_blocks + 1, sizeof(double *));
+  p->V              = calloc((size_t)p->n_blocks + 1, sizeof *p->V);
   bool good         = p->top_phi && p->subtree && p->lag && p->V;
   for (int i = 0; good && i < p->n_blocks; i++) {
     p->V[i] = fem_large_malloc((rows * (size_t)width_of(p, i) + 1) * sizeof(double));
