@@ -7,33 +7,72 @@
 
 #include "mesh/base/status.h"
 
-#define MESH_GMSH_FUNCTIONS(F)                                                                     \
-  F(Finalize)                                                                                      \
-  F(Free)                                                                                          \
-  F(Initialize)                                                                                    \
-  F(LoggerGet) F(LoggerGetLastError) F(LoggerStart) F(LoggerStop) F(Merge) F(ModelAdd) F(          \
-      ModelAddDiscreteEntity) F(ModelAddPhysicalGroup) F(ModelGeoAddCurveLoop) F(ModelGeoAddLine)  \
-      F(ModelGeoAddPlaneSurface) F(ModelGeoAddPoint) F(ModelGeoMeshSetTransfiniteCurve) F(         \
-          ModelGeoSynchronize) F(ModelGetBoundary) F(ModelGetBoundingBox) F(ModelGetClosestPoint)  \
-          F(ModelGetCurrent) F(ModelGetEntities) F(ModelGetEntitiesForPhysicalGroup) F(            \
-              ModelGetParametrizationBounds) F(ModelGetPhysicalGroups) F(ModelGetPhysicalName)     \
-              F(ModelGetType) F(ModelGetValue) F(ModelMeshAddElementsByType) F(ModelMeshAddNodes)  \
-                  F(ModelMeshClear) F(ModelMeshGenerate) F(ModelMeshGetElementTypes)               \
-                      F(ModelMeshGetElementsByType) F(ModelMeshGetNodes)                           \
-                          F(ModelMeshGetNodesByElementType) F(ModelMeshRemoveSizeCallback)         \
-                              F(ModelMeshSetNode) F(ModelMeshSetOrder) F(ModelMeshSetPeriodic)     \
-                                  F(ModelMeshSetRecombine) F(ModelMeshSetSizeCallback)             \
-                                      F(ModelOccAddBox) F(ModelOccAddCurveLoop) F(ModelOccAddLine) \
-                                          F(ModelOccAddPlaneSurface) F(ModelOccAddPoint) F(        \
-                                              ModelOccAddSpline) F(ModelOccAddThruSections)        \
-                                              F(ModelOccFuse) F(ModelOccGetCenterOfMass) F(        \
-                                                  ModelOccGetMass) F(ModelOccRemoveAllDuplicates)  \
-                                                  F(ModelOccRevolve) F(ModelOccSynchronize)        \
-                                                      F(ModelRemove) F(ModelRemoveEntities)        \
-                                                          F(ModelSetCurrent)                       \
-                                                              F(ModelSetPhysicalName) F(Open)      \
-                                                                  F(OptionGetNumber)               \
-                                                                      F(OptionSetNumber) F(Write)
+/* clang-format off */
+#define MESH_GMSH_FUNCTIONS(F) \
+  F(Finalize) \
+  F(Free) \
+  F(Initialize) \
+  F(LoggerGet) \
+  F(LoggerGetLastError) \
+  F(LoggerStart) \
+  F(LoggerStop) \
+  F(Merge) \
+  F(ModelAdd) \
+  F(ModelAddDiscreteEntity) \
+  F(ModelAddPhysicalGroup) \
+  F(ModelGeoAddCurveLoop) \
+  F(ModelGeoAddLine) \
+  F(ModelGeoAddPlaneSurface) \
+  F(ModelGeoAddPoint) \
+  F(ModelGeoMeshSetTransfiniteCurve) \
+  F(ModelGeoSynchronize) \
+  F(ModelGetBoundary) \
+  F(ModelGetBoundingBox) \
+  F(ModelGetClosestPoint) \
+  F(ModelGetCurrent) \
+  F(ModelGetEntities) \
+  F(ModelGetEntitiesForPhysicalGroup) \
+  F(ModelGetParametrizationBounds) \
+  F(ModelGetPhysicalGroups) \
+  F(ModelGetPhysicalName) \
+  F(ModelGetType) \
+  F(ModelGetValue) \
+  F(ModelMeshAddElementsByType) \
+  F(ModelMeshAddNodes) \
+  F(ModelMeshClear) \
+  F(ModelMeshGenerate) \
+  F(ModelMeshGetElementTypes) \
+  F(ModelMeshGetElementsByType) \
+  F(ModelMeshGetNodes) \
+  F(ModelMeshGetNodesByElementType) \
+  F(ModelMeshRemoveSizeCallback) \
+  F(ModelMeshSetNode) \
+  F(ModelMeshSetOrder) \
+  F(ModelMeshSetPeriodic) \
+  F(ModelMeshSetRecombine) \
+  F(ModelMeshSetSizeCallback) \
+  F(ModelOccAddBox) \
+  F(ModelOccAddCurveLoop) \
+  F(ModelOccAddLine) \
+  F(ModelOccAddPlaneSurface) \
+  F(ModelOccAddPoint) \
+  F(ModelOccAddSpline) \
+  F(ModelOccAddThruSections) \
+  F(ModelOccFuse) \
+  F(ModelOccGetCenterOfMass) \
+  F(ModelOccGetMass) \
+  F(ModelOccRemoveAllDuplicates) \
+  F(ModelOccRevolve) \
+  F(ModelOccSynchronize) \
+  F(ModelRemove) \
+  F(ModelRemoveEntities) \
+  F(ModelSetCurrent) \
+  F(ModelSetPhysicalName) \
+  F(Open) \
+  F(OptionGetNumber) \
+  F(OptionSetNumber) \
+  F(Write)
+/* clang-format on */
 
 typedef struct {
 #define MESH_GMSH_MEMBER(name) __typeof__(gmsh##name) *name;
