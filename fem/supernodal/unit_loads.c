@@ -47,7 +47,6 @@ typedef struct {
   double *work;   /* [most_rows][WIDTH] */
   double *w;      /* [modes][WIDTH] sum of Q q at the modes */
   int    *at;     /* [most_rows] */
-  int    *column; /* [nodes in a row of M] */
 } workspace;
 
 /* ------------------------------------------------------------------ parts of the tree */
@@ -213,21 +212,17 @@ static void free_problem(problem *p) {
 }
 
 static bool create_workspace(const problem *p, workspace *w) {
-  const int   *start = p->of->node_start;
-  size_t       size = 0, longest = 0, modes = (size_t)p->of->modes;
+  size_t       size = 0, modes = (size_t)p->of->modes;
   const size_t rows = (size_t)p->of->tree.panels->most_rows;
   for (int i = 0; i < p->n_roots; i++)
     if ((size_t)p->subtree[i]->size > size) size = (size_t)p->subtree[i]->size;
-  for (int i = 0; i < p->n / 3; i++)
-    if ((size_t)(start[i + 1] - start[i]) > longest) longest = (size_t)(start[i + 1] - start[i]);
-  w->Z      = fem_large_malloc(((size_t)p->n_top + 1) * WIDTH * sizeof *w->Z);
-  w->q      = malloc((size + 1) * WIDTH * sizeof *w->q);
-  w->Qq     = malloc((size + 1) * WIDTH * sizeof *w->Qq);
-  w->work   = malloc((rows + 1) * WIDTH * sizeof *w->work);
-  w->w      = malloc((modes + 1) * WIDTH * sizeof *w->w);
-  w->at     = malloc((rows + 1) * sizeof *w->at);
-  w->column = malloc((longest + 1) * sizeof *w->column);
-  return w->Z && w->q && w->Qq && w->work && w->w && w->at && w->column;
+  w->Z    = fem_large_malloc(((size_t)p->n_top + 1) * WIDTH * sizeof *w->Z);
+  w->q    = malloc((size + 1) * WIDTH * sizeof *w->q);
+  w->Qq   = malloc((size + 1) * WIDTH * sizeof *w->Qq);
+  w->work = malloc((rows + 1) * WIDTH * sizeof *w->work);
+  w->w    = malloc((modes + 1) * WIDTH * sizeof *w->w);
+  w->at   = malloc((rows + 1) * sizeof *w->at);
+  return w->Z && w->q && w->Qq && w->work && w->w && w->at;
 }
 
 static void free_workspace(workspace *w) {
@@ -237,7 +232,6 @@ static void free_workspace(workspace *w) {
   free(w->work);
   free(w->w);
   free(w->at);
-  free(w->column);
 }
 
 /* ------------------------------------------------------------------ subtrees */
