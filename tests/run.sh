@@ -1,7 +1,7 @@
 #!/bin/sh
 # Installs what is missing (root or sudo), builds in build/release, runs every test.
 # As many tests run side by side as there are cores.
-# Arguments go to ctest: -L unit (about 20 s), -LE slow, -R '^cases'.
+# Arguments go to ctest: -L unit, -LE slow, -R '^cases'; -C nightly -L nightly takes hours.
 set -eu
 root=$(CDPATH='' cd -- "$(dirname -- "$0")/.." && pwd)
 cd "$root"

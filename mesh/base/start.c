@@ -1,11 +1,14 @@
-/* What must be in order before the program runs. Standard descriptors and address space are checked
- * before the start of every library. This is done by system calls only: a sanitizer, which replaces
- * functions, may not be there yet. The locale and the environment of MPI are set after it. */
+/* What must be in order before the program runs. Standard descriptors, address space and how
+ * threads wait are settled before the start of every library. This is done by system calls only: a
+ * sanitizer, which replaces functions, may not be there yet. The locale and the environment of MPI
+ * are set after it. */
 #define _GNU_SOURCE /* syscall */
 #include <fcntl.h>
 #include <locale.h>
+#include <stdbool.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/auxv.h>
 #include <sys/resource.h>
 #include <sys/syscall.h>
 #include <unistd.h>
@@ -77,10 +80,33 @@ static void check_address_space(char **environment) {
   _exit(SHB_ERR_IO);
 }
 
+static bool starts_with(const char *text, const char *start) {
+  return strncmp(text, start, strlen(start)) == 0;
+}
+
+/* A thread that waits for others sleeps. OpenMP's threads spin for milliseconds otherwise, and on a
+ * busy machine that time is another program's. OpenMP reads its environment once, as its library
+ * starts, so the program is started again with the variable. A user's choice is kept. */
+static void let_waiting_threads_sleep(char **argv, char **environment) {
+  int n = 0;
+  for (; environment[n]; n++)
+    if (starts_with(environment[n], "OMP_WAIT_POLICY=") ||
+        starts_with(environment[n], "GOMP_SPINCOUNT="))
+      return;
+  const char *program = (const char *)getauxval(AT_EXECFN); /* 0 where the system tells none */
+  char       *more[n + 2];
+  char        passive[] = "OMP_WAIT_POLICY=passive";
+  memcpy(more, environment, (size_t)n * sizeof *more);
+  more[n]     = passive;
+  more[n + 1] = NULL;
+  if (program) (void)syscall(SYS_execve, program, argv, more); /* where it fails, threads spin */
+}
+
 static void start(int argc, char **argv, char **environment) {
-  (void)argc, (void)argv;
+  (void)argc;
   fill_descriptors();
   check_address_space(environment);
+  let_waiting_threads_sleep(argv, environment);
 }
 
 __attribute__((section(".preinit_array"),

@@ -22,7 +22,7 @@
 
 #include "mesh/base/constants.h"
 #include "modal/eigen/eigen.h"
-#include "tests/bench/z_notch.h"
+#include "tests/support/z_notch.h"
 
 enum { MODES = 10, MOST = 8 };
 

@@ -20,8 +20,8 @@
 #include "mesh/base/constants.h"
 #include "mhb/integration/steady_state.h"
 #include "modal/model/model.h"
-#include "tests/bench/shroud_face.h"
-#include "tests/bench/z_notch_settings.h"
+#include "tests/support/shroud_face.h"
+#include "tests/support/z_notch_settings.h"
 
 enum { PERIODS = 20, PATCHES = 22, LEVELS = 4 };
 

@@ -36,7 +36,7 @@
 #include "mhb/mistuning/deviations.h"
 #include "mhb/mistuning/mistuned_ring.h"
 #include "mhb/numerics/random.h"
-#include "tests/bench/z_notch_settings.h"
+#include "tests/support/z_notch_settings.h"
 #include "tests/support/main_curve.h"
 #include "tests/support/random_model.h"
 

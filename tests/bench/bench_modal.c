@@ -24,7 +24,7 @@
 #include "mesh/io/inp_write.h"
 #include "modal/common/session.h"
 #include "modal/eigen/eigen.h"
-#include "tests/bench/z_notch.h"
+#include "tests/support/z_notch.h"
 #include "tests/support/read_mesh.h"
 
 enum { MODES = 20 };

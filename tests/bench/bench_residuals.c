@@ -18,7 +18,7 @@
 #include "modal/common/session.h"
 #include "modal/condense/condense.h"
 #include "modal/condense/residual_chain.h"
-#include "tests/bench/z_notch.h"
+#include "tests/support/z_notch.h"
 
 enum { MODES = 20, BATCH = 80, BLOCKS = MODAL_RESIDUAL_BLOCKS };
 

@@ -29,7 +29,7 @@
 #include "mhb/continuation/balance_curve.h"
 #include "mhb/continuation/first_solution.h"
 #include "precision.h"
-#include "shroud_face.h"
+#include "tests/support/shroud_face.h"
 #include "stiff_faces.h"
 #include "tests/support/main_curve.h"
 #include "tests/support/three_degree.h"

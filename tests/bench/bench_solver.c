@@ -15,7 +15,7 @@
 #include "fem/solver/factor.h"
 #include "mesh/base/clock.h"
 #include "modal/common/session.h"
-#include "tests/bench/z_notch.h"
+#include "tests/support/z_notch.h"
 
 typedef struct {
   const char   *name;

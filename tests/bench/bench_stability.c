@@ -21,7 +21,7 @@
 #include "mesh/base/progress.h"
 #include "mhb/branches/forced_response.h"
 #include "modal/model/model.h"
-#include "tests/bench/z_notch_settings.h"
+#include "tests/support/z_notch_settings.h"
 #include "tests/support/random_model.h"
 
 typedef struct {

@@ -25,7 +25,7 @@
 #include "mhb/branches/forced_response.h"
 #include "modal/model/model.h"
 #include "postproc/analysis/outputs.h"
-#include "tests/bench/z_notch_settings.h"
+#include "tests/support/z_notch_settings.h"
 #include "tests/support/random_model.h"
 
 enum { PRELOADS = 5, FRICTIONS = 3, OUTPUTS = 2 };

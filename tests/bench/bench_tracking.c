@@ -22,7 +22,7 @@
 #include "mhb/branches/forced_response.h"
 #include "mhb/tracking/tracked_response.h"
 #include "modal/model/model.h"
-#include "tests/bench/z_notch_settings.h"
+#include "tests/support/z_notch_settings.h"
 #include "tests/support/settings.h"
 #include "tests/support/three_degree.h"
 

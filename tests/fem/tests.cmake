@@ -1,12 +1,6 @@
-foreach(noun finite_strain hourglass material quadrature surface)
-  shb_test(fem/element ${noun} tests_fem)
-endforeach()
-shb_test(fem/element tet10 tests_fem PkgConfig::OPENBLAS)
-shb_test(fem/element hex20 tests_fem PkgConfig::OPENBLAS)
-foreach(noun assemble clamp_check mass_product rigid_body rotation stress)
-  shb_test(fem/body ${noun} tests_fem)
-endforeach()
-shb_test(fem/body pressure tests_fem PkgConfig::LAPACKE)
-shb_test(fem/supernodal coarse_order tests_fem)
-shb_test(fem/solver factor tests_fem)
-shb_test(fem/solver hermitian tests_fem)
+shb_test(fem/element UNIT finite_strain hourglass material quadrature surface tet10 hex20
+  LIBRARIES tests_fem PkgConfig::OPENBLAS)
+shb_test(fem/body UNIT assemble clamp_check mass_product rigid_body rotation stress pressure
+  LIBRARIES tests_fem PkgConfig::LAPACKE)
+shb_test(fem/supernodal UNIT coarse_order LIBRARIES tests_fem)
+shb_test(fem/solver UNIT hermitian INTEGRATION factor LIBRARIES tests_fem)

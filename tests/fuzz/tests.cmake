@@ -19,7 +19,7 @@ function(shb_fuzz noun)
   if(EXISTS ${FUZZ}/regressions/${noun})
     list(APPEND inputs ${FUZZ}/regressions/${noun})
   endif()
-  add_test(NAME fuzz.${noun} COMMAND fuzz_${noun} -runs=200 ${inputs})
+  shb_add_test(fuzz.${noun} UNIT fuzz_${noun} -runs=200 ${inputs})
 endfunction()
 
 shb_fuzz(units shb_case m)
@@ -37,6 +37,5 @@ target_sources(fuzz_table PRIVATE ${PROJECT_SOURCE_DIR}/cases/study/dakota_files
 shb_fuzz(harmonic shb_modal_hdf5)
 target_sources(fuzz_harmonic PRIVATE ${PROJECT_SOURCE_DIR}/modal/condense/load_field.c)
 
-add_test(NAME fuzz.libfuzzer
-  COMMAND sh ${FUZZ}/run.sh ${PROJECT_SOURCE_DIR} ${CMAKE_CURRENT_BINARY_DIR}/fuzz_clang 8)
-set_tests_properties(fuzz.libfuzzer PROPERTIES SKIP_RETURN_CODE 77)
+shb_shell_test(fuzz.libfuzzer NIGHTLY fuzz/run.sh ${PROJECT_SOURCE_DIR}
+  ${CMAKE_CURRENT_BINARY_DIR}/fuzz_clang 8)

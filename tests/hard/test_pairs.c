@@ -15,7 +15,7 @@
 #include "mhb/balance/newton.h"
 #include "mhb/balance/truncation_error.h"
 #include "mhb/numerics/fourier.h"
-#include "tests/bench/shroud_face.h"
+#include "tests/support/shroud_face.h"
 #include "tests/hard/power.h"
 #include "tests/hard/verdict.h"
 #include "tests/support/periodic.h"

@@ -5,13 +5,10 @@ target_link_libraries(hard_scan PRIVATE shb_mhb m)
 
 add_library(tests_hard STATIC hard/verdict.c hard/power.c hard/floquet.c)
 target_link_libraries(tests_hard PUBLIC tests_models)
-foreach(noun three_degree jumps ends friction limits ring resonance balance pairs peaks isolas
-    parameters)
-  shb_test(hard ${noun} tests_hard)
-endforeach()
-target_sources(test_hard_pairs PRIVATE bench/shroud_face.c)
-shb_test(hard gaps tests_hard)
-shb_test(hard oblique tests_hard PkgConfig::LAPACKE)
-target_sources(test_hard_oblique PRIVATE hard/oblique_cantilever.c hard/rigid_contact.c)
-target_compile_definitions(test_hard_oblique PRIVATE SHROUDHB="$<TARGET_FILE:shroudhb>")
-add_dependencies(test_hard_oblique programs)
+shb_test(hard UNIT limits ring
+  INTEGRATION three_degree jumps ends friction resonance balance pairs peaks isolas parameters
+  NIGHTLY gaps LIBRARIES tests_hard)
+shb_test(hard NIGHTLY oblique LIBRARIES PkgConfig::LAPACKE
+  SOURCES hard/oblique_cantilever.c hard/rigid_contact.c
+  DEFINITIONS SHROUDHB="$<TARGET_FILE:shroudhb>")
+add_dependencies(test_hard programs)

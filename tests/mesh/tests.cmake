@@ -1,32 +1,16 @@
-foreach(noun arena memory axes crash_guard phases progress publish root shortest)
-  shb_test(mesh/base ${noun} shb_mesh_base)
-endforeach()
-foreach(noun face_match group_checks group_rules jacobian triangle)
-  shb_test(mesh/core ${noun} tests_box)
-endforeach()
-shb_test(mesh/core file_format shb_mesh_core)
-shb_test(mesh/core fe_mesh tests_box ${GMSH_LIBRARY})
-target_include_directories(test_mesh_core_fe_mesh PRIVATE ${GMSH_INCLUDE})
-shb_test(mesh/core face_pairing tests_box)
-shb_test(mesh/core cyclic_sides tests_fem)
-shb_test(mesh/core regions tests_box ${GMSH_LIBRARY})
-target_include_directories(test_mesh_core_regions PRIVATE ${GMSH_INCLUDE})
-shb_test(mesh/io inp_read tests_box)
-shb_test(mesh/io msh_check tests_box)
-shb_test(mesh/io msh_read tests_box)
-shb_test(mesh/io write tests_box)
-shb_test(mesh/io source tests_box ${GMSH_LIBRARY})
-target_include_directories(test_mesh_io_source PRIVATE ${GMSH_INCLUDE})
-foreach(noun airfoil section_smoothing)
-  shb_test(mesh/blade ${noun} shb_mesh_blade)
-endforeach()
-shb_test(mesh/blade blade tests_box)
-shb_test(mesh/blade disc tests_box)
-shb_test(mesh/blade hex_sweep tests_box)
-shb_test(mesh/blade shroud_angle tests_box)
-shb_test(mesh/blade scene shb_case shb_mesh)
-target_compile_definitions(test_mesh_blade_scene PRIVATE
-  SCENE="${PROJECT_SOURCE_DIR}/cases/z_notch_blade/case.yaml")
-add_test(NAME mesh.blade.command
-  COMMAND sh ${CMAKE_CURRENT_SOURCE_DIR}/mesh/blade/test_command.sh $<TARGET_FILE:shroudhb-mesh>
-          ${PROJECT_SOURCE_DIR}/cases/z_notch_blade/case.yaml $<BOOL:${SHROUDHB_SANITIZE}>)
+shb_test(mesh/base UNIT arena memory axes crash_guard phases progress publish root shortest
+  LIBRARIES shb_mesh_base)
+shb_test(mesh/core UNIT face_match group_checks group_rules jacobian triangle face_pairing
+  file_format fe_mesh regions cyclic_sides LIBRARIES tests_fem ${GMSH_LIBRARY})
+shb_test(mesh/io UNIT inp_read msh_check msh_read write INTEGRATION source
+  LIBRARIES tests_box ${GMSH_LIBRARY})
+target_include_directories(test_mesh_core PRIVATE ${GMSH_INCLUDE})
+target_include_directories(test_mesh_io PRIVATE ${GMSH_INCLUDE})
+shb_test(mesh/blade UNIT airfoil section_smoothing INTEGRATION disc hex_sweep shroud_angle
+  SLOW blade
+  LIBRARIES tests_box)
+shb_test(mesh/blade UNIT scene LIBRARIES shb_case shb_mesh
+  DEFINITIONS SCENE="${PROJECT_SOURCE_DIR}/cases/z_notch_blade/case.yaml")
+shb_shell_test(mesh.blade.command INTEGRATION mesh/blade/test_command.sh
+  $<TARGET_FILE:shroudhb-mesh> ${PROJECT_SOURCE_DIR}/cases/z_notch_blade/case.yaml
+  $<BOOL:${SHROUDHB_SANITIZE}>)

@@ -1,88 +1,44 @@
-# shb_counts_allocations(target): its calls of malloc and the like are counted.
-function(shb_counts_allocations target)
-  target_sources(${target} PRIVATE support/allocations.c)
-  target_link_options(${target} PRIVATE
-    LINKER:--wrap=malloc,--wrap=calloc,--wrap=realloc,--wrap=aligned_alloc)
-endfunction()
+# calls of malloc and the like are counted
+set(COUNTS_ALLOCATIONS SOURCES support/allocations.c
+  LINK LINKER:--wrap=malloc,--wrap=calloc,--wrap=realloc,--wrap=aligned_alloc)
 
-foreach(noun block_cyclic extent fourier lu thin_product)
-  shb_test(mhb/numerics ${noun} shb_mhb_numerics)
-endforeach()
-foreach(noun transitions slip slip_onset static_friction slider sensitivity dense_output)
-  shb_test(mhb/contact ${noun} shb_mhb_contact)
-endforeach()
-foreach(noun contact reference_law accuracy continuity random time_history)
-  shb_test(mhb/contact ${noun} tests_motions)
-endforeach()
-foreach(noun interfaces parameter)
-  shb_test(mhb/problem ${noun} tests_models)
-endforeach()
-foreach(noun deviations mistuned_ring)
-  shb_test(mhb/mistuning ${noun} tests_models)
-endforeach()
-shb_test(mhb/structure cyclic_flexibility shb_mhb_structure)
-shb_test(mhb/structure gyroscopic tests_models)
-foreach(noun nodal_diameters receptance ring_receptance speed_model)
-  shb_test(mhb/structure ${noun} tests_models)
-endforeach()
-shb_test(mhb/low_rank woodbury tests_models)
-target_sources(test_mhb_low_rank_woodbury PRIVATE bench/shroud_face.c)
-shb_test(mhb/response response shb_mhb_response)
-shb_test(mhb/response publisher shb_mhb_response)
-shb_test(mhb/response response_samples shb_mhb_response)
-shb_test(mhb/response modal_motion tests_models)
-shb_test(mhb/response face_wear tests_models)
-shb_test(mhb/response direct_stress tests_fem tests_models shb_modal)
-shb_test(mhb/branches stiff_disc tests_fem tests_box tests_models shb_modal shb_mesh_blade)
-shb_test(mhb/branches disc_run_up tests_fem tests_models shb_modal)
-foreach(noun balance stick_stiffness condensation newton ring_system subharmonics
-    truncation_error doubled_ring modal_error spatial_error stuck_solver coriolis
-    disc_contacts)
-  shb_test(mhb/balance ${noun} tests_models)
-endforeach()
-target_sources(test_mhb_balance_condensation PRIVATE bench/shroud_face.c)
-target_sources(test_mhb_balance_spatial_error PRIVATE bench/shroud_face.c)
-target_sources(test_mhb_balance_stuck_solver PRIVATE bench/shroud_face.c)
-target_sources(test_mhb_balance_disc_contacts PRIVATE bench/shroud_face.c)
-shb_counts_allocations(test_mhb_balance_condensation)
-foreach(noun multistart ring_symmetry ring_motion)
-  shb_test(mhb/search ${noun} tests_models)
-endforeach()
-foreach(noun multipliers floquet condensed disc_stability mistuned_stability friction_limit hill
-        linearised_law ring_band bloch hessenberg_qr curve_verdicts)
-  shb_test(mhb/floquet ${noun} tests_models)
-endforeach()
-shb_counts_allocations(test_mhb_floquet_floquet)
-shb_test(mhb/floquet monodromy tests_models)
-foreach(noun modal_step contact_step contact_path joint_step spectrum integrator
-  integration_memory integration_sweep mistuned_ring bladed_disc amplitudes)
-  shb_test(mhb/integration ${noun} tests_models)
-endforeach()
-foreach(noun ring_statistics side_waves slip_flow)
-  shb_test(mhb/ring ${noun} shb_mhb_ring)
-endforeach()
-shb_test(mhb/ring neimark_sacker tests_models)
-shb_test(mhb/ring ring_neimark_sacker tests_models)
-foreach(noun lasting mistuned_lasting ring_step slow_sweep)
-  shb_test(mhb/ring ${noun} tests_models)
-endforeach()
-foreach(noun arclength arclength_scalar balance_curve closed_curve corrector curve event_location
-    events first_solution linear_corrector linear_resonances nearest_solution outputs
-    resonance_detection segment)
-  shb_test(mhb/continuation ${noun} tests_models)
-endforeach()
-target_sources(test_mhb_continuation_first_solution PRIVATE bench/shroud_face.c)
-target_link_options(test_mhb_continuation_first_solution PRIVATE
-  LINKER:--wrap=mhb_arclength_start)
-foreach(noun whitehead ring_response)
-  shb_test(mhb/amplification ${noun} tests_models)
-endforeach()
-foreach(noun branch_completion branch_stability chain forced_response harmonic_selection
-    lasting_motion linear_limits main_branch mistuned_sweep peak_search period_doubling record
-    run_up secondary_branches ring_search sweep_memory tracer unfinished_curve verdicts)
-  shb_test(mhb/branches ${noun} tests_models)
-endforeach()
-foreach(noun corner corner_pairs output_amplitude peak_derivatives peak_system ring_peaks
-    tracked_curve tracked_multiplier tracked_response)
-  shb_test(mhb/tracking ${noun} tests_models)
-endforeach()
+shb_test(mhb/numerics UNIT block_cyclic extent fourier lu thin_product LIBRARIES shb_mhb_numerics)
+shb_test(mhb/contact UNIT transitions slip slip_onset static_friction slider sensitivity
+  dense_output time_history INTEGRATION contact reference_law accuracy continuity random
+  LIBRARIES tests_motions)
+shb_test(mhb/problem INTEGRATION interfaces parameter LIBRARIES tests_models)
+shb_test(mhb/mistuning UNIT deviations mistuned_ring LIBRARIES tests_models)
+shb_test(mhb/structure UNIT cyclic_flexibility gyroscopic nodal_diameters receptance ring_receptance
+  speed_model LIBRARIES tests_models)
+shb_test(mhb/low_rank UNIT woodbury LIBRARIES tests_models)
+shb_test(mhb/response UNIT publisher response_samples face_wear
+  INTEGRATION response modal_motion direct_stress LIBRARIES tests_fem tests_models shb_modal)
+shb_test(mhb/balance UNIT balance stick_stiffness newton ring_system subharmonics doubled_ring
+  modal_error spatial_error stuck_solver disc_contacts
+  INTEGRATION truncation_error coriolis condensation
+  LIBRARIES tests_models ${COUNTS_ALLOCATIONS})
+shb_test(mhb/search UNIT multistart ring_symmetry ring_motion LIBRARIES tests_models)
+shb_test(mhb/floquet UNIT multipliers hill linearised_law ring_band bloch hessenberg_qr
+  curve_verdicts INTEGRATION floquet condensed disc_stability mistuned_stability friction_limit
+  SLOW monodromy LIBRARIES tests_models ${COUNTS_ALLOCATIONS})
+shb_test(mhb/integration UNIT modal_step contact_step contact_path joint_step spectrum
+  INTEGRATION integrator integration_memory integration_sweep mistuned_ring bladed_disc amplitudes
+  LIBRARIES tests_models)
+shb_test(mhb/ring UNIT ring_statistics side_waves slip_flow ring_neimark_sacker slow_sweep
+  INTEGRATION neimark_sacker lasting mistuned_lasting ring_step LIBRARIES tests_models)
+shb_test(mhb/continuation UNIT arclength_scalar balance_curve closed_curve corrector curve
+  event_location events first_solution linear_corrector nearest_solution outputs
+  resonance_detection segment INTEGRATION arclength linear_resonances
+  LIBRARIES tests_models LINK LINKER:--wrap=mhb_arclength_start)
+shb_test(mhb/amplification UNIT whitehead INTEGRATION ring_response LIBRARIES tests_models)
+shb_test(mhb/branches UNIT branch_completion chain linear_limits main_branch peak_search
+  period_doubling record tracer
+  INTEGRATION stiff_disc disc_run_up branch_stability forced_response harmonic_selection
+  lasting_motion mistuned_sweep run_up secondary_branches ring_search unfinished_curve
+  SLOW verdicts LIBRARIES tests_fem tests_box tests_models shb_modal shb_mesh_blade)
+# it measures its own memory, and PETSc's libraries would be part of it
+shb_test(mhb/branches INTEGRATION sweep_memory PROGRAM test_mhb_branches_memory
+  LIBRARIES tests_models)
+shb_test(mhb/tracking UNIT output_amplitude peak_derivatives peak_system ring_peaks
+  INTEGRATION corner tracked_curve tracked_multiplier tracked_response SLOW corner_pairs
+  LIBRARIES tests_models)

@@ -1,46 +1,25 @@
-foreach(noun colour number_format text_buffer plot)
-  shb_test(postproc/draw ${noun} shb_post)
-endforeach()
-foreach(noun outputs abscissa curves curve_distance convergence response_analysis campbell
-    file_origin findings resonances stability_findings)
-  shb_test(postproc/analysis ${noun} tests_responses)
-endforeach()
-foreach(noun csv ring_charts report publish page_data tables picture)
-  shb_test(postproc/report ${noun} tests_responses)
-endforeach()
-foreach(noun diameter_table inspect mac mode_table phase_table value_range value_table)
-  shb_test(postproc/inspect ${noun} tests_responses)
-endforeach()
-shb_test(postproc/field peak_stress shb_post tests_models)
-shb_test(postproc/field whole_period shb_post tests_models)
-shb_test(postproc/field stress_section shb_post)
-shb_test(postproc/field strain_gauge shb_post tests_box)
-shb_test(postproc/study study_file shb_post)
-foreach(noun study_effects study_page)
-  shb_test(postproc/study ${noun} tests_studies)
-endforeach()
-
-shb_test(postproc/comparison run_comparison tests_responses)
-shb_test(postproc/report safe_diagram tests_responses tests_models)
-shb_test(postproc/report contact_points tests_responses tests_motions)
-shb_test(postproc/report blade_view tests_responses tests_box)
+shb_test(postproc/draw UNIT colour number_format text_buffer plot LIBRARIES shb_post)
+shb_test(postproc/analysis UNIT outputs abscissa curves curve_distance convergence response_analysis
+  campbell file_origin findings resonances stability_findings LIBRARIES tests_responses)
+shb_test(postproc/report UNIT csv ring_charts publish page_data tables picture safe_diagram
+  contact_points INTEGRATION report blade_view
+  LIBRARIES tests_responses tests_models tests_motions tests_box)
+# The program itself: exit codes and the one line of an error.
+shb_test(postproc/report UNIT command LIBRARIES tests_responses tests_studies)
+add_dependencies(test_postproc_report shroudhb-post)
+set_property(TEST postproc.report.command APPEND PROPERTY ENVIRONMENT
+  "SHROUDHB_POST=$<TARGET_FILE:shroudhb-post>")
+shb_test(postproc/inspect UNIT diameter_table inspect mac mode_table phase_table value_range
+  value_table LIBRARIES tests_responses)
+shb_test(postproc/field UNIT peak_stress whole_period stress_section strain_gauge
+  LIBRARIES shb_post tests_models tests_box)
+shb_test(postproc/study UNIT study_file study_effects study_page LIBRARIES tests_studies)
+shb_test(postproc/comparison UNIT run_comparison LIBRARIES tests_responses)
 
 # The pages in a browser, where there is one.
-find_program(SHROUDHB_CHROMIUM NAMES chromium chromium-browser google-chrome)
-if(SHROUDHB_CHROMIUM AND SHROUDHB_PYTHON)
-  add_test(NAME postproc.study.page_script
-    COMMAND ${SHROUDHB_PYTHON} -B
-      ${CMAKE_CURRENT_SOURCE_DIR}/postproc/study/test_page_script.py
-      $<TARGET_FILE:test_postproc_study_study_page> ${SHROUDHB_CHROMIUM})
-  add_test(NAME postproc.report.page_script
-    COMMAND ${SHROUDHB_PYTHON} -B
-      ${CMAKE_CURRENT_SOURCE_DIR}/postproc/report/test_page_script.py
-      $<TARGET_FILE:test_postproc_report_contact_points>
-      $<TARGET_FILE:test_postproc_report_blade_view> ${SHROUDHB_CHROMIUM})
+if(SHROUDHB_CHROMIUM)
+  shb_python_test(postproc.study.page_script INTEGRATION postproc/study/test_page_script.py
+    $<TARGET_FILE:test_postproc_study> ${SHROUDHB_CHROMIUM})
+  shb_python_test(postproc.report.page_script INTEGRATION postproc/report/test_page_script.py
+    $<TARGET_FILE:test_postproc_report> ${SHROUDHB_CHROMIUM})
 endif()
-
-# The program itself: exit codes and the one line of an error.
-shb_test(postproc/report command tests_responses tests_studies)
-add_dependencies(test_postproc_report_command shroudhb-post)
-set_tests_properties(postproc.report.command PROPERTIES ENVIRONMENT
-  "SHROUDHB_POST=$<TARGET_FILE:shroudhb-post>")

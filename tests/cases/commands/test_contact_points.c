@@ -10,7 +10,7 @@
 #include <cmocka.h>
 
 #include "mhb/branches/forced_response.h"
-#include "tests/bench/shroud_face.h"
+#include "tests/support/shroud_face.h"
 #include "tests/support/check.h"
 #include "tests/support/random_disc.h"
 

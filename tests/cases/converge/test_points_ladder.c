@@ -12,7 +12,7 @@
 
 #include "modal/hdf5/h5.h"
 #include "postproc/analysis/convergence.h"
-#include "tests/bench/shroud_face.h"
+#include "tests/support/shroud_face.h"
 #include "tests/support/check.h"
 #include "tests/support/scratch.h"
 

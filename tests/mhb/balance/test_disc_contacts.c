@@ -5,7 +5,7 @@
 
 #include "mesh/base/constants.h"
 #include "mhb/balance/newton.h"
-#include "tests/bench/shroud_face.h"
+#include "tests/support/shroud_face.h"
 #include "tests/support/check.h"
 #include "tests/support/random_disc.h"
 

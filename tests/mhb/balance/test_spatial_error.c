@@ -13,7 +13,7 @@
 
 #include "mesh/base/constants.h"
 #include "mhb/continuation/first_solution.h"
-#include "tests/bench/shroud_face.h"
+#include "tests/support/shroud_face.h"
 #include "tests/support/check.h"
 
 enum { PAIRS = 16, HARMONICS = 5 };

@@ -6,7 +6,7 @@
 #include "mesh/base/constants.h"
 #include "mhb/balance/balance.h"
 #include "mhb/numerics/lu.h"
-#include "tests/bench/shroud_face.h"
+#include "tests/support/shroud_face.h"
 #include "tests/support/check.h"
 
 enum { PAIRS = 20, N = 3 * PAIRS };

@@ -2,7 +2,7 @@
 #include "mhb/continuation/first_solution.h"
 
 #include "mhb/continuation/balance_curve.h"
-#include "tests/bench/shroud_face.h"
+#include "tests/support/shroud_face.h"
 #include "tests/support/check.h"
 #include "tests/support/random_model.h"
 #include "tests/support/settings.h"

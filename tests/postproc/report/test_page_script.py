@@ -1,10 +1,10 @@
 #!/usr/bin/env python3
 """The script of the report page in a browser: the contact law, every control, no error.
 
-    test_page_script.py CONTACT_MAKER BLADE_MAKER CHROMIUM
+    test_page_script.py MAKER CHROMIUM
 
-MAKER keep writes law.html and page_KIND.html into the folder (test_contact_points,
-test_blade_view).
+MAKER NOUN keep writes law.html and page_KIND.html into the folder (test_contact_points.c,
+test_blade_view.c).
 """
 import json
 import re
@@ -116,12 +116,12 @@ def faults(kind, chromium, folder):
 
 
 def main():
-    *makers, chromium = sys.argv[1:]
+    maker, chromium = sys.argv[1:]
     bad = 0
     with tempfile.TemporaryDirectory() as name:
         folder = Path(name)
-        for maker in makers:
-            subprocess.run([Path(maker).resolve(), 'keep'], cwd=folder, check=True)
+        for noun in ('contact_points', 'blade_view'):
+            subprocess.run([Path(maker).resolve(), noun, 'keep'], cwd=folder, check=True)
         wrong = law_faults(chromium, folder)
         print(f'law: {"; ".join(wrong) or "good"}')
         still = motion_faults(chromium, folder)

@@ -169,7 +169,7 @@ def main():
     bad = 0
     with tempfile.TemporaryDirectory() as name:
         folder = Path(name)
-        subprocess.run([Path(maker).resolve(), 'keep'], cwd=folder, check=True,
+        subprocess.run([Path(maker).resolve(), 'study_page', 'keep'], cwd=folder, check=True,
                        stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
         for kind in CHARTS:
             found = faults(kind, folder / f'page_{kind}.study.html', chromium, folder)

@@ -1,4 +1,4 @@
-#include "tests/bench/z_notch_settings.h"
+#include "tests/support/z_notch_settings.h"
 
 #include <string.h>
 

@@ -1,4 +1,4 @@
-#include "tests/bench/z_notch.h"
+#include "tests/support/z_notch.h"
 
 #include <math.h>
 #include <stdlib.h>

@@ -1,4 +1,4 @@
-#include "shroud_face.h"
+#include "tests/support/shroud_face.h"
 
 #include <math.h>
 #include <stdlib.h>

@@ -1,6 +1,6 @@
 /* Contact and excitation of cases/z_notch_blade, for its modal file. */
-#ifndef TESTS_BENCH_Z_NOTCH_SETTINGS_H
-#define TESTS_BENCH_Z_NOTCH_SETTINGS_H
+#ifndef TESTS_SUPPORT_Z_NOTCH_SETTINGS_H
+#define TESTS_SUPPORT_Z_NOTCH_SETTINGS_H
 
 #include "mhb/problem/settings.h"
 

@@ -1,6 +1,6 @@
 /* The blade of cases/z_notch_blade, meshed as finely as asked. */
-#ifndef BENCH_Z_NOTCH_H
-#define BENCH_Z_NOTCH_H
+#ifndef SUPPORT_Z_NOTCH_H
+#define SUPPORT_Z_NOTCH_H
 
 #include "mesh/core/fe_mesh.h"
 
