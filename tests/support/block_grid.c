@@ -102,10 +102,10 @@ double *block_grid_values(const block_grid *grid, double diagonal, uint64_t seed
 void block_factor_make(const block_grid *grid, block_factor *f) {
   cholmod_common common;
   const size_t   nodes = (size_t)grid->blocks.n;
-  *f                   = (block_factor){
-                        .grid = grid, .n = 3 * grid->blocks.n, .place = malloc((nodes + 1) * sizeof(int))};
-  f->row   = malloc((3 * nodes + 1) * sizeof *f->row);
-  f->owner = malloc((3 * nodes + 1) * sizeof *f->owner);
+  *f                   = (block_factor){.grid = grid, .n = 3 * grid->blocks.n};
+  f->place             = malloc((nodes + 1) * sizeof *f->place);
+  f->row               = malloc((3 * nodes + 1) * sizeof *f->row);
+  f->owner             = malloc((3 * nodes + 1) * sizeof *f->owner);
   assert_true(f->place && f->row && f->owner);
   fem_cholmod_start(&common);
   cholmod_factor *L = fem_block_analyse(&grid->blocks, &common, f->place);

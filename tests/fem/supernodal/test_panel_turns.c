@@ -1,5 +1,5 @@
-/* Which panels of a Hermitian factor are real up to phases: against the dense factor at two
- * angles, and against phases that follow from numbers of the nodes. */
+/* Which panels of a Hermitian factor are real up to phases. They are held against the dense factor
+ * at two angles, and against phases that follow from numbers of the nodes. */
 #include "fem/supernodal/panel_turns.h"
 
 #include <lapacke.h>

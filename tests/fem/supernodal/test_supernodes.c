@@ -146,8 +146,8 @@ static double cost_of(const fem_supernodes *p, int first, int last) {
   return cost;
 }
 
-/* A subtree is a range of panels that change no other one but through its copies, most costly
- * first, at most a sixteenth of the whole. */
+/* A subtree is a range of panels that change no other one but through its copies. The most costly
+ * is first, at most a sixteenth of the whole. */
 static void subtrees_do_not_depend_on_each_other(void **state) {
   (void)state;
   scene                *s     = two_bodies();
