@@ -25,6 +25,7 @@ shb_test(mhb/structure gyroscopic tests_models)
 foreach(noun nodal_diameters receptance ring_receptance speed_model)
   shb_test(mhb/structure ${noun} tests_models)
 endforeach()
+shb_test(mhb/low_rank gmres shb_mhb_low_rank)
 shb_test(mhb/low_rank woodbury tests_models)
 target_sources(test_mhb_low_rank_woodbury PRIVATE bench/shroud_face.c)
 shb_test(mhb/response response shb_mhb_response)
@@ -82,7 +83,7 @@ foreach(noun branch_completion branch_stability chain forced_response harmonic_s
     run_up secondary_branches ring_search sweep_memory tracer unfinished_curve verdicts)
   shb_test(mhb/branches ${noun} tests_models)
 endforeach()
-foreach(noun corner corner_pairs output_amplitude peak_derivatives peak_system ring_peaks
+foreach(noun corner corner_pairs corner_point kink optimum output_amplitude peak_derivatives peak_system ring_peaks
     tracked_curve tracked_multiplier tracked_response)
   shb_test(mhb/tracking ${noun} tests_models)
 endforeach()
