@@ -52,8 +52,8 @@ static double orthogonalise(mhb_gmres *g, int size, int j, double *w, double *h)
   return h[j + 1] = cblas_dnrm2(size, w, 1);
 }
 
-/* What two projections leave of a vector of unit length that is in the space: rounding of sums of
- * so many products, four of them, of either sign. */
+/* What two projections leave of a vector of unit length that lies in the space. It is the rounding
+ * of four sums of so many products. The products are of either sign. */
 static double rounding(int size) {
   return 4 * DBL_EPSILON * sqrt(size);
 }

@@ -83,7 +83,7 @@ foreach(noun branch_completion branch_stability chain forced_response harmonic_s
     run_up secondary_branches ring_search sweep_memory tracer unfinished_curve verdicts)
   shb_test(mhb/branches ${noun} tests_models)
 endforeach()
-foreach(noun corner corner_pairs corner_point kink optimum output_amplitude peak_derivatives peak_system ring_peaks
-    tracked_curve tracked_multiplier tracked_response)
+foreach(noun corner corner_pairs corner_point kink optimum output_amplitude peak_derivatives
+    peak_system ring_peaks tracked_curve tracked_multiplier tracked_response)
   shb_test(mhb/tracking ${noun} tests_models)
 endforeach()

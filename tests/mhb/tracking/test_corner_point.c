@@ -5,7 +5,8 @@
  *
  *   A = F/|k - w^2 + 2 j zeta w|,   h = ku A - mu n0,   no mean friction.
  *
- * The corner has A = mu n0/ku, the stuck peak w^2 = k - 2 zeta^2, A = F/(2 zeta sqrt(k - zeta^2)). */
+ * The corner has A = mu n0/ku.
+ * The stuck peak has w^2 = k - 2 zeta^2, A = F/(2 zeta sqrt(k - zeta^2)). */
 #include "mhb/tracking/corner_point.h"
 
 #include "mesh/base/constants.h"
@@ -40,7 +41,8 @@ static double slope_at(double omega) { /* dA/domega */
   return a * a * a / (force * force) * (2 * omega * d - 4 * zeta * zeta * omega);
 }
 
-/* The corner above the resonance (side 1) or below it (-1): (k - w^2)^2 + (2 zeta w)^2 = (F/A)^2. */
+/* The corner above the resonance (side 1) or below it (-1), where
+ * (k - w^2)^2 + (2 zeta w)^2 = (F/A)^2. */
 static double corner_of(double n0, int side) {
   const double k = 1 + ku, a = mu * n0 / ku, p = k - 2 * zeta * zeta;
   return sqrt(p + side * sqrt(p * p - k * k + pow(force / a, 2)));

@@ -1,5 +1,6 @@
 /* The search for a peak on a kink, where the peak is smooth: that of a linear oscillator in closed
- * form, with all derivatives. Kinks themselves are those of a blade (cases.scenes.tracked_peaks). */
+ * form, with all derivatives. Kinks themselves are those of a blade
+ * (cases.scenes.tracked_peaks). */
 #include "mhb/tracking/kink.h"
 
 #include "mesh/base/constants.h"

@@ -7,8 +7,8 @@
 
 enum { MOST = 9 };
 
-/* The dense K(theta), which the tests of this room rely on. Its x^H K x is the energy of the strains
- * of the real and of the imaginary part of the motion. */
+/* The dense K(theta), which the tests of this room rely on. Its x^H K x is the energy of the
+ * strains of the real and of the imaginary part of the motion. */
 static void the_dense_stiffness_has_the_strain_energy(void **state) {
   const small_sector *s = *state;
   for (int d = 0; d <= SMALL_BLADES / 2; d++) {
