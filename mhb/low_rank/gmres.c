@@ -1,8 +1,10 @@
 #include "mhb/low_rank/gmres.h"
 
 #include <cblas.h>
+#include <float.h>
 #include <lapacke.h>
 #include <math.h>
+#include <stdbool.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -50,8 +52,16 @@ static double orthogonalise(mhb_gmres *g, int size, int j, double *w, double *h)
   return h[j + 1] = cblas_dnrm2(size, w, 1);
 }
 
-/* Column j of R by the rotations so far and a new one. */
-static void rotate(mhb_gmres *g, int j) {
+/* What two projections leave of a vector of unit length that lies in the space. It is the rounding
+ * of four sums of so many products. The products are of either sign. */
+static double rounding(int size) {
+  return 4 * DBL_EPSILON * sqrt(size);
+}
+
+/* Column j of R by the rotations so far and a new one. Of a column that depends on those before
+ * only rounding is left: nothing is gained by it, and its number on the diagonal is 0.
+ *   least  in  what is rounding */
+static void rotate(mhb_gmres *g, int j, double least) {
   double *r = g->R + (size_t)j * ((size_t)g->most + 1);
   memcpy(r, g->H + (size_t)j * ((size_t)g->most + 1), sizeof(double) * ((size_t)j + 2));
   for (int i = 0; i < j; i++) {
@@ -60,24 +70,24 @@ static void rotate(mhb_gmres *g, int j) {
     r[i + 1] = g->c[i] * b - g->s[i] * a;
   }
   double length = hypot(r[j], r[j + 1]);
-  g->c[j]       = length > 0 ? r[j] / length : 1;
-  g->s[j]       = length > 0 ? r[j + 1] / length : 0;
-  r[j]          = length;
+  bool   gains  = length > least;
+  g->c[j]       = gains ? r[j] / length : 0;
+  g->s[j]       = gains ? r[j + 1] / length : 1;
+  r[j]          = gains ? length : 0;
   g->g[j + 1]   = -g->s[j] * g->g[j];
   g->g[j] *= g->c[j];
 }
 
 /* x <- Z y, R y = g. */
-static int combine(mhb_gmres *g, int size, double *x) {
+static void combine(mhb_gmres *g, int size, double *x) {
   size_t ld = (size_t)g->most + 1;
   for (int i = g->iterations - 1; i >= 0; i--) {
     double sum = g->g[i];
     for (int j = i + 1; j < g->iterations; j++) sum -= g->R[(size_t)j * ld + (size_t)i] * g->y[j];
-    if (g->R[(size_t)i * ld + (size_t)i] == 0) return 0;
-    g->y[i] = sum / g->R[(size_t)i * ld + (size_t)i];
+    const double pivot = g->R[(size_t)i * ld + (size_t)i];
+    g->y[i]            = pivot > 0 ? sum / pivot : 0;
   }
   cblas_dgemv(CblasRowMajor, CblasTrans, g->iterations, size, 1, g->Z, size, g->y, 1, 0, x, 1);
-  return 1;
 }
 
 int mhb_gmres_solve(mhb_gmres *g, int size, mhb_gmres_apply apply, void *context, const double *b,
@@ -94,15 +104,17 @@ int mhb_gmres_solve(mhb_gmres *g, int size, mhb_gmres_apply apply, void *context
   for (int j = 0; j < g->most; j++) {
     double *w = g->V + ((size_t)j + 1) * rows, *h = g->H + (size_t)j * ((size_t)g->most + 1);
     if (!apply(context, g->V + (size_t)j * rows, g->Z + (size_t)j * rows, w)) return 0;
-    double next = orthogonalise(g, size, j, w, h);
+    const double least = rounding(size) * cblas_dnrm2(size, w, 1);
+    double       next  = orthogonalise(g, size, j, w, h);
     if (!isfinite(next)) return 0;
-    rotate(g, j);
+    rotate(g, j, least);
     g->iterations = j + 1;
     g->residual   = fabs(g->g[j + 1]) / length;
-    if (g->residual <= tolerance || next == 0) break;
+    if (g->residual <= tolerance || next <= least) break;
     cblas_dscal(size, 1 / next, w, 1);
   }
-  return combine(g, size, x) && g->residual <= tolerance;
+  combine(g, size, x);
+  return g->residual <= tolerance;
 }
 
 int mhb_gmres_negative(mhb_gmres *g) {

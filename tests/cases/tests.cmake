@@ -32,7 +32,10 @@ endif()
 shb_test(cases/plan UNIT sampling statistics sobol_indices design_statistics
   LIBRARIES shb_cases_plan PkgConfig::GSL m)
 shb_test(cases/peaks INTEGRATION design_run LIBRARIES shb_cases_peaks tests_models)
-shb_test(cases/study UNIT line_minimum optimiser LIBRARIES shb_cases_study)
+shb_test(cases/designs UNIT design_table output_names refusals study_keys study_plan uncertain_keys
+  LIBRARIES shb_cases_designs)
+shb_test(cases/study UNIT line_minimum optimiser dakota_files design_message nearest_design
+  LIBRARIES shb_cases_study)
 
 # What is installed, by `cmake --install` and as a Debian package, works on its own.
 shb_shell_test(cases.install.install INTEGRATION cases/install/test_install.sh ${CMAKE_COMMAND}

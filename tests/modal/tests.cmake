@@ -13,8 +13,9 @@ shb_test(modal/eigen UNIT block_products block_lanczos missed_modes inertia_coun
 shb_test(modal/condense UNIT face_partition residual_modes static_deflection load_patterns
   contact_patches many_columns INTEGRATION condense
   LIBRARIES tests_fem shb_modal PkgConfig::LAPACKE)
-shb_test(modal/cyclic UNIT wave_coriolis INTEGRATION wave_modes blade_on_disc
-  LIBRARIES tests_fem tests_box shb_modal shb_mesh_blade shb_mhb_integration)
+shb_test(modal/cyclic UNIT small_hermitian wave_basis wave_condense wave_fields wave_operator
+  wave_ritz wave_search wave_coriolis INTEGRATION wave_modes blade_on_disc
+  LIBRARIES tests_waves tests_box shb_modal shb_mesh_blade shb_mhb_integration)
 shb_test(modal/stage UNIT rotating materials modal_stress stage vtkhdf
   INTEGRATION coriolis sector HAND ranks LIBRARIES tests_fem shb_modal shb_mhb_structure)
 

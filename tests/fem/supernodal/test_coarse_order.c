@@ -1,64 +1,31 @@
 /* The order of the nodes from the corners of elements: it is one, and it fills little. */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stdbool.h>
-#include <stddef.h>
-#include <stdlib.h>
-
-#include <cmocka.h>
-
-#include "fem/supernodal/block_order.h"
 #include "fem/supernodal/coarse_order.h"
 
-/* Upper triangle of a graph, and CHOLMOD's copy. */
+#include "tests/support/block_grid.h"
+#include "tests/support/check.h"
+
+/* A graph, and CHOLMOD's copy. */
 typedef struct {
-  fem_blocks      blocks;
-  int            *start, *column;
+  block_grid      grid;
   cholmod_sparse *graph;
   cholmod_common  common;
 } pattern;
 
-/* Nodes i, j of a grid with cells of step^3: is there a cell with both? */
-static bool share_cell(int i, int j, int step) {
-  const int low = i < j ? i : j, high = i < j ? j : i;
-  return high <= low / step * step + step;
-}
-
-/* One body, or two that do not touch, of cells[0] x cells[1] x cells[2] cells. A cell has
- * (step + 1)^3 nodes: 27-node hexahedra for step 2, eight-node ones for step 1. */
 static pattern make_grid(const int cells[3], int step, int bodies) {
-  const int nx = step * cells[0] + 1, ny = step * cells[1] + 1, nz = step * cells[2] + 1;
-  const int each = nx * ny * nz, n = bodies * each, most = 125 * n;
-  pattern   p;
-  p.start  = malloc(((size_t)n + 1) * sizeof(int));
-  p.column = malloc((size_t)most * sizeof(int));
-  int at   = 0;
-  for (int r = 0; r < n; r++) {
-    const int x = r % nx, y = r / nx % ny, z = r % each / (nx * ny), base = r / each * each;
-    p.start[r] = at;
-    for (int w = z; w < nz && w <= z + step; w++)
-      for (int v = y - step < 0 ? 0 : y - step; v < ny && v <= y + step; v++)
-        for (int u = x - step < 0 ? 0 : x - step; u < nx && u <= x + step; u++) {
-          const int c = base + (w * ny + v) * nx + u;
-          if (c >= r && share_cell(x, u, step) && share_cell(y, v, step) && share_cell(z, w, step))
-            p.column[at++] = c;
-        }
-  }
-  p.start[n] = at;
-  p.blocks   = (fem_blocks){n, p.start, p.column};
+  pattern      p = {.grid = block_grid_make(cells, step, bodies)};
+  const size_t n = (size_t)p.grid.blocks.n, count = (size_t)p.grid.start[n];
   fem_cholmod_start(&p.common);
-  p.graph = cholmod_allocate_sparse((size_t)n, (size_t)n, (size_t)at, 1, 1, -1, CHOLMOD_PATTERN,
-                                    &p.common);
-  for (int r = 0; r <= n; r++) ((int *)p.graph->p)[r] = p.start[r];
-  for (int k = 0; k < at; k++) ((int *)p.graph->i)[k] = p.column[k];
+  p.graph = cholmod_allocate_sparse(n, n, count, 1, 1, -1, CHOLMOD_PATTERN, &p.common);
+  assert_non_null(p.graph);
+  memcpy(p.graph->p, p.grid.start, (n + 1) * sizeof(int));
+  memcpy(p.graph->i, p.grid.column, count * sizeof(int));
   return p;
 }
 
 static void free_pattern(pattern *p) {
   cholmod_free_sparse(&p->graph, &p->common);
   cholmod_finish(&p->common);
-  free(p->start);
-  free(p->column);
+  block_grid_free(&p->grid);
 }
 
 static void check_permutation(const int *order, int n) {
@@ -84,7 +51,7 @@ static double operations(pattern *p, int *order) {
 
 static void check_fill(const int cells[3], int bodies, double most) {
   pattern   p     = make_grid(cells, 2, bodies);
-  const int n     = p.blocks.n;
+  const int n     = p.grid.blocks.n;
   int      *order = malloc((size_t)n * sizeof *order);
   assert_true(fem_coarse_order(p.graph, &p.common, order));
   check_permutation(order, n);
@@ -122,7 +89,7 @@ static void needs_corners(void **state) {
   (void)state;
   const int cells[3] = {12, 9, 7};
   pattern   p        = make_grid(cells, 1, 1);
-  int      *order    = malloc((size_t)p.blocks.n * sizeof *order);
+  int      *order    = malloc((size_t)p.grid.blocks.n * sizeof *order);
   assert_false(fem_coarse_order(p.graph, &p.common, order));
   free(order);
   free_pattern(&p);
