@@ -16,6 +16,7 @@
 #include "mesh/base/constants.h"
 #include "mesh/core/file_format.h"
 #include "mesh/table/text_file.h"
+#include "mhb/mistuning/deviation_table.h"
 #include "mhb/problem/parameter.h"
 
 static void check_mesh(case_reader *r, int stages) {
@@ -368,6 +369,20 @@ static void check_mistuning(case_reader *r, int stages) {
     case_reader_issue(r, path, "does not go with contact.points: auto; give the number of points");
 }
 
+/* The table of deviations, as far as the number of modes does not matter. */
+static void check_deviations(case_reader *r) {
+  const case_mistuning     *m     = &r->file->mistuning;
+  const mhb_deviation_table table = {m->file, m->hz, m->mean, r->file->blades, 0};
+  double                   *value = NULL;
+  int                       columns;
+  if (!m->file || !case_reader_good(r, "rotor.mistuning") || !case_reader_good(r, "rotor.blades") ||
+      !case_reader_given(r, "rotor.blades"))
+    return;
+  if (mhb_deviation_table_read(&table, &columns, &value) != SHB_OK)
+    case_reader_issue(r, "rotor.mistuning", "%s", shb_message());
+  free(value);
+}
+
 /* What a disc in the mesh does not go with, as far as the case file shows that there is one. Groups
  * that come by their names from a mesh file are seen by the modal stage. */
 static void check_disc(case_reader *r, int stages) {
@@ -418,5 +433,6 @@ bool case_check_values(case_reader *r, int stages) {
   if (!own && stages & CASE_MHB) lost = check_file(r, "modal.file", file->modal_file);
   if (stages & CASE_MHB && !lost && file->mistuning.file)
     lost = check_file(r, "rotor.mistuning", file->mistuning.file);
+  if (stages & CASE_MHB && !lost) check_deviations(r);
   return lost;
 }
