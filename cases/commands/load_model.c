@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "mesh/base/constants.h"
+#include "mhb/mistuning/deviation_table.h"
 #include "mhb/mistuning/deviations.h"
 #include "modal/model/nodal_diameters.h"
 #include "modal/model/reduce.h"
@@ -80,8 +81,10 @@ static shb_status check_use(const char *path, const modal_model *model) {
 static shb_status deviations(const case_file *file, int n_modes, int *columns, double **value) {
   const case_mistuning *m = &file->mistuning;
   const size_t          N = (size_t)file->mhb.blades;
-  if (m->kind == CASE_MISTUNED_FILE)
-    return mhb_deviations_read(m->file, file->mhb.blades, n_modes, columns, value);
+  if (m->kind == CASE_MISTUNED_FILE) {
+    const mhb_deviation_table table = {m->file, m->hz, m->mean, file->mhb.blades, n_modes};
+    return mhb_deviation_table_read(&table, columns, value);
+  }
   *columns   = 1;
   double *to = *value = malloc(N * sizeof *to);
   SHB_CHECK(to, SHB_ERR_IO, "out of memory");

@@ -79,6 +79,8 @@ typedef struct {
   int                 n;
   double              each[CASE_MAX_BLADES]; /* [n] relative frequency deviations */
   char               *file;                  /* resolved path */
+  bool                hz;                    /* its numbers are frequencies */
+  double              mean;                  /* Hz, of them; 0: of the table */
   double              deviation;             /* standard deviation of random ones */
   int                 seed, samples;         /* 0: none but the first */
 } case_mistuning;

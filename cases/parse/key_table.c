@@ -168,8 +168,8 @@ static const case_key table[] = {
     {"rotor.mistuning", CASE_MISTUNING, "", -0.5, 1, true, AT(mistuning), .stages = CASE_MHB,
      .when = CASE_IF_MISTUNED,
      .help = "relative frequency deviations, one a blade; or {file: x.csv}, a line a blade, one "
-             "number or one a mode; or {deviation: 1 %, seed: 7, samples: 100}, normal; then the "
-             "whole ring is solved"},
+             "number or one a mode, with {unit: Hz, mean: 117 Hz} frequencies; or {deviation: 1 %, "
+             "seed: 7, samples: 100}, normal; then the whole ring is solved"},
     {"rotor.speed", CASE_PRELOADS, "rad/s", 0, 1e5, .fallback = "0 rpm", AT(speed),
      .count_at = offsetof(case_file, n_speeds), .stages = CASE_MODAL, .when = CASE_IF_OWN_MODES,
      .help = "rotation speed: modes about the static equilibrium under the centrifugal load; 0: at "

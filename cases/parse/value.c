@@ -147,17 +147,44 @@ static bool read_file_name(const case_value_context *c, const case_node *node, v
   return keep_text(c, slot, path);
 }
 
+/* {unit: Hz, mean: } beside {file: }. */
+static bool read_mistuning_unit(const case_value_context *c, const case_node *node,
+                                case_mistuning *m) {
+  static const case_key hz = {.path = "mean", .unit = "Hz", .least = 0, .most = 1e6, .above = true};
+  const case_node      *unit = case_node_find(node, "unit"), *mean = case_node_find(node, "mean");
+  char                  path[CASE_PATH];
+  for (int i = 0; i < node->n; i++) {
+    const case_node *child = &node->child[i];
+    if (child == unit || child == mean || !strcmp(child->key, "file")) continue;
+    case_path(path, "%s.%s", c->path, child->key);
+    case_issue_add(c->issues, child->key_line, child->key_column, path,
+                   "does not go with a file; expected {file: NAME} or {file: NAME, unit: Hz, mean: "
+                   "117 Hz}");
+    return false;
+  }
+  m->hz = unit != NULL;
+  if (unit && (unit->kind != CASE_SCALAR || strcmp(unit->text, "Hz") != 0)) {
+    case_path(path, "%s.unit", c->path);
+    case_issue_add(c->issues, unit->line, unit->column, path,
+                   "is not Hz; of deviations such as 0.01 or 1 %% leave it out");
+    return false;
+  }
+  if (!mean) return true;
+  case_value_context own = *c;
+  own.key                = &hz;
+  case_path(path, "%s.mean", c->path);
+  if (unit) return case_value_number(&own, path, mean, &m->mean);
+  case_issue_add(c->issues, mean->line, mean->column, path, "goes with unit: Hz alone");
+  return false;
+}
+
 /* List, {file: } or {deviation: , seed: }. */
 static bool read_mistuning(const case_value_context *c, const case_node *node, void *slot) {
   case_mistuning  *m    = slot;
   const case_node *file = node->kind == CASE_MAPPING ? case_node_find(node, "file") : NULL;
   char             path[CASE_PATH];
   if (!file) return case_list_mistuning(c, node, slot);
-  if (node->n > 1) {
-    case_issue_add(c->issues, node->line, node->column, c->path,
-                   "has %d keys; {file: NAME} goes with no other", node->n);
-    return false;
-  }
+  if (!read_mistuning_unit(c, node, m)) return false;
   case_value_context own = *c;
   case_path(path, "%s.file", c->path);
   own.path = path;

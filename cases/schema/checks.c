@@ -15,6 +15,8 @@
 #include "cases/schema/materials.h"
 #include "mesh/base/constants.h"
 #include "mesh/core/file_format.h"
+#include "mesh/table/text_file.h"
+#include "mhb/mistuning/deviation_table.h"
 #include "mhb/problem/parameter.h"
 
 static void check_mesh(case_reader *r, int stages) {
@@ -310,7 +312,7 @@ static void check_integrate(case_reader *r) {
 /* Reports an input file that cannot be read. True if so. */
 static bool check_file(case_reader *r, const char *key, const char *path) {
   if (!path || !case_reader_good(r, key)) return false;
-  if (case_file_kind(path) != SHB_OK) {
+  if (mesh_file_kind(path) != SHB_OK) {
     case_reader_issue(r, key, "%s", shb_message());
     return true;
   }
@@ -367,6 +369,20 @@ static void check_mistuning(case_reader *r, int stages) {
     case_reader_issue(r, path, "does not go with contact.points: auto; give the number of points");
 }
 
+/* The table of deviations, as far as the number of modes does not matter. */
+static void check_deviations(case_reader *r) {
+  const case_mistuning     *m     = &r->file->mistuning;
+  const mhb_deviation_table table = {m->file, m->hz, m->mean, r->file->blades, 0};
+  double                   *value = NULL;
+  int                       columns;
+  if (!m->file || !case_reader_good(r, "rotor.mistuning") || !case_reader_good(r, "rotor.blades") ||
+      !case_reader_given(r, "rotor.blades"))
+    return;
+  if (mhb_deviation_table_read(&table, &columns, &value) != SHB_OK)
+    case_reader_issue(r, "rotor.mistuning", "%s", shb_message());
+  free(value);
+}
+
 /* What a disc in the mesh does not go with, as far as the case file shows that there is one. Groups
  * that come by their names from a mesh file are seen by the modal stage. */
 static void check_disc(case_reader *r, int stages) {
@@ -417,5 +433,6 @@ bool case_check_values(case_reader *r, int stages) {
   if (!own && stages & CASE_MHB) lost = check_file(r, "modal.file", file->modal_file);
   if (stages & CASE_MHB && !lost && file->mistuning.file)
     lost = check_file(r, "rotor.mistuning", file->mistuning.file);
+  if (stages & CASE_MHB && !lost) check_deviations(r);
   return lost;
 }

@@ -140,7 +140,7 @@ static void print_alternative(const case_key *key, FILE *out) {
       break;
     case CASE_MISTUNING:
       fputs(", ", out);
-      print_mapping("^(file|deviation|seed|samples)$", out);
+      print_mapping("^(file|unit|mean|deviation|seed|samples)$", out);
       break;
     case CASE_DAMPING:
       fputs(", ", out);

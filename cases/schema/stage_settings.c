@@ -72,6 +72,7 @@ static void print_mistuning(FILE *out, const case_file *file, const case_mistuni
   if (m->kind != CASE_MISTUNED_FILE) return;
   if (shb_fingerprint(m->file, fingerprint) != SHB_OK) strcpy(fingerprint, "-");
   fprintf(out, "file %s %s", inside(file, m->file), fingerprint);
+  if (m->hz) fprintf(out, " Hz mean %s", shb_shortest(m->mean, deviation));
 }
 
 static void print_scalar(FILE *out, const case_key *key, const case_file *file, const void *slot) {

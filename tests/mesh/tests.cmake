@@ -1,5 +1,6 @@
 shb_test(mesh/base UNIT arena memory axes crash_guard phases progress publish root shortest
   LIBRARIES shb_mesh_base)
+shb_test(mesh/table UNIT csv LIBRARIES shb_mesh_table)
 shb_test(mesh/core UNIT face_match group_checks group_rules jacobian triangle face_pairing
   file_format fe_mesh regions cyclic_sides LIBRARIES tests_fem ${GMSH_LIBRARY})
 shb_test(mesh/io UNIT inp_read msh_check msh_read write INTEGRATION source

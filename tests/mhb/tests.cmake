@@ -7,7 +7,7 @@ shb_test(mhb/contact UNIT transitions slip slip_onset static_friction slider sen
   dense_output time_history INTEGRATION contact reference_law accuracy continuity random
   LIBRARIES tests_motions)
 shb_test(mhb/problem INTEGRATION interfaces parameter LIBRARIES tests_models)
-shb_test(mhb/mistuning UNIT deviations mistuned_ring LIBRARIES tests_models)
+shb_test(mhb/mistuning UNIT deviation_table deviations mistuned_ring LIBRARIES tests_models)
 shb_test(mhb/structure UNIT cyclic_flexibility gyroscopic nodal_diameters receptance ring_receptance
   speed_model LIBRARIES tests_models)
 shb_test(mhb/low_rank UNIT woodbury gmres LIBRARIES tests_models)
@@ -39,6 +39,7 @@ shb_test(mhb/branches UNIT branch_completion chain linear_limits main_branch pea
 # it measures its own memory, and PETSc's libraries would be part of it
 shb_test(mhb/branches INTEGRATION sweep_memory PROGRAM test_mhb_branches_memory
   LIBRARIES tests_models)
-shb_test(mhb/tracking UNIT corner_point kink optimum output_amplitude peak_derivatives peak_system ring_peaks
+shb_test(mhb/tracking UNIT corner_point kink optimum output_amplitude peak_derivatives peak_system
+  ring_peaks
   INTEGRATION corner tracked_curve tracked_multiplier tracked_response SLOW corner_pairs
   LIBRARIES tests_models)

@@ -21,10 +21,15 @@ enum { ALL = CASE_MESH | CASE_MODAL | CASE_MHB | CASE_POST };
 #define COUNT(array) (sizeof(array) / sizeof *(array))
 
 /* Status of a file of n bytes, and the printed text (malloc'ed) without the folder. */
+/* Of 37 blades, Hz: a file that cases may name. */
+#define FOUR "117\n118\n119\n118\n"
+static const char frequencies[] = "f\n" FOUR FOUR FOUR FOUR FOUR FOUR FOUR FOUR FOUR "120\n";
+
 static shb_status judge(const char *text, size_t n, char **said) {
   char folder[SCRATCH_PATH], old[SCRATCH_PATH];
   scratch_create(folder);
   scratch_write(folder, "c.yaml", text, n);
+  scratch_write(folder, "m.csv", frequencies, sizeof frequencies - 1);
   assert_non_null(getcwd(old, sizeof old));
   assert_int_equal(chdir(folder), 0);
   size_t     size   = 0;
@@ -668,7 +673,7 @@ static void strange_files(void **state) {
   free(said);
   assert_int_equal(judge("\x89HDF\r\n\x1a\n\0\0", 10, &said), SHB_ERR_INPUT);
   assert_string_equal(shb_message(),
-                      "c.yaml: holds binary data; a case file is YAML text in UTF-8");
+                      "c.yaml: holds binary data; a case file is a page of YAML text in UTF-8");
   free(said);
   memset(large, '[', 100000); /* deep */
   assert_int_equal(judge(large, 100000, &said), SHB_ERR_INPUT);
@@ -799,7 +804,28 @@ static void mistuning(void **state) {
       {"axis: -y", "axis: -y, mistuning: [-0.5]",
        "c.yaml:12:60: error: rotor.mistuning[0]: is -0.5, must be above -0.5 to 1", 1},
       {"axis: -y", "axis: -y, mistuning: {file: a.csv, seed: 1}",
-       "c.yaml:12:59: error: rotor.mistuning: has 2 keys; {file: NAME} goes with no other", 1},
+       "c.yaml:12:73: error: rotor.mistuning.seed: does not go with a file; expected {file: NAME} "
+       "or {file: NAME, unit: Hz, mean: 117 Hz}",
+       1},
+      {"axis: -y", "axis: -y, mistuning: {file: a.csv, unit: rpm}",
+       "c.yaml:12:79: error: rotor.mistuning.unit: is not Hz; of deviations such as 0.01 or 1 % "
+       "leave it out",
+       1},
+      {"axis: -y", "axis: -y, mistuning: {file: a.csv, mean: 3 Hz}",
+       "c.yaml:12:79: error: rotor.mistuning.mean: goes with unit: Hz alone", 1},
+      {"axis: -y", "axis: -y, mistuning: {file: a.csv, unit: Hz, mean: 0 Hz}",
+       "c.yaml:12:89: error: rotor.mistuning.mean: is 0 Hz, must be above 0 to 1e+06 Hz", 1},
+      {"axis: -y", "axis: -y, mistuning: {file: m.csv}",
+       "c.yaml:12:59: error: rotor.mistuning: m.csv:2:1: a deviation of 117 (11700 %) must be "
+       "above "
+       "-50 % and at most 100 %; frequencies in Hz: rotor.mistuning: {file: NAME, unit: Hz}",
+       1},
+      {"axis: -y", "axis: -y, mistuning: {file: m.csv, unit: Hz, mean: 30 Hz}",
+       "c.yaml:12:59: error: rotor.mistuning: m.csv:2:1: a deviation of 2.9 (290 %) must be above "
+       "-50 % and at most 100 %",
+       1},
+      {"axis: -y", "axis: -y, mistuning: {file: m.csv, unit: Hz}, axes: 3",
+       "c.yaml:12:84: error: rotor.axes: unknown key; did you mean 'axis'?", 1},
   };
   check_faults(rows, COUNT(rows));
 }
