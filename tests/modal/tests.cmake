@@ -1,4 +1,5 @@
 shb_test(modal/hdf5 h5 shb_model)
+shb_test(modal/hdf5 h5_content shb_modal_hdf5)
 shb_test(modal/hdf5 stamp shb_modal_hdf5)
 target_compile_definitions(test_modal_hdf5_stamp PRIVATE
   DAMAGED="${CMAKE_CURRENT_SOURCE_DIR}/modal/hdf5/damaged/heap.h5"
