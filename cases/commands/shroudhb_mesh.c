@@ -16,6 +16,7 @@
 #include "mesh/core/fe_mesh.h"
 #include "mesh/core/group_checks.h"
 #include "mesh/gmsh/provenance.h"
+#include "mesh/gmsh/reading.h"
 #include "mesh/io/inp_write.h"
 #include "mesh/io/msh_write.h"
 #include "mesh/io/read.h"
@@ -97,6 +98,14 @@ static void warn_size(const case_file *file, const mesh_fe *mesh) {
             doubt);
 }
 
+/* gmsh's own programs would run this file, and its user may expect that. */
+static void warn_options(const char *path) {
+  char beside[4096 + 8];
+  if (mesh_reading_has_options(path, beside, sizeof beside))
+    fprintf(stderr, "shroudhb: warning: %s: is not read; the case says what it would set\n",
+            beside);
+}
+
 /* Checks that the mesh file of the case is readable, complete and usable for its contact. */
 static shb_status check_file(const case_file *file, shb_progress *progress) {
   mesh_fe      mesh;
@@ -160,6 +169,7 @@ static shb_status make_from_file(const case_file *file, const char *output,
     shb_progress_phase(progress, "write", "%s", output);
     note_pairing(progress, &pairing);
     if (!progress->quiet) warn_size(file, &mesh);
+    if (!progress->quiet) warn_options(file->mesh_file);
   }
   mesh_pairing_free(&pairing);
   mesh_fe_free(&mesh);

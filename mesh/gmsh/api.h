@@ -61,6 +61,7 @@
   F(ModelOccFuse) \
   F(ModelOccGetCenterOfMass) \
   F(ModelOccGetMass) \
+  F(ModelOccImportShapes) \
   F(ModelOccRemoveAllDuplicates) \
   F(ModelOccRevolve) \
   F(ModelOccSynchronize) \
@@ -138,6 +139,7 @@ const mesh_gmsh_functions *mesh_gmsh(void);
 #define gmshModelOccFuse (mesh_gmsh()->ModelOccFuse)
 #define gmshModelOccGetCenterOfMass (mesh_gmsh()->ModelOccGetCenterOfMass)
 #define gmshModelOccGetMass (mesh_gmsh()->ModelOccGetMass)
+#define gmshModelOccImportShapes (mesh_gmsh()->ModelOccImportShapes)
 #define gmshModelOccRemoveAllDuplicates (mesh_gmsh()->ModelOccRemoveAllDuplicates)
 #define gmshModelOccRevolve (mesh_gmsh()->ModelOccRevolve)
 #define gmshModelOccSynchronize (mesh_gmsh()->ModelOccSynchronize)

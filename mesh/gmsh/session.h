@@ -23,8 +23,9 @@ void       mesh_session_close(mesh_session *session);
 /* Record "what: gmsh: last error of gmsh" on one line. Returns code. */
 shb_status mesh_session_fail(shb_status code, const char *file, int line, const char *what);
 
-/* gmsh continues after some errors in a file. Call log_start before reading and log_check after it:
- * log_check fails with the first error logged, "what: gmsh: error" on one line. SHB_ERR_INPUT.
+/* gmsh continues after some errors in a file, such as those of a script, or an element that lacks
+ * nodes. Call log_start before reading and log_check after it, which ends the log and fails with
+ * the first error in it, "what: gmsh: error" on one line. SHB_ERR_INPUT.
  *   what  in  heads the message, also that about Exit in a script */
 void       mesh_session_log_start(const char *what);
 shb_status mesh_session_log_check(const char *what);

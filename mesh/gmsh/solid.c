@@ -14,6 +14,7 @@
 #include "mesh/core/jacobian.h"
 #include "mesh/gmsh/api.h"
 #include "mesh/gmsh/import.h"
+#include "mesh/gmsh/reading.h"
 #include "mesh/gmsh/size_estimate.h"
 
 static shb_status set_options(const mesh_source *source) {
@@ -36,8 +37,10 @@ static shb_status load(const mesh_source *source) {
   fclose(file);
   SHB_TRY(set_options(source));
   mesh_session_log_start(source->path);
-  GMSH_TRY(source->path, gmshOpen(source->path, &ierr));
-  SHB_TRY(mesh_session_log_check(source->path)); /* gmsh continues after a syntax error */
+  const shb_status read   = mesh_reading_solid(source->path);
+  const shb_status logged = mesh_session_log_check(source->path); /* also ends the log */
+  SHB_TRY(read);
+  SHB_TRY(logged);
   int   *tags = NULL;
   size_t n    = 0;
   GMSH_TRY(source->path, gmshModelGetEntities(&tags, &n, 3, &ierr));

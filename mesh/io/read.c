@@ -6,8 +6,8 @@
 #include "mesh/base/crash_guard.h"
 #include "mesh/core/file_format.h"
 #include "mesh/core/jacobian.h"
-#include "mesh/gmsh/api.h"
 #include "mesh/gmsh/import.h"
+#include "mesh/gmsh/reading.h"
 #include "mesh/gmsh/session.h"
 #include "mesh/io/inp_read.h"
 #include "mesh/io/msh_check.h"
@@ -18,15 +18,12 @@ static shb_status read_msh(const char *path, const mesh_names *names, mesh_fe *m
   if (mesh_msh_read(path, names, mesh)) return SHB_OK;
   mesh_session session;
   SHB_TRY(mesh_session_open(&session));
-  int ierr = 0;
   mesh_session_log_start(path);
   shb_guard_begin(path, "is damaged: gmsh crashed while it was read; mesh or copy it again", true);
-  gmshMerge(path, &ierr);
-  shb_status logged =
-      mesh_session_log_check(path); /* gmsh continues where an element lacks nodes */
-  shb_status status = ierr ? mesh_session_fail(SHB_ERR_INPUT, __FILE__, __LINE__, path)
-                      : logged != SHB_OK ? logged
-                                         : mesh_import(path, names, mesh);
+  shb_status       status = mesh_reading_msh(path);
+  const shb_status logged = mesh_session_log_check(path); /* also ends the log */
+  if (status == SHB_OK) status = logged;
+  if (status == SHB_OK) status = mesh_import(path, names, mesh);
   shb_guard_end();
   mesh_session_close(&session);
   return status;

@@ -204,8 +204,12 @@ static shb_status create_from(const char *path, char *image, size_t size, hid_t 
   hid_t list = access_list(true);
   if (list >= 0 && H5Pset_file_image(list, image, size) >= 0)
     *file = H5Fopen(path, H5F_ACC_RDWR, list);
-  shb_status status = *file < 0 ? create_failed(path) : SHB_OK;
+  shb_status status = *file < 0 ? create_failed(path) : h5_check_content(path, *file);
   if (list >= 0) H5Pclose(list);
+  if (status != SHB_OK && *file >= 0) {
+    H5Fclose(*file);
+    *file = H5I_INVALID_HID;
+  }
   return status;
 }
 
@@ -281,9 +285,12 @@ static shb_status open_guarded(const char *path, hid_t *file) {
   SHB_CHECK(list >= 0, SHB_ERR_IO, "%s: cannot be opened: HDF5 failed to start", path);
   start_reading(path);
   *file             = H5Fopen(path, H5F_ACC_RDONLY, list);
-  shb_status status = *file < 0 ? open_failed(path) : SHB_OK;
+  shb_status status = *file < 0 ? open_failed(path) : h5_check_content(path, *file);
   H5Pclose(list);
-  if (status != SHB_OK) stop_reading();
+  if (status == SHB_OK) return SHB_OK;
+  if (*file >= 0) H5Fclose(*file);
+  *file = H5I_INVALID_HID;
+  stop_reading();
   return status;
 }
 
@@ -312,12 +319,15 @@ static herr_t read_object(hid_t file, const char *name, const H5O_info_t *info, 
   return 0;
 }
 
-static void read_texts(const char *path) {
+static shb_status read_texts(const char *path) {
   hid_t file;
-  if (open_guarded(path, &file) != SHB_OK) return;
+  SHB_TRY(open_guarded(path, &file));
   H5Ovisit(file, H5_INDEX_NAME, H5_ITER_NATIVE, read_object, NULL);
-  h5_close(file);
+  return h5_close(file);
 }
+
+/* Exit code of the child that read without a crash what is refused. */
+enum { REFUSED = 100 };
 
 /* Let a child process read the texts of a file whose checksum says nothing. Over a damaged one HDF5
  * may crash, or go round for ever. */
@@ -332,18 +342,22 @@ static shb_status try_texts(const char *path, rlim_t seconds) {
     if (null >= 0) dup2(null, STDERR_FILENO);
     signal(SIGXCPU, SIG_DFL);
     setrlimit(RLIMIT_CPU, &time);
-    read_texts(path);
+    const shb_status status = read_texts(path);
     H5close(); /* a damaged heap is found when its blocks are given back */
-    _exit(SHB_OK);
+    _exit(status == SHB_OK ? SHB_OK : REFUSED);
   }
   int state = 0;
   while (waitpid(child, &state, 0) < 0 && errno == EINTR) continue;
   SHB_CHECK(!WIFSIGNALED(state) || (WTERMSIG(state) != SIGXCPU && WTERMSIG(state) != SIGKILL),
             SHB_ERR_INPUT, "%s: is damaged: HDF5 reads it without an end; write or copy it again",
             path);
-  SHB_CHECK(WIFEXITED(state) && WEXITSTATUS(state) == SHB_OK, SHB_ERR_INPUT,
+  const int code = WIFEXITED(state) ? WEXITSTATUS(state) : -1;
+  SHB_CHECK(code == SHB_OK || code == REFUSED, SHB_ERR_INPUT,
             "%s: is damaged: HDF5 crashed while it was read; write or copy it again", path);
-  return SHB_OK;
+  if (code == SHB_OK) return SHB_OK;
+  hid_t file; /* once more here, for the reason */
+  SHB_TRY(open_guarded(path, &file));
+  return h5_close(file);
 }
 
 /* The file that was tried last; a stage opens its input several times. */

@@ -30,8 +30,8 @@ size_t h5_count(h5_shape shape); /* number of elements */
 /* Create a file (truncating an old one), or open one for reading. A created file is built in
  * memory. h5_close writes it to the disk, behind a checksum. A file that was changed since is
  * opened with a warning on standard error. A crash of HDF5 while files are open for reading ends
- * the process with one line. Errors: SHB_ERR_IO. The text says whether the file is missing,
- * unreadable, not HDF5, or truncated. */
+ * the process with one line. Errors: SHB_ERR_IO; SHB_ERR_INPUT if content of the file lies in
+ * another one. The text says whether the file is missing, unreadable, not HDF5, or truncated. */
 shb_status h5_create(const char *path, hid_t *file);
 shb_status h5_open(const char *path, hid_t *file);
 /* Create a file that begins with the content of an earlier one, which this program wrote and nobody

@@ -25,6 +25,11 @@ const char *h5_shape_text(h5_shape shape, bool wanted, char out[128]);
 shb_status h5_check_finite(const char *label, h5_shape shape, const double *data, size_t per,
                            const char *rule);
 
+/* SHB_ERR_INPUT if a dataset or link of an open file leads to another file: external storage, a
+ * virtual dataset, an external link. Such content is not the file's own, may be private, and is
+ * behind no checksum. Nothing of it is opened. The same if an object cannot be read. */
+shb_status h5_check_content(const char *path, hid_t file);
+
 /* Compound of two native doubles (member names differ between writers); variable-length UTF-8 text.
  * The caller closes the type. */
 hid_t h5_complex_type(const char *real, const char *imaginary);

@@ -215,21 +215,15 @@ static void describe_dataset(hid_t dataset, post_tree_style style, line *l) {
   if (style.verbose) all_attributes(dataset, l->about, sizeof l->about);
 }
 
-/* Describe a soft or external link without following it: its target is shown elsewhere or is
- * another file. */
+/* Describe a soft link without following it: its target is shown elsewhere. h5_open accepts no
+ * link to another file. */
 static bool describe_link(hid_t group, const char *name, line *l) {
   H5L_info_t info;
   char       target[NAME] = "";
   if (H5Lget_info(group, name, &info, H5P_DEFAULT) < 0 || info.type == H5L_TYPE_HARD) return false;
   if (info.u.val_size < NAME) H5Lget_val(group, name, target, NAME, H5P_DEFAULT);
-  if (info.type == H5L_TYPE_SOFT) {
-    bool there = H5Oexists_by_name(group, name, H5P_DEFAULT) > 0;
-    snprintf(l->about, sizeof l->about, "→ %s%s", target, there ? "" : " (missing)");
-  } else {
-    const char *file = "", *path = "";
-    if (info.u.val_size < NAME) H5Lunpack_elink_val(target, info.u.val_size, NULL, &file, &path);
-    snprintf(l->about, sizeof l->about, "→ %.120s in file %.120s", path, file);
-  }
+  const bool there = H5Oexists_by_name(group, name, H5P_DEFAULT) > 0;
+  snprintf(l->about, sizeof l->about, "→ %s%s", target, there ? "" : " (missing)");
   return true;
 }
 

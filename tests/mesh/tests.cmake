@@ -5,6 +5,7 @@ shb_test(mesh/core UNIT face_match group_checks group_rules jacobian triangle fa
   file_format fe_mesh regions cyclic_sides LIBRARIES tests_fem ${GMSH_LIBRARY})
 shb_test(mesh/io UNIT inp_read msh_check msh_read write INTEGRATION source
   LIBRARIES tests_box ${GMSH_LIBRARY})
+shb_test(mesh/gmsh UNIT reading LIBRARIES tests_box)
 target_include_directories(test_mesh_core PRIVATE ${GMSH_INCLUDE})
 target_include_directories(test_mesh_io PRIVATE ${GMSH_INCLUDE})
 shb_test(mesh/blade UNIT airfoil section_smoothing INTEGRATION disc hex_sweep shroud_angle

@@ -1,4 +1,4 @@
-shb_test(modal/hdf5 INTEGRATION h5 LIBRARIES shb_model)
+shb_test(modal/hdf5 UNIT h5_content INTEGRATION h5 LIBRARIES shb_model)
 shb_test(modal/hdf5 INTEGRATION stamp LIBRARIES shb_modal_hdf5 DEFINITIONS
   DAMAGED="${CMAKE_CURRENT_SOURCE_DIR}/modal/hdf5/damaged/heap.h5"
   ENDLESS="${CMAKE_CURRENT_SOURCE_DIR}/modal/hdf5/damaged/endless.h5"
