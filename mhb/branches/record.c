@@ -46,7 +46,7 @@ static int mark_of(const mhb_balance *b, const mhb_curve_point *point) {
   const double tolerance = b->settings->motion_tolerance;
   int          mark      = has_undetermined_friction(b) ? MHB_TRACTION_UNDETERMINED : 0;
   if (!isfinite(point->truncation)) return mark | MHB_ERROR_NOT_JUDGED;
-  return tolerance > 0 && point->truncation > tolerance ? mark | MHB_ABOVE_TOLERANCE : mark;
+  return tolerance > 0 && point->miss > tolerance ? mark | MHB_ABOVE_TOLERANCE : mark;
 }
 
 static void record_states(mhb_branch *branch, int point, const mhb_balance *b) {
