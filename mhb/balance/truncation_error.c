@@ -260,6 +260,33 @@ bool mhb_truncation_solve(mhb_truncation *t, double *change) {
   return mhb_condensation_solve(t->system, change);
 }
 
+double mhb_truncation_across(mhb_truncation *t, double value, const double *tangent,
+                             double *shift) {
+  mhb_balance  *b = t->doubled;
+  const int     n = b->n, own = t->balance->n;
+  const double  unit = mhb_norm(t->x, n), size = mhb_balance_vibration(t->balance, t->x);
+  const bool    knows = t->kind == MHB_TRUNCATION_NEWTON && !t->by_broyden && !t->by_gmres;
+  double        column[n + 1], row[n + 1], *change = column;
+  mhb_parameter parameter = b->parameter;
+  if (!knows || !(size > 0)) return INFINITY;
+  mhb_balance_set_parameter(b, t->balance->parameter);
+  b->eval->near = true;
+  mhb_balance_linearise(b, t->x, value, t->r, column);
+  b->eval->near = false;
+  mhb_balance_set_parameter(b, parameter);
+  memset(row, 0, sizeof row);
+  copy_rows(3 * b->n_pairs, tangent, t->balance->nb, row, b->nb);
+  for (int i = 0; i < n; i++) row[i] /= unit;
+  for (int i = 0; i < n; i++) column[i] *= fabs(value) / unit;
+  row[n] = column[n] = tangent[own] / fabs(value);
+  if (!mhb_condensation_factor(t->system, column, row)) return INFINITY;
+  for (int i = 0; i < n; i++) change[i] = -t->r[i] / unit;
+  change[n] = 0;
+  if (!mhb_condensation_solve(t->system, change)) return INFINITY;
+  *shift = fabs(change[n]);
+  return mhb_norm(change, n) * unit / size;
+}
+
 double mhb_truncation_part(mhb_truncation *t, const double *step) {
   if (t->by_broyden) set_step(t, false);
   return t->kind == MHB_TRUNCATION_NEWTON ? first_root(bend(t, step)) : 1;

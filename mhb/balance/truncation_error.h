@@ -75,6 +75,16 @@ double mhb_truncation_error(mhb_truncation *truncation, const double *x);
  * the factors must be those of the estimate. */
 bool mhb_truncation_solve(mhb_truncation *truncation, double *change);
 
+/* Distance across the curve to that of 2m harmonics, relative to the vibration. Beside a fold the
+ * solution at the same value may be far off, or not exist, while the curve passes near by. The last
+ * estimate must be of the point, the balance's evaluation in use.
+ *   value    of the balance's parameter
+ *   tangent  [n + 1] d(x, value) along the curve
+ *   shift    out: relative change of the value
+ * INFINITY: not known (many pairs, a ring). */
+double mhb_truncation_across(mhb_truncation *truncation, double value, const double *tangent,
+                             double *shift);
+
 /* How much of a change of the solution, step[doubled->n], is left by the curvature of the residual:
  * 1 for a small one. A linearised change is far too long near a fold. The last estimate must be of
  * the present solution. One by Broyden's step is made anew by Newton's. */

@@ -179,16 +179,21 @@ static bool is_nearly_linear(const mhb_evaluation *e, int n_pairs) {
   return true;
 }
 
+static double factor_of(const mhb_curve_point *point) {
+  return point->truncation_kind == MHB_TRUNCATION_FIRST_ORDER ? FIRST_ORDER : 1;
+}
+
 void mhb_harmonic_levels_errors(mhb_harmonic_levels *h, mhb_curve_point *point) {
   if (h->settings->outline && h->n == 1) {
     point->truncation_kind = MHB_TRUNCATION_NONE;
-    point->truncation = point->modal = NAN;
+    point->truncation = point->miss = point->modal = NAN;
     return;
   }
   mhb_harmonic_level *level = mhb_harmonic_levels_current(h);
   mhb_balance_use(level->balance, point->evaluation);
   point->truncation      = mhb_truncation_error(level->truncation, point->x);
   point->truncation_kind = level->truncation->kind;
+  point->miss            = factor_of(point) * point->truncation;
   bool newton            = point->truncation_kind == MHB_TRUNCATION_NEWTON;
   point->modal = mhb_modal_error(level->balance, point->x, newton ? level->truncation : NULL);
 }
@@ -200,17 +205,50 @@ double mhb_harmonic_levels_spatial(const mhb_harmonic_levels *h, const mhb_curve
   return mhb_spatial_error_at(level->spatial, point->x);
 }
 
+/* The least damping ratio: a shift of the frequency, relative, over it is more than a linear motion
+ * changes by that. Of another parameter its value is the unit. */
+static double unit_of_shift(const mhb_harmonic_levels *h) {
+  double least = INFINITY;
+  if (h->parameter != MHB_IN_FREQUENCY) return 1;
+  for (int i = 0; i < h->model->n_modes; i++) least = fmin(least, h->model->damping_ratio[i]);
+  return least;
+}
+
+void mhb_harmonic_levels_miss(mhb_harmonic_levels *h, mhb_curve_point *point) {
+  mhb_harmonic_level *level = mhb_harmonic_levels_current(h);
+  double              shift = 0;
+  mhb_balance_use(level->balance, point->evaluation);
+  const double distance =
+      mhb_truncation_across(level->truncation, point->value, point->tangent, &shift);
+  const double unit = unit_of_shift(h);
+  const double miss = unit > 0 ? fmax(distance, shift / unit) : INFINITY;
+  if (miss < point->miss) point->miss = miss;
+}
+
 void mhb_harmonic_levels_estimate(mhb_harmonic_levels *h, mhb_curve_point *point) {
   mhb_balance *b = mhb_harmonic_levels_current(h)->balance;
   mhb_harmonic_levels_errors(h, point);
   h->wanted = h->at;
   h->linear = point->truncation_kind == MHB_TRUNCATION_NONE;
   if (h->n == 1) return;
-  double factor = point->truncation_kind == MHB_TRUNCATION_FIRST_ORDER ? FIRST_ORDER : 1;
-  h->wanted  = choose(h, point->x, factor * point->truncation, mhb_balance_vibration(b, point->x));
+  h->wanted  = choose(h, point->x, point->miss, mhb_balance_vibration(b, point->x));
   bool onset = h->from_linear || is_nearly_linear(point->evaluation, b->n_pairs);
   int  least = mhb_harmonic_levels_of(h, AT_ONSET * h->settings->subharmonics);
   if (!h->linear && onset && h->wanted < least) h->wanted = least;
+  if (h->wanted < h->least) h->wanted = h->least;
+  const bool exceeds = point->miss > h->settings->motion_tolerance;
+  if (exceeds && h->at == h->n - 1) mhb_harmonic_levels_miss(h, point);
+}
+
+int mhb_harmonic_levels_of_event(mhb_harmonic_levels *h, mhb_curve_point *point) {
+  mhb_balance *b = mhb_harmonic_levels_current(h)->balance;
+  mhb_harmonic_levels_errors(h, point);
+  const double error = point->miss, tolerance = h->settings->motion_tolerance;
+  if (!(tolerance > 0) || !(error > tolerance)) return -1;
+  mhb_harmonic_levels_miss(h, point);
+  if (point->miss <= tolerance || h->at == h->n - 1) return -1;
+  const int level = choose(h, point->x, error, mhb_balance_vibration(b, point->x));
+  return level > h->at ? level : -1;
 }
 
 int mhb_harmonic_levels_higher(const mhb_harmonic_levels *h) {

@@ -40,6 +40,7 @@ typedef struct {
   mhb_harmonic_level *level[MHB_MAX_LEVELS]; /* NULL until first needed */
   int                 at, highest;           /* the level in use; the highest used so far */
   int                 wanted;                /* the level that the last estimate asks for */
+  int                 least;                 /* no lower level is used */
   bool                linear;                /* nothing was left out there */
   bool                from_linear;           /* nor at the last accepted point */
   int n_lower_wanted; /* points in a row that ask for a lower level; negative: not yet counted */
@@ -69,7 +70,8 @@ static inline mhb_harmonic_level *mhb_harmonic_levels_current(const mhb_harmonic
 /* Unknowns at the highest level. */
 int mhb_harmonic_levels_most_unknowns(const mhb_harmonic_levels *levels);
 
-/* Fill truncation and modal error of a point of the level in use, linearised there. */
+/* Fill truncation and modal error of a point of the level in use, linearised there. miss is the
+ * truncation error, three times that where it is of first order. */
 void mhb_harmonic_levels_errors(mhb_harmonic_levels *levels, mhb_curve_point *point);
 
 /* Spatial error of a point of the level in use (mhb_spatial_error_at), which is linearised there;
@@ -80,6 +82,16 @@ double mhb_harmonic_levels_spatial(const mhb_harmonic_levels *levels, const mhb_
  * contacts begin to slip or open, and while they do so for less than a quarter of the period. A
  * curve of fewer harmonics may go on smoothly there where that of many turns back. */
 void mhb_harmonic_levels_estimate(mhb_harmonic_levels *levels, mhb_curve_point *point);
+
+/* Fill miss of a point whose errors were estimated last. Beside a fold the curve with twice the
+ * harmonics may pass near by where its solution at the same value is far off. What counts there is
+ * the distance of the curve, and how far it is moved along the parameter. A frequency is compared
+ * with the least damping ratio: no linear resonance is steeper. */
+void mhb_harmonic_levels_miss(mhb_harmonic_levels *levels, mhb_curve_point *point);
+
+/* The level that a point between two others asks for, which only the whole tolerance moves; -1: the
+ * one in use suffices. */
+int mhb_harmonic_levels_of_event(mhb_harmonic_levels *levels, mhb_curve_point *point);
 
 /* The level above the one in use that the last estimate asks for; -1: the one in use suffices. */
 int mhb_harmonic_levels_higher(const mhb_harmonic_levels *levels);

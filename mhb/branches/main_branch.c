@@ -21,7 +21,8 @@ typedef struct {
   mhb_chain     chain;     /* the main branch so far */
   int           start;     /* link where the curve under way begins */
   bool          from_high; /* that curve begins at the high end of the range */
-  bool          stopped;   /* interrupted */
+  bool          stopped;   /* interrupted, or a higher level is needed */
+  int           needed;    /* level of the next attempt; 0: this one will do */
   int           n_gaps;    /* places jumped over, and the first of them */
   char          first_gap[96];
   const char   *other_reason; /* NULL; or a reason in place of that of the end */
@@ -52,7 +53,8 @@ static shb_status trace(main_branch *m, const mhb_segment_plan *plan, int *segme
   mhb_segment_plan next = *plan;
   next.recorded         = n_points(m);
   SHB_TRY(mhb_tracer_trace(m->tracer, &next, segment, end));
-  if (*end == MHB_END_INTERRUPTED) m->stopped = true;
+  if (*end == MHB_END_HARMONICS) m->needed = m->tracer->levels->wanted;
+  if (*end == MHB_END_INTERRUPTED || *end == MHB_END_HARMONICS) m->stopped = true;
   return SHB_OK;
 }
 
@@ -320,34 +322,80 @@ static shb_status complete(main_branch *m, mhb_end end, int stable_at) {
   return SHB_OK;
 }
 
+/* One attempt, with the harmonics of a level or more. *end: why it ended. */
+static shb_status attempt(main_branch *m, int *stable_at, mhb_end *end) {
+  SHB_TRY(mhb_harmonic_levels_use(m->tracer->levels, m->tracer->levels->least));
+  SHB_TRY(trace_across_range(m, end));
+  if (*end != MHB_END_HIGH) return SHB_OK;
+  SHB_TRY(trace_returns(m, 1));
+  const int before = n_points(m);
+  SHB_TRY(trace_returns(m, -1));
+  *stable_at = n_points(m) - before;
+  if (m->stopped) *end = MHB_END_INTERRUPTED;
+  return SHB_OK;
+}
+
+static void discard(main_branch *m) {
+  mhb_tracer_destroy(m->tracer);
+  mhb_chain_free(&m->chain);
+  for (int i = 0; i < MAX_DETACHED; i++) mhb_chain_free(&m->detached[i]);
+  free(m->x);
+  *m = (main_branch){.monitor = m->monitor, .response = m->response};
+}
+
+static shb_status prepare(main_branch *m, mhb_balance *balance, int least,
+                          const mhb_unfinished *earlier) {
+  SHB_TRY(mhb_tracer_create(balance, m->response, 0, false, m->monitor, &m->tracer));
+  mhb_harmonic_levels *levels = m->tracer->levels;
+  m->tracer->levels->least    = least;
+  m->tracer->earlier          = earlier;
+  m->tracer->publish          = publish;
+  m->tracer->context          = m;
+  m->x = calloc((size_t)mhb_harmonic_levels_most_unknowns(levels), sizeof *m->x);
+  SHB_CHECK(m->x, SHB_ERR_IO, "out of memory");
+  return SHB_OK;
+}
+
+/* No attempt may end without a point while fewer harmonics give some: they are taken then, however
+ * large their estimates are. */
+static bool found_nothing(const main_branch *m) {
+  return n_points(m) == 0 && m->n_detached == 0 && !m->stopped;
+}
+
+/* Attempts, each with more harmonics at least, until none asks for a level that no solution near by
+ * has. A curve of few harmonics need not be one of many; no point of it is kept then. */
+static shb_status trace_with_enough(main_branch *m, mhb_balance *balance,
+                                    const mhb_unfinished *earlier, int *stable_at, mhb_end *end) {
+  int  least       = mhb_tracer_least_level(earlier);
+  bool accepts_all = false;
+  for (bool again = true; again;) {
+    *end       = MHB_END_NO_START;
+    *stable_at = 0;
+    SHB_TRY(prepare(m, balance, least, earlier));
+    m->tracer->accepts_all = accepts_all;
+    SHB_TRY(attempt(m, stable_at, end));
+    const bool nothing = least > 0 && found_nothing(m) && !m->tracer->accepts_all;
+    again              = m->needed > least || nothing;
+    if (!again) break;
+    least       = nothing ? 0 : m->needed;
+    accepts_all = nothing;
+    earlier     = NULL;
+    discard(m);
+  }
+  return SHB_OK;
+}
+
 shb_status mhb_trace_main_branch(mhb_balance *balance, mhb_response *response,
                                  mhb_monitor *monitor) {
-  main_branch m         = {.monitor = monitor, .response = response};
-  mhb_end     end       = MHB_END_NO_START;
-  int         stable_at = 0;
-  SHB_TRY(mhb_tracer_create(balance, response, 0, false, monitor, &m.tracer));
+  main_branch     m              = {.monitor = monitor, .response = response};
+  mhb_end         end            = MHB_END_NO_START;
+  int             stable_at      = 0;
   mhb_unfinished *earlier        = response->branch[0].unfinished;
   response->branch[0].unfinished = NULL;
-  m.tracer->earlier              = earlier;
-  m.tracer->publish              = publish;
-  m.tracer->context              = &m;
-  m.x = calloc((size_t)mhb_harmonic_levels_most_unknowns(m.tracer->levels), sizeof *m.x);
-  shb_status status = m.x ? SHB_OK : shb_fail(SHB_ERR_IO, __FILE__, __LINE__, "out of memory");
-  if (status == SHB_OK) status = trace_across_range(&m, &end);
-  if (status == SHB_OK && end == MHB_END_HIGH) {
-    int before;
-    status = trace_returns(&m, 1);
-    before = n_points(&m);
-    if (status == SHB_OK) status = trace_returns(&m, -1);
-    stable_at = n_points(&m) - before;
-    if (m.stopped) end = MHB_END_INTERRUPTED;
-  }
+  shb_status status              = trace_with_enough(&m, balance, earlier, &stable_at, &end);
   if (status == SHB_OK) status = note_unfinished(&m);
   if (status == SHB_OK) status = complete(&m, end, stable_at);
-  mhb_tracer_destroy(m.tracer);
+  discard(&m);
   mhb_unfinished_destroy(earlier);
-  mhb_chain_free(&m.chain);
-  for (int i = 0; i < MAX_DETACHED; i++) mhb_chain_free(&m.detached[i]);
-  free(m.x);
   return status;
 }

@@ -198,7 +198,7 @@ static int points_left(const branch_search *h) {
 /* Trace a curve both ways from a solution, until it closes, leaves the range or meets one of lower
  * order. From a crossing, trace it one way.
  *   shortened         in   why there are no more points, or NULL
- *   none              out  there is no such curve */
+ *   none              out  there is no such curve, or none with these harmonics */
 static shb_status trace_both_ways(mhb_tracer *tracer, const mhb_seed *seed, mhb_response *response,
                                   int index, const char *shortened, bool *none, bool *interrupted) {
   mhb_chain        chain = {0};
@@ -206,7 +206,7 @@ static shb_status trace_both_ways(mhb_tracer *tracer, const mhb_seed *seed, mhb_
   mhb_end          end, other = MHB_END_NO_START;
   mhb_segment_plan plan = {.seed = *seed, .m = mhb_tracer_balance(tracer)->m, .closes = true};
   SHB_TRY(mhb_tracer_trace(tracer, &plan, &up, &end));
-  *none = end == MHB_END_NO_START;
+  *none = end == MHB_END_NO_START || end == MHB_END_HARMONICS;
   if (*none) return SHB_OK;
   bool       both   = end != MHB_END_CLOSED && end != MHB_END_INTERRUPTED && !seed->along;
   shb_status status = mhb_chain_insert(&chain, 0, (mhb_link){.segment = up, .reversed = both});
@@ -216,6 +216,7 @@ static shb_status trace_both_ways(mhb_tracer *tracer, const mhb_seed *seed, mhb_
     plan.closes          = false;
     plan.recorded        = mhb_chain_points(&chain, tracer->store);
     status               = mhb_tracer_trace(tracer, &plan, &down, &other);
+    *none                = other == MHB_END_HARMONICS;
     if (status == SHB_OK && other != MHB_END_NO_START)
       status = mhb_chain_insert(&chain, 1, (mhb_link){.segment = down, .joins = true});
     bool first_ended = end == MHB_END_HIGH || end == MHB_END_LOW || end == MHB_END_JOINED;
@@ -225,10 +226,39 @@ static shb_status trace_both_ways(mhb_tracer *tracer, const mhb_seed *seed, mhb_
   mhb_completion completion = {.end = end};
   if (end == MHB_END_MAX_POINTS && response->branch[index].origin == MHB_FROM_SEARCH)
     completion.other_reason = shortened;
-  if (status == SHB_OK) status = mhb_branch_complete(tracer, &chain, response, index, &completion);
+  if (status == SHB_OK && !*none)
+    status = mhb_branch_complete(tracer, &chain, response, index, &completion);
   *interrupted = completion.interrupted;
   mhb_chain_free(&chain);
   return status;
+}
+
+/* Publish the branches so far. */
+static shb_status publish(void *context) {
+  const branch_search *h = context;
+  return mhb_monitor_publish_if_due(h->monitor, h->response);
+}
+
+/* The same by attempts, each with more harmonics at least, until none asks for a level that no
+ * solution near by has. With the most of them there is no such curve. */
+static shb_status trace_with_enough(branch_search *h, const subharmonic_problem *s,
+                                    const mhb_seed *seed, int index, const char *shortened,
+                                    bool *none, bool *interrupted) {
+  int least = 0;
+  for (bool again = true; again;) {
+    mhb_tracer *tracer;
+    SHB_TRY(mhb_tracer_create(s->balance, h->response, index, true, h->monitor, &tracer));
+    tracer->publish       = publish;
+    tracer->context       = h;
+    tracer->levels->least = least;
+    const shb_status status =
+        trace_both_ways(tracer, seed, h->response, index, shortened, none, interrupted);
+    again = tracer->host.out_of_reach && tracer->levels->wanted > least;
+    least = tracer->levels->wanted;
+    mhb_tracer_destroy(tracer);
+    SHB_TRY(status);
+  }
+  return SHB_OK;
 }
 
 /* Of the middle half of a branch, the point where the parameter changes fastest. At a fold a
@@ -260,20 +290,13 @@ static shb_status is_another(branch_search *h, subharmonic_problem *s, int index
   return SHB_OK;
 }
 
-/* Publish the branches so far. */
-static shb_status publish(void *context) {
-  const branch_search *h = context;
-  return mhb_monitor_publish_if_due(h->monitor, h->response);
-}
-
 /* Trace the branch of a seed; it is kept unless it is another one. */
 static shb_status trace(branch_search *h, subharmonic_problem *s, mhb_origin origin,
                         const mhb_seed *seed) {
-  int         index;
-  bool        none = true, interrupted = false, another = false;
-  mhb_tracer *tracer;
-  const bool  searched = origin == MHB_FROM_SEARCH;
-  const int   most     = searched ? points_left(h) : h->settings->max_points;
+  int        index;
+  bool       none = true, interrupted = false, another = false;
+  const bool searched = origin == MHB_FROM_SEARCH;
+  const int  most     = searched ? points_left(h) : h->settings->max_points;
   if (h->response->n_branches > MAX_SECONDARY || most < LEAST_POINTS) {
     h->untraced += searched;
     branch_at(h, 0)->flips_untraced += !searched;
@@ -281,14 +304,8 @@ static shb_status trace(branch_search *h, subharmonic_problem *s, mhb_origin ori
   }
   s->settings.max_points = most;
   SHB_TRY(append(h, s, origin, &index));
-  shb_status status = mhb_tracer_create(s->balance, h->response, index, true, h->monitor, &tracer);
-  if (status == SHB_OK) {
-    tracer->publish = publish;
-    tracer->context = h;
-    status          = trace_both_ways(tracer, seed, h->response, index,
-                             most < h->settings->max_points ? USED_UP : NULL, &none, &interrupted);
-    mhb_tracer_destroy(tracer);
-  }
+  const char *shortened = most < h->settings->max_points ? USED_UP : NULL;
+  shb_status  status    = trace_with_enough(h, s, seed, index, shortened, &none, &interrupted);
   if (interrupted) h->go_on = false;
   if (searched) h->points += branch_at(h, index)->n_points;
   if (status == SHB_OK && !none && h->go_on) status = is_another(h, s, index, &another);

@@ -81,11 +81,24 @@ static shb_status estimate(mhb_segment_host *host, mhb_curve_point *point, bool 
   if (higher < 0) return SHB_OK;
   SHB_TRY(mhb_harmonic_levels_move(t->levels, higher, is_start, raised));
   use_level(t);
+  if (!*raised) mhb_harmonic_levels_miss(t->levels, point);
+  host->out_of_reach =
+      !*raised && !t->accepts_all && !(point->miss <= t->levels->settings->motion_tolerance);
   return *raised && is_start && t->returns_to_start ? note_start(t) : SHB_OK;
 }
 
 static void estimate_event(mhb_segment_host *host, mhb_curve_point *point) {
   mhb_harmonic_levels_errors(of(host)->levels, point);
+}
+
+static shb_status estimate_between(mhb_segment_host *host, mhb_curve_point *point, bool *raised) {
+  mhb_tracer *t     = of(host);
+  const int   level = mhb_harmonic_levels_of_event(t->levels, point);
+  *raised           = false;
+  if (level < 0) return SHB_OK;
+  SHB_TRY(mhb_harmonic_levels_move(t->levels, level, false, raised));
+  use_level(t);
+  return SHB_OK;
 }
 
 static shb_status accept(mhb_segment_host *host, bool *moved) {
@@ -342,6 +355,7 @@ static void pass_current(mhb_trace_state *s, mhb_arclength *curve) {
   mhb_trace_state_whole(s, &p->iterations);
   mhb_trace_state_numbers(s, &p->residual, 1);
   mhb_trace_state_numbers(s, &p->truncation, 1);
+  mhb_trace_state_numbers(s, &p->miss, 1);
   mhb_trace_state_numbers(s, &p->modal, 1);
   mhb_trace_state_whole(s, &p->truncation_kind);
   mhb_trace_state_numbers(s, &curve->former_step, 1);
@@ -351,6 +365,7 @@ static void pass_current(mhb_trace_state *s, mhb_arclength *curve) {
 
 static shb_status pass_levels(mhb_trace_state *s, mhb_harmonic_levels *h) {
   int at = h->at, highest = h->highest;
+  mhb_trace_state_code(s, &h->least, 0, h->n - 1);
   for (int i = 0; i < h->n && !s->failed; i++) {
     bool made = h->level[i] != NULL;
     mhb_trace_state_flag(s, &made);
@@ -375,6 +390,7 @@ static shb_status pass_state(mhb_trace_state *s, mhb_tracer *t) {
   SHB_TRY(pass_levels(s, t->levels));
   use_level(t);
   pass_current(s, t->host.curve);
+  mhb_trace_state_flag(s, &t->accepts_all);
   pass_place(s, &t->start);
   mhb_trace_state_flag(s, &t->returns_to_start);
   mhb_trace_state_numbers(s, &t->farthest, 1);
@@ -385,6 +401,16 @@ static shb_status pass_state(mhb_trace_state *s, mhb_tracer *t) {
   mhb_trace_state_code(s, &end, 0, MHB_N_ENDS - 1);
   t->host.reached = (mhb_end)end;
   return SHB_OK;
+}
+
+int mhb_tracer_least_level(const mhb_unfinished *earlier) {
+  if (!earlier || earlier->n == 0) return 0;
+  mhb_trace_state first = earlier->state[0];
+  int             least = 0;
+  first.at              = 0;
+  first.reads           = true;
+  mhb_trace_state_code(&first, &least, 0, MHB_MAX_LEVELS - 1);
+  return least;
 }
 
 /* The state of the last segment. */
@@ -432,12 +458,13 @@ shb_status mhb_tracer_create(mhb_balance *balance, const mhb_response *response,
                              bool joins, mhb_monitor *monitor, mhb_tracer **out) {
   mhb_tracer *t = calloc(1, sizeof *t);
   SHB_CHECK(t, SHB_ERR_IO, "out of memory");
-  t->host           = (mhb_segment_host){.estimate       = estimate,
-                                         .estimate_event = estimate_event,
-                                         .accept         = accept,
-                                         .started        = started,
-                                         .before_step    = before_step,
-                                         .record         = record};
+  t->host           = (mhb_segment_host){.estimate         = estimate,
+                                         .estimate_event   = estimate_event,
+                                         .estimate_between = estimate_between,
+                                         .accept           = accept,
+                                         .started          = started,
+                                         .before_step      = before_step,
+                                         .record           = record};
   t->monitor        = monitor;
   t->segment        = -1;
   t->joins          = joins;

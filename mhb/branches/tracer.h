@@ -34,6 +34,7 @@ struct mhb_tracer {
   int                  segment; /* under way; -1: none */
   mhb_monitor         *monitor;
   bool joins; /* curves beside the main one: they end where they meet one of higher symmetry */
+  bool accepts_all;    /* points that ask for harmonics out of reach do not end a segment */
   bool is_beside_wave; /* with joins: the curve under way is of other motions than the wave */
   mhb_segment_plan  plan;
   mhb_curve_place   start;            /* of the curve under way */
@@ -66,6 +67,9 @@ shb_status mhb_tracer_trace(mhb_tracer *tracer, const mhb_segment_plan *plan, in
 /* The segments so far with their states, for a later run; also from t->publish. SHB_ERR_IO: no
  * memory. */
 shb_status mhb_tracer_unfinished(mhb_tracer *tracer, mhb_unfinished **unfinished);
+
+/* The least level of an earlier run; 0 without one. */
+int mhb_tracer_least_level(const mhb_unfinished *earlier);
 
 /* The curve under way, at the last point of the last segment. */
 mhb_arclength *mhb_tracer_curve(const mhb_tracer *tracer);

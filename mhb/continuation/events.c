@@ -26,8 +26,9 @@ const char *mhb_end_text(mhb_end end) {
       [MHB_END_MEETS_PLUS]  = "the pair of multipliers meets at +1",
       [MHB_END_MEETS_MINUS] = "the pair of multipliers meets at -1",
       [MHB_END_FREQUENCY]   = "leaves the frequency range",
-      [MHB_END_MAX_POINTS]  = "mhb.max_points reached",
-      [MHB_END_NO_START]    = "no first solution",
+      [MHB_END_HARMONICS]  = "no solution near by with as many harmonics as mhb.tolerance asks for",
+      [MHB_END_MAX_POINTS] = "mhb.max_points reached",
+      [MHB_END_NO_START]   = "no first solution",
       [MHB_END_INTERRUPTED] = "interrupted"};
   return text[end];
 }

@@ -25,6 +25,7 @@ typedef enum {
   MHB_END_MEETS_PLUS,  /* a tracked pair of multipliers meets at +1 */
   MHB_END_MEETS_MINUS, /* the same at -1 */
   MHB_END_FREQUENCY,   /* a tracked point leaves the frequency range */
+  MHB_END_HARMONICS,   /* no solution near by with as many harmonics as a point asks for */
   MHB_END_MAX_POINTS,  /* mhb.max_points reached */
   MHB_END_NO_START,    /* no solution where it was to start */
   MHB_END_INTERRUPTED, /* stopped from outside */

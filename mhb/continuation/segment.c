@@ -55,6 +55,10 @@ static shb_status begin_segment(mhb_segment_host *host, const mhb_seed *seed, mh
   if (*end != MHB_END_NONE) return SHB_OK;
   if (seed->kind == MHB_SEED_CROSSING) SHB_TRY(record_crossing(host, seed, go_on));
   for (bool raised = true; raised;) SHB_TRY(host->estimate(host, &host->curve->current, &raised));
+  if (host->out_of_reach) {
+    *end = MHB_END_HARMONICS;
+    return SHB_OK;
+  }
   mhb_events_begin(host->curve, host->n_tests, host->test);
   return seed->skip_first ? SHB_OK : host->record(host, &host->curve->current, MHB_ORDINARY, go_on);
 }
@@ -78,13 +82,14 @@ static double step_length(const mhb_arclength *curve) {
 }
 
 /* A step and its events; shorter, where it hides a pair of folds. */
-static shb_status step_with_events(mhb_segment_host *host, mhb_end *end) {
+static shb_status located_step(mhb_segment_host *host, mhb_end *end) {
   double whole = 0, part = 0;
   for (int shorter = 0; shorter <= MAX_SHORTER + 1; shorter++) {
     mhb_arclength_outcome outcome;
     if (shorter > 0) host->curve->step = shorter <= MAX_SHORTER ? (part *= 0.25) : whole;
     SHB_TRY(sufficient_step(host, &outcome));
-    *end = MHB_END_STALLED;
+    *end = host->out_of_reach ? MHB_END_HARMONICS : MHB_END_STALLED;
+    if (host->out_of_reach) return SHB_OK;
     if (outcome == MHB_ARCLENGTH_STALLED) {
       if (shorter == 0 || shorter > MAX_SHORTER) return SHB_OK;
       continue;
@@ -98,11 +103,24 @@ static shb_status step_with_events(mhb_segment_host *host, mhb_end *end) {
   return SHB_OK;
 }
 
+/* The same with more harmonics where those of the step do not suffice at an event. */
+static shb_status step_with_events(mhb_segment_host *host, mhb_end *end) {
+  for (bool raised = true; raised;) {
+    SHB_TRY(located_step(host, end));
+    raised = false;
+    if (*end == MHB_END_STALLED || *end == MHB_END_HARMONICS) return SHB_OK;
+    for (int i = 0; i < host->events->n && host->estimate_between && !raised; i++)
+      SHB_TRY(host->estimate_between(host, host->events->event[i].point, &raised));
+    if (raised) mhb_events_begin(host->curve, host->n_tests, host->test);
+  }
+  return SHB_OK;
+}
+
 /* Record the events of the step, and then next. */
 static shb_status record_step(mhb_segment_host *host, bool *go_on) {
   const mhb_events *events = host->events;
   for (int i = 0; i < events->n; i++) {
-    host->estimate_event(host, events->event[i].point);
+    if (!host->estimate_between) host->estimate_event(host, events->event[i].point);
     SHB_TRY(host->record(host, events->event[i].point, events->event[i].test->special, go_on));
     host->n_points++;
   }
@@ -115,8 +133,9 @@ shb_status mhb_trace_segment(mhb_segment_host *host, const mhb_seed *seed, mhb_e
   bool go_on = true;
   *end       = MHB_END_NONE;
   if (seed->kind != MHB_SEED_UNDER_WAY) {
-    host->n_tiny   = 0;
-    host->n_points = seed->skip_first ? 0 : seed->kind == MHB_SEED_CROSSING ? 2 : 1;
+    host->n_tiny       = 0;
+    host->n_points     = seed->skip_first ? 0 : seed->kind == MHB_SEED_CROSSING ? 2 : 1;
+    host->out_of_reach = false;
     SHB_TRY(begin_segment(host, seed, end, &go_on));
   }
   while (*end == MHB_END_NONE && go_on) {
@@ -127,7 +146,7 @@ shb_status mhb_trace_segment(mhb_segment_host *host, const mhb_seed *seed, mhb_e
     if (host->before_step) SHB_TRY(host->before_step(host));
     if (host->limit_step) host->limit_step(host);
     SHB_TRY(step_with_events(host, end));
-    if (*end == MHB_END_STALLED) break;
+    if (*end == MHB_END_STALLED || *end == MHB_END_HARMONICS) break;
     SHB_TRY(record_step(host, &go_on));
     mhb_arclength_advance(host->curve);
     mhb_events_advance(host->n_tests, host->test);

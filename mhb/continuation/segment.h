@@ -30,20 +30,25 @@ typedef struct {
 /* What a segment asks of whoever traces it: the owner of the curve and of the recorded points. */
 typedef struct mhb_segment_host mhb_segment_host;
 struct mhb_segment_host {
-  mhb_arclength  *curve;      /* at the level of accuracy in use */
-  int             n_tests;    /* of the events looked for */
-  mhb_event_test *test;       /* [n_tests] */
-  mhb_events     *events;     /* of the level in use */
-  int             max_points; /* of the segment */
-  int             n_points;   /* of the segment so far, each step's last point and its events */
-  int             n_tiny;     /* tiny steps in a row */
-  mhb_end         reached;    /* out: why the segment ended; MHB_END_NONE: under way when stopped */
+  mhb_arclength  *curve;        /* at the level of accuracy in use */
+  int             n_tests;      /* of the events looked for */
+  mhb_event_test *test;         /* [n_tests] */
+  mhb_events     *events;       /* of the level in use */
+  int             max_points;   /* of the segment */
+  int             n_points;     /* of the segment so far, each step's last point and its events */
+  int             n_tiny;       /* tiny steps in a row */
+  bool            out_of_reach; /* of estimate: the point asks for a level that has no solution near
+                                 * by; the segment ends before it */
+  mhb_end         reached; /* out: why the segment ended; MHB_END_NONE: under way when stopped */
 
   /* Estimate the errors of a point just corrected. At first or next: *raised tells that the level
    * does not suffice there, and that the host has moved curve->current to a higher level. */
   shb_status (*estimate)(mhb_segment_host *host, mhb_curve_point *point, bool *raised);
   /* Estimate the errors of a point located on a step. */
   void (*estimate_event)(mhb_segment_host *host, mhb_curve_point *point);
+  /* The same of the events of a step, before one is recorded; *raised as of estimate: the step is
+   * repeated. NULL: estimate_event is called, and all levels suffice. */
+  shb_status (*estimate_between)(mhb_segment_host *host, mhb_curve_point *point, bool *raised);
   /* curve->current is accepted. *moved: the host has moved it to a lower level. */
   shb_status (*accept)(mhb_segment_host *host, bool *moved);
   /* The segment has found its first point, curve->current; the host may refuse it by an *end.
