@@ -32,7 +32,9 @@ static bool go_on(mhb_monitor *monitor, const mhb_response *response, int branch
   return !shb_interrupted();
 }
 
-static bool searching(mhb_monitor *monitor, double n0, double value, double share) {
+static bool searching(mhb_monitor *monitor, mhb_sought what, double n0, double value,
+                      double share) {
+  (void)what;
   (void)n0;
   (void)value;
   (void)share;

@@ -621,6 +621,7 @@ static void slope_by_product(mhb_balance *b, double *slope) {
 static void evaluate(mhb_balance *b, const double *x, double value, int derivative, double *r,
                      double *slope) {
   int by_law = slope && b->parameter != MHB_IN_FREQUENCY; /* the slope needs dp */
+  b->n_linearised += derivative;
   mhb_balance_set_value(b, value);
   mhb_receptance_set_frequency(b->receptance, b->eval->at.omega);
   evaluate_pairs(b, x, derivative || by_law);

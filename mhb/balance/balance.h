@@ -58,6 +58,7 @@ typedef struct {
   mhb_parameter            parameter;         /* continuation parameter: meaning of `value` below */
   int                      n_interfaces;
   int                      n_laws;             /* counts changes of law */
+  long                     n_linearised;       /* counts evaluations with derivative */
   double complex          *force_k, *motion_k; /* [3 pairs] one harmonic */
   double complex      *lag; /* [blades][m + 1] of a ring; else NULL: exp(-j k b phi/nu), by which
                                 * the tuned wave lags at blade b */

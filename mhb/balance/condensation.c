@@ -49,6 +49,9 @@ static int allocate(mhb_condensation *s) {
   s->rows               = calloc(borders * K * n3, sizeof(double complex));
   s->dense              = malloc(size * size * sizeof(double));
   s->unknown            = calloc(size, sizeof(double));
+  s->live               = calloc(n3, sizeof(int));
+  s->full               = calloc((size_t)s->balance->n, sizeof(double));
+  s->full_row           = malloc(borders * (size_t)s->balance->n * sizeof(double));
   s->pivot              = calloc(size, sizeof(int));
   s->rhs                = calloc(K * n3, sizeof(double complex));
   s->nonlinear_force    = calloc(K * n3, sizeof(double complex));
@@ -56,8 +59,8 @@ static int allocate(mhb_condensation *s) {
   s->open_reaction      = calloc(n3, sizeof(double complex));
   return s->kind && s->form && s->nonlinear && s->stuck && s->factored && s->is_factored && s->A &&
          s->A_pivot && s->schur && s->stuck_to_nonlinear && s->nonlinear_to_stuck && s->columns &&
-         s->rows && s->dense && s->unknown && s->pivot && s->rhs && s->nonlinear_force &&
-         s->stuck_force && s->open_reaction;
+         s->rows && s->dense && s->unknown && s->live && s->full && s->full_row && s->pivot &&
+         s->rhs && s->nonlinear_force && s->stuck_force && s->open_reaction;
 }
 
 shb_status mhb_condensation_create(const mhb_balance *balance, mhb_condensation **out) {
@@ -111,6 +114,9 @@ void mhb_condensation_destroy(mhb_condensation *s) {
   free(s->rows);
   free(s->dense);
   free(s->unknown);
+  free(s->live);
+  free(s->full);
+  free(s->full_row);
   free(s->pivot);
   free(s->rhs);
   free(s->nonlinear_force);
@@ -310,20 +316,51 @@ static int condense_stuck(mhb_condensation *s) {
   return ok;
 }
 
-/* to[row stride] <- x_N - R_NL S A^-1 x_L of harmonic k in real form; x_L <- A^-1 x_L. Serves
+/* to[3 nonlinear][nb] <- x_N - R_NL S A^-1 x_L of harmonic k in real form; x_L <- A^-1 x_L. Serves
  * right-hand sides and border columns. Returns 0 if singular. */
-static int eliminate_stuck(mhb_condensation *s, int k, double complex *x, double *to,
-                           size_t stride) {
+static int eliminate_stuck(mhb_condensation *s, int k, double complex *x, double *to) {
   const double complex *force = harmonic_of(s, s->stuck_force, k);
   if (!solve_stuck(s, k, x)) return 0;
   for (int i = 0; i < 3 * s->n_nonlinear; i++) {
     int            row = axis_of(s->nonlinear, i);
     size_t         at  = (size_t)i * (size_t)s->balance->nb + (size_t)place(k);
     double complex y   = x[row] - response(receptance_row(s, k, row), s->n_stuck, s->stuck, force);
-    to[at * stride]    = creal(y);
-    if (k) to[(at + 1) * stride] = cimag(y);
+    to[at]             = creal(y);
+    if (k) to[at + 1] = cimag(y);
   }
   return 1;
+}
+
+/* ---- axes at rest ---- */
+
+static bool rests(const mhb_condensation *s, int axis, const double *column) {
+  const int nb = s->balance->nb;
+  for (int k = 0; k <= s->balance->m; k++)
+    if (!is_zero(n_axes(s), receptance_row(s, k, axis))) return false;
+  for (int i = 0; column && i < nb; i++)
+    if (column[axis * nb + i] != 0) return false;
+  return true;
+}
+
+/* The axes of nonlinear pairs that forces move. An axis without receptance, as of a motion along a
+ * line, has the solution x = rhs. column: the caller's border, or NULL. */
+static void find_live_axes(mhb_condensation *s, const double *column) {
+  s->n_live = 0;
+  for (int i = 0; i < 3 * s->n_nonlinear; i++)
+    if (!rests(s, axis_of(s->nonlinear, i), column)) s->live[s->n_live++] = i;
+}
+
+/* to[live][nb] <- full[3 nonlinear][nb] */
+static void compress(const mhb_condensation *s, const double *full, double *to, size_t stride) {
+  const int nb = s->balance->nb;
+  for (int i = 0; i < s->n_live; i++, to += (size_t)nb * stride)
+    for (int j = 0; j < nb; j++) to[(size_t)j * stride] = full[s->live[i] * nb + j];
+}
+
+static void uncompress(const mhb_condensation *s, const double *from, double *full) {
+  const int nb = s->balance->nb;
+  for (int i = 0; i < s->n_live; i++)
+    memcpy(full + s->live[i] * nb, from + i * nb, sizeof(double) * (size_t)nb);
 }
 
 /* ---- the dense system ---- */
@@ -331,18 +368,25 @@ static int eliminate_stuck(mhb_condensation *s, int k, double complex *x, double
 /* Rows of the nonlinear pairs at harmonic k: I + C D. */
 static void set_nonlinear_rows(mhb_condensation *s, int k) {
   const mhb_balance    *b  = s->balance;
-  int                   nn = 3 * s->n_nonlinear, block = 3 * b->nb;
-  const double complex *C = schur_of(s, k);
-  double                unused[block]; /* the mean has no imaginary part */
-  for (int i = 0; i < nn; i++) {
-    int     row = i * b->nb + place(k);
-    double *re = dense_row(s, row), *im = re + s->size;
-    memset(re, 0, sizeof(double) * (size_t)s->size * (k ? 2 : 1));
+  const int             nn = 3 * s->n_nonlinear, block = 3 * b->nb;
+  const double complex *C  = schur_of(s, k);
+  double               *re = s->full, im[s->n_nonlinear * block]; /* the mean has none */
+  for (int i = 0; i < s->n_live; i++) {
+    const int row = i * b->nb + place(k);
+    memset(re, 0, sizeof im);
+    memset(im, 0, sizeof im);
     for (int j = 0; j < s->n_nonlinear; j++)
-      mhb_balance_row_times_dp(b, C + i * nn + 3 * j, s->nonlinear[j], k, re + j * block,
-                               k ? im + j * block : unused);
-    re[row] += 1;
-    if (k) im[row + 1] += 1;
+      mhb_balance_row_times_dp(b, C + s->live[i] * nn + 3 * j, s->nonlinear[j], k, re + j * block,
+                               im + j * block);
+    double *to = dense_row(s, row);
+    compress(s, re, to, 1);
+    memset(to + s->size - s->n_borders, 0, sizeof(double) * (size_t)s->n_borders);
+    to[row] += 1;
+    if (k == 0) continue;
+    to += s->size;
+    compress(s, im, to, 1);
+    memset(to + s->size - s->n_borders, 0, sizeof(double) * (size_t)s->n_borders);
+    to[row + 1] += 1;
   }
 }
 
@@ -398,7 +442,8 @@ static void set_border_row(mhb_condensation *s, int i, const double *corner) {
   int     nb = s->balance->nb, block = 3 * nb, nl = 3 * s->n_stuck;
   int     first = s->size - s->n_borders;
   double *to    = dense_row(s, first + i), unused[block];
-  memset(to, 0, sizeof(double) * (size_t)first);
+  double *full  = s->full_row + (size_t)i * (size_t)s->balance->n;
+  memset(full, 0, sizeof(double) * (size_t)(s->n_nonlinear * block));
   memcpy(to + first, corner, sizeof(double) * (size_t)s->n_borders);
   for (int k = 0; k <= s->balance->m; k++) {
     double complex       *row = border_of(s, s->rows, i, k), force[3], weight[3];
@@ -411,7 +456,7 @@ static void set_border_row(mhb_condensation *s, int i, const double *corner) {
       for (int c = 0; c < 3; c++) row[3 * a + c] -= force[c];
     }
     for (int j = 0; j < s->n_nonlinear; j++) {
-      double *at = to + j * block + place(k);
+      double *at = full + j * block + place(k);
       for (int c = 0; c < 3; c++) {
         int            axis = 3 * s->nonlinear[j] + c;
         double complex w    = s->open_reaction[axis];
@@ -421,11 +466,12 @@ static void set_border_row(mhb_condensation *s, int i, const double *corner) {
           w += conj(AiR[(3 * j + c) * nl + l]) * row[axis_of(s->stuck, l)];
         weight[c] = -conj(w);
       }
-      mhb_balance_row_times_dp(s->balance, weight, s->nonlinear[j], k, to + j * block, unused);
+      mhb_balance_row_times_dp(s->balance, weight, s->nonlinear[j], k, full + j * block, unused);
     }
     for (int j = 0; j < s->n_borders; j++)
       to[first + j] -= product_of_linear(s, row, border_of(s, s->columns, j, k));
   }
+  compress(s, full, to, 1);
 }
 
 /* All borders; the columns first, because the rows need A^-1 column_L. Returns 0 if singular. */
@@ -438,11 +484,11 @@ static int set_borders(mhb_condensation *s, const double *column, const double *
   }
   for (int i = 0; i < 2 * s->n_at_limit; i++)
     set_limit_border(s, s->bordered + i, s->at_limit[i / 2], 1 + i % 2);
-  for (int j = 0; j < s->n_borders; j++)
+  for (int j = 0; j < s->n_borders; j++) {
     for (int k = 0; k <= s->balance->m; k++)
-      if (!eliminate_stuck(s, k, border_of(s, s->columns, j, k), s->dense + first + j,
-                           (size_t)s->size))
-        return 0;
+      if (!eliminate_stuck(s, k, border_of(s, s->columns, j, k), s->full)) return 0;
+    compress(s, s->full, s->dense + first + j, (size_t)s->size);
+  }
   for (int i = 0; i < s->n_borders; i++) {
     memset(corner, 0, sizeof corner);
     corner[i] = i < s->bordered ? row[s->balance->n] : 1;
@@ -481,8 +527,10 @@ static int factor_low_rank(mhb_condensation *s, const double *column, const doub
 
 static int factor_condensed(mhb_condensation *s, const double *column, const double *row) {
   s->n_borders = s->bordered + 2 * s->n_at_limit;
-  s->size      = 3 * s->balance->nb * s->n_nonlinear + s->n_borders;
-  if (s->size - s->n_borders > s->capacity || !condense_stuck(s)) return 0;
+  if (!condense_stuck(s)) return 0;
+  find_live_axes(s, column);
+  s->size = s->balance->nb * s->n_live + s->n_borders;
+  if (s->size - s->n_borders > s->capacity) return 0;
   for (int k = 0; k <= s->balance->m && s->n_nonlinear > 0; k++) set_nonlinear_rows(s, k);
   return set_borders(s, column, row) && factor_dense(s);
 }
@@ -497,33 +545,59 @@ int mhb_condensation_factor(mhb_condensation *s, const double *column, const dou
 
 /* ---- solution ---- */
 
+/* q = D x_N */
+static void set_nonlinear_force(mhb_condensation *s, const double *x) {
+  const mhb_balance *b  = s->balance;
+  int                nb = b->nb, block = 3 * nb;
+  for (int i = 0; i < s->n_nonlinear; i++) {
+    const double *D = b->eval->dp + (size_t)s->nonlinear[i] * (size_t)block * (size_t)block;
+    double        p[block];
+    cblas_dgemv(CblasRowMajor, CblasNoTrans, block, block, 1, D, block, x + i * block, 1, 0, p, 1);
+    for (int c = 0; c < 3; c++)
+      for (int k = 0; k <= b->m; k++)
+        harmonic_of(s, s->nonlinear_force, k)[3 * s->nonlinear[i] + c] =
+            k ? CMPLX(p[c * nb + 2 * k - 1], p[c * nb + 2 * k]) : p[c * nb];
+  }
+}
+
+/* What the axes at rest add to the other rows goes to their right-hand side. */
+static void move_rest(mhb_condensation *s) {
+  const int nn = 3 * s->n_nonlinear, nb = s->balance->nb;
+  double    rest[nn * nb], *borders = s->unknown + s->size - s->n_borders, sum = 0;
+  memcpy(rest, s->full, sizeof rest);
+  for (int i = 0; i < s->n_live; i++)
+    memset(rest + s->live[i] * nb, 0, sizeof(double) * (size_t)nb);
+  for (int i = 0; i < nn * nb; i++) sum += fabs(rest[i]);
+  if (!(sum > 0)) return;
+  set_nonlinear_force(s, rest);
+  for (int k = 0; k <= s->balance->m; k++) {
+    const double complex *q = harmonic_of(s, s->nonlinear_force, k);
+    for (int i = 0; i < s->n_live; i++) {
+      const double complex *C  = schur_of(s, k) + s->live[i] * nn;
+      double               *to = s->full + s->live[i] * nb + place(k);
+      double complex        y  = 0;
+      for (int j = 0; j < nn; j++) y += C[j] * q[axis_of(s->nonlinear, j)];
+      to[0] -= creal(y);
+      if (k) to[1] -= cimag(y);
+    }
+  }
+  for (int i = 0; i < s->n_borders; i++)
+    borders[i] -= cblas_ddot(nn * nb, s->full_row + (size_t)i * (size_t)s->balance->n, 1, rest, 1);
+}
+
 /* Right-hand side of the dense system; rhs_L <- A^-1 rhs_L. Returns 0 if singular. */
 static int condense_rhs(mhb_condensation *s, double rhs_border) {
   double *borders = s->unknown + s->size - s->n_borders;
   for (int i = 0; i < s->n_borders; i++) borders[i] = i < s->bordered ? rhs_border : 0;
   for (int k = 0; k <= s->balance->m; k++) {
     double complex *rhs = harmonic_of(s, s->rhs, k);
-    if (!eliminate_stuck(s, k, rhs, s->unknown, 1)) return 0;
+    if (!eliminate_stuck(s, k, rhs, s->full)) return 0;
     for (int i = 0; i < s->n_borders; i++)
       borders[i] -= product_of_linear(s, border_of(s, s->rows, i, k), rhs);
   }
+  if (s->n_live < 3 * s->n_nonlinear) move_rest(s);
+  compress(s, s->full, s->unknown, 1);
   return 1;
-}
-
-/* q = D x_N */
-static void set_nonlinear_force(mhb_condensation *s) {
-  const mhb_balance *b  = s->balance;
-  int                nb = b->nb, block = 3 * nb;
-  for (int i = 0; i < s->n_nonlinear; i++) {
-    const double *D = b->eval->dp + (size_t)s->nonlinear[i] * (size_t)block * (size_t)block;
-    double        p[block];
-    cblas_dgemv(CblasRowMajor, CblasNoTrans, block, block, 1, D, block, s->unknown + i * block, 1,
-                0, p, 1);
-    for (int c = 0; c < 3; c++)
-      for (int k = 0; k <= b->m; k++)
-        harmonic_of(s, s->nonlinear_force, k)[3 * s->nonlinear[i] + c] =
-            k ? CMPLX(p[c * nb + 2 * k - 1], p[c * nb + 2 * k]) : p[c * nb];
-  }
 }
 
 /* Harmonic k of x, in place of the right-hand side. */
@@ -549,7 +623,7 @@ static void expand(mhb_condensation *s, int k) {
               response(R, s->n_stuck, s->stuck, harmonic_of(s, s->stuck_force, k));
   }
   for (int i = 0; i < nn; i++) { /* nonlinear: from the dense system */
-    const double *y             = s->unknown + i * s->balance->nb + place(k);
+    const double *y             = s->full + i * s->balance->nb + place(k);
     x[axis_of(s->nonlinear, i)] = k ? CMPLX(y[0], y[1]) : y[0];
   }
 }
@@ -570,7 +644,8 @@ int mhb_condensation_solve(mhb_condensation *s, double *rhs) {
   }
   to_harmonics(s, rhs, s->rhs);
   if (!condense_rhs(s, s->bordered ? rhs[n] : 0) || !solve_dense(s)) return 0;
-  set_nonlinear_force(s);
+  uncompress(s, s->unknown, s->full);
+  set_nonlinear_force(s, s->full);
   for (int k = 0; k <= s->balance->m; k++) expand(s, k);
   to_real(s, s->rhs, rhs);
   if (s->bordered) rhs[n] = s->unknown[s->size - s->n_borders];

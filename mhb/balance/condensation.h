@@ -77,10 +77,14 @@ typedef struct {
   double complex *rows;      /* [border][k][3 pairs] row, less S R_OL^H row_O of the stuck pairs */
 
   /* dense system */
-  int     size;    /* 3 nb n_nonlinear + n_borders */
-  double *dense;   /* [size][size] row-major; factored */
-  double *unknown; /* [size] right-hand side, then x_N in real form and the borders' unknowns */
-  int    *pivot;   /* [size] */
+  int     n_live, *live; /* axes of nonlinear pairs that have a receptance, of 3 n_nonlinear */
+  int     size;          /* nb n_live + n_borders */
+  double *dense;         /* [size][size] row-major; factored */
+  double
+      *unknown; /* [size] right-hand side, then live x_N in real form and the borders' unknowns */
+  double *full; /* [3 nonlinear][nb] the same of all axes */
+  double *full_row; /* [border][3 nonlinear][nb] rows of the borders */
+  int    *pivot;    /* [size] */
 
   /* one solution */
   double complex *rhs;             /* [k][3 pairs] right-hand side, then x */

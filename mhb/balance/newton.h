@@ -11,7 +11,8 @@ typedef enum {
   MHB_CONVERGED      = 1,
   MHB_NO_DESCENT     = -1, /* the line search found no decrease of |r| */
   MHB_MAX_ITERATIONS = -2,
-  MHB_SINGULAR       = -3 /* the Jacobian */
+  MHB_SINGULAR       = -3, /* the Jacobian */
+  MHB_GIVEN_UP       = -4  /* a search reached its bound, or was stopped */
 } mhb_reason;
 
 /* Workspace for systems of n unknowns, allocated once. */

@@ -22,6 +22,9 @@ static const double SMALL = 0.5;
 /* Residual that GMRES leaves of a step in a ring, relative. */
 static const double SOLVED = 1e-2;
 
+/* Unknowns of few pairs with 2m harmonics from which on their step is Broyden's. */
+enum { WORTH_BROYDEN = 250 };
+
 /* Error of the products with the receptance of many pairs. The estimate is a few per cent off
  * anyhow, and an error above 1e-5 is one. */
 static const double COARSE = 1e-8;
@@ -68,7 +71,8 @@ shb_status mhb_truncation_create(const mhb_balance *balance, mhb_truncation **ou
     status = mhb_condensation_create_within(t->doubled, MHB_MOST_DOUBLED, &t->system);
   if (status == SHB_OK && balance->receptance->ring)
     status = mhb_doubled_ring_create(balance, t->doubled, &t->ring);
-  if (status == SHB_OK && t->system->low_rank)
+  if (status == SHB_OK && !balance->receptance->ring &&
+      (t->system->low_rank || t->doubled->n >= WORTH_BROYDEN))
     status = mhb_truncation_step_create(balance, t->doubled, t->system->low_rank, &t->broyden);
   if (status == SHB_OK && t->system->low_rank)
     status = mhb_contact_evaluator_create(m, top, balance->settings->tolerance, &t->contact);
@@ -192,6 +196,13 @@ static mhb_truncation_kind set_newton_step(mhb_truncation *t) {
   return MHB_TRUNCATION_NEWTON;
 }
 
+/* The same of few pairs. */
+static void evaluate_few(mhb_truncation *t) {
+  mhb_balance *d = t->doubled;
+  mhb_balance_evaluate(d, t->x, t->balance->eval->at.omega, t->r, NULL, NULL);
+  mhb_higher_harmonics_evaluate(t->higher, d, t->x);
+}
+
 /* Residual t->r of many pairs at t->x, and the forces of all harmonics that are estimated. Those up
  * to m are the balance's. The motion has m harmonics only, which makes the others cheap. */
 static void evaluate_above(mhb_truncation *t) {
@@ -219,7 +230,7 @@ static void evaluate_above(mhb_truncation *t) {
 static bool set_broyden_step(mhb_truncation *t) {
   mhb_truncation_step *by    = t->broyden;
   const size_t         bytes = sizeof(double) * (size_t)t->doubled->n;
-  evaluate_above(t);
+  (t->contact ? evaluate_above : evaluate_few)(t);
   memcpy(t->trial, t->doubled->eval->p, bytes); /* the forces at t->x */
   if (!mhb_truncation_step_find(by, t->x, t->r, NULL, t->step)) return false;
   if (mhb_norm(t->step, t->doubled->n) > FAR * mhb_balance_vibration(t->doubled, t->x))

@@ -11,8 +11,8 @@
 #include "mhb/numerics/vector.h"
 #include "mhb/structure/ring_receptance.h"
 
-/* What may be left of the step. */
-static const double LEFT = 0.1;
+/* What may be left of the step, with many pairs and with few. */
+static const double LEFT = 0.1, LEFT_OF_FEW = 0.01;
 
 /* A correction must be smaller than this part of the one before. The first one has the harmonics
  * above m only, the second one what the others make of them. */
@@ -24,8 +24,15 @@ static const double ROUGH = 1e-2;
 static shb_status create_pairs(mhb_truncation_step *t) {
   const mhb_balance *b       = t->balance;
   const double      *between = b->settings->frequency;
-  t->form                    = shb_arena_take(&t->arena, (size_t)b->n_pairs, sizeof *t->form);
-  t->D                       = shb_arena_take(&t->arena, 9 * (size_t)b->n_pairs, sizeof *t->D);
+  const size_t       n = 3 * (size_t)b->n_pairs, above = (size_t)(t->doubled->m - b->m);
+  t->D = shb_arena_take(&t->arena, 3 * n, sizeof *t->D);
+  if (!t->above) {
+    t->A     = shb_arena_take(&t->arena, above * n * n, sizeof *t->A);
+    t->pivot = shb_arena_take(&t->arena, above * n, sizeof *t->pivot);
+    t->u     = shb_arena_take(&t->arena, n, sizeof *t->u);
+    return mhb_condensation_create(b, &t->system);
+  }
+  t->form = shb_arena_take(&t->arena, (size_t)b->n_pairs, sizeof *t->form);
   return mhb_woodbury_create(b->product, b->law, SHB_TWO_PI * between[0], SHB_TWO_PI * between[1],
                              &t->jacobian);
 }
@@ -41,7 +48,8 @@ shb_status mhb_truncation_step_create(const mhb_balance *b, mhb_balance *doubled
   t->low            = shb_arena_take(&t->arena, (size_t)b->n, sizeof(double));
   t->at             = shb_arena_take(&t->arena, all, sizeof(double));
   t->r              = shb_arena_take(&t->arena, all, sizeof(double));
-  t->steps          = shb_arena_take(&t->arena, MHB_MOST_TRUNCATION_STEPS * all, sizeof(double));
+  t->most           = above ? MHB_MOST_TRUNCATION_STEPS : MHB_MOST_STEPS_OF_FEW;
+  t->steps          = shb_arena_take(&t->arena, (size_t)t->most * all, sizeof(double));
   shb_status status = create_pairs(t);
   if (status == SHB_OK && t->arena.failed)
     status = shb_fail(SHB_ERR_IO, __FILE__, __LINE__, "out of memory for %d harmonics", doubled->m);
@@ -56,6 +64,7 @@ shb_status mhb_truncation_step_create(const mhb_balance *b, mhb_balance *doubled
 void mhb_truncation_step_destroy(mhb_truncation_step *t) {
   if (!t) return;
   mhb_woodbury_destroy(t->jacobian);
+  mhb_condensation_destroy(t->system);
   shb_arena_free(&t->arena);
   free(t);
 }
@@ -64,14 +73,46 @@ static const double complex (*stiffness_of(const mhb_truncation_step *t))[9] {
   return (const double complex(*)[9])t->D;
 }
 
+/* Place of harmonic k > m of few pairs among the factors above. */
+static size_t place_of(const mhb_truncation_step *t, int k) {
+  return (size_t)(k - t->balance->m - 1);
+}
+
+/* Factors of few pairs above m. 0: singular. */
+static int factor_above(mhb_truncation_step *t) {
+  const mhb_receptance *r = t->doubled->receptance;
+  const size_t          n = (size_t)r->n;
+  for (int k = t->balance->m + 1; k <= t->doubled->m; k++) {
+    double complex *A = t->A + place_of(t, k) * n * n;
+    mhb_receptance_update(t->doubled->receptance, k);
+    mhb_harmonic_matrix(r->n, r->R + (size_t)k * n * n, stiffness_of(t), A);
+    if (!mhb_factor_complex(r->n, A, t->pivot + place_of(t, k) * n)) return 0;
+  }
+  return 1;
+}
+
+static void solve_above(mhb_truncation_step *t, double *x) {
+  const int n = t->doubled->receptance->n, nb = t->doubled->nb;
+  for (int k = t->balance->m + 1; k <= t->doubled->m; k++, x += 2) {
+    const size_t at = place_of(t, k), first = (size_t)(2 * t->balance->m + 1);
+    for (int i = 0; i < n; i++) t->u[i] = CMPLX(x[i * nb + (int)first], x[i * nb + (int)first + 1]);
+    mhb_solve_complex(n, t->A + at * (size_t)(n * n), t->pivot + at * (size_t)n, 1, t->u);
+    for (int i = 0; i < n; i++) {
+      x[i * nb + (int)first]     = creal(t->u[i]);
+      x[i * nb + (int)first + 1] = cimag(t->u[i]);
+    }
+  }
+}
+
 /* Factors with m harmonics, and of those above. 0: singular, or there is no small basis. */
 static int factor(mhb_truncation_step *t) {
   const mhb_balance *b = t->balance;
   for (int a = 0; a < b->n_pairs; a++) {
-    t->form[a] = mhb_pair_block(b, a);
+    if (t->form) t->form[a] = mhb_pair_block(b, a);
     mhb_last_stiffness(b, a, (double complex(*)[3])(t->D + 9 * a));
   }
   mhb_receptance_set_frequency(t->doubled->receptance, b->eval->at.omega);
+  if (t->system) return mhb_condensation_factor(t->system, NULL, NULL) && factor_above(t);
   return mhb_woodbury_factor(t->jacobian, t->form, b->eval->dp, b->law, NULL, NULL) &&
          mhb_lone_harmonics_factor(t->above, b->law, b->m + 1, stiffness_of(t));
 }
@@ -81,14 +122,19 @@ int mhb_truncation_step_solve(mhb_truncation_step *t, double *change) {
   const int          rows = 3 * b->n_pairs, nb = b->nb, wide = t->doubled->nb;
   const size_t       length = sizeof(double) * (size_t)nb;
   for (int i = 0; i < rows; i++) memcpy(t->low + i * nb, change + i * wide, length);
-  if (!mhb_woodbury_solve(t->jacobian, ROUGH, t->low)) return 0;
+  if (!(t->system ? mhb_condensation_solve(t->system, t->low)
+                  : mhb_woodbury_solve(t->jacobian, ROUGH, t->low)))
+    return 0;
   for (int i = 0; i < rows; i++) memcpy(change + i * wide, t->low + i * nb, length);
   return 1;
 }
 
 /* change[doubled->n] <- the first matrix' solution. 0: it failed. */
 static int solve(mhb_truncation_step *t, double *change) {
-  mhb_lone_harmonics_solve(t->above, t->balance->m + 1, stiffness_of(t), change);
+  if (t->system)
+    solve_above(t, change);
+  else
+    mhb_lone_harmonics_solve(t->above, t->balance->m + 1, stiffness_of(t), change);
   return mhb_truncation_step_solve(t, change);
 }
 
@@ -127,7 +173,8 @@ int mhb_truncation_step_find(mhb_truncation_step *t, const double *x, const doub
   double       before = INFINITY;
   if (!factor(t)) return 0;
   memset(step, 0, sizeof(double) * (size_t)n);
-  for (int done = 0; done < MHB_MOST_TRUNCATION_STEPS; done++) {
+  const double left = t->system ? LEFT_OF_FEW : LEFT;
+  for (int done = 0; done < t->most; done++) {
     double *change = t->steps + done * n;
     if (done > 0) evaluate(t, x, step);
     const double *residual = done > 0 ? t->r : r;
@@ -137,7 +184,7 @@ int mhb_truncation_step_find(mhb_truncation_step *t, const double *x, const doub
     for (int i = 0; i < n; i++) step[i] += change[i];
     const double size = mhb_norm(change, n), part = size / before;
     if (done > 1 && !(part < GAIN)) return 0;
-    if (done > 1 && size * part / (1 - part) <= LEFT * mhb_norm(step, n)) return 1;
+    if (done > 1 && size * part / (1 - part) <= left * mhb_norm(step, n)) return 1;
     before = size;
   }
   return 0;

@@ -169,17 +169,20 @@ static bool point(mhb_monitor *monitor, const mhb_response *own, int branch, int
   return on;
 }
 
-static bool searching(mhb_monitor *monitor, double n0, double value, double share) {
+static bool searching(mhb_monitor *monitor, mhb_sought what, double n0, double value,
+                      double share) {
   sweep              *s     = (sweep *)monitor;
   const mhb_settings *c     = s->settings;
   double              total = 0;
   mhb_publisher_lock(&s->publisher, true);
   for (int i = 0; i < c->n_preloads; i++) {
-    if (c->n0[i] == n0) s->preload[i].done = s->main_share + (1 - s->main_share) * share;
+    if (c->n0[i] == n0 && what == MHB_SEEKS_OTHERS)
+      s->preload[i].done = s->main_share + (1 - s->main_share) * share;
     total += s->preload[i].done;
   }
   shb_progress_show(s->progress, 100 * total / c->n_preloads,
-                    "n0 %-8.4g N  looking for other curves at %.6g %s", n0, value,
+                    "n0 %-8.4g N  looking for %s at %.6g %s", n0,
+                    what == MHB_SEEKS_FIRST ? "a first solution" : "other curves", value,
                     mhb_parameter_unit(c->parameter));
   bool on = go_on(s);
   mhb_publisher_lock(&s->publisher, false);

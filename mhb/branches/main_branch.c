@@ -25,12 +25,18 @@ typedef struct {
   int           needed;    /* level of the next attempt; 0: this one will do */
   int           n_gaps;    /* places jumped over, and the first of them */
   char          first_gap[96];
-  const char   *other_reason; /* NULL; or a reason in place of that of the end */
+  const char   *other_reason;  /* NULL; or a reason in place of that of the end */
+  char          no_start[160]; /* the reason of a first solution that was not found */
+  double        sought;        /* value at which one is sought */
+  double        n0;            /* N, then */
   int           n_detached;
   mhb_chain     detached[MAX_DETACHED];
   mhb_end       detached_end[MAX_DETACHED];
   double       *x; /* [n] of the highest level: a first solution, a recorded point */
 } main_branch;
+
+/* Work of each search beyond a curve that has ended, in that of the first. */
+static const double SHARE_BEYOND = 0.25;
 
 static const char NOTHING_BEYOND[] = "no solution found beyond a curve that closes or turns back";
 
@@ -62,14 +68,41 @@ static shb_status append(main_branch *m, mhb_link link) {
   return mhb_chain_insert(&m->chain, m->chain.n, link);
 }
 
-/* x <- a solution at a value, by the balance in use. */
-static bool first_solution(main_branch *m, double value) {
+/* A search for a first solution is shown. */
+static bool go_on(void *context) {
+  main_branch *m     = context;
+  const double value = mhb_parameter_shown(m->tracer->levels->parameter, m->sought);
+  m->stopped = m->stopped || !m->monitor->searching(m->monitor, MHB_SEEKS_FIRST, m->n0, value, 0);
+  return !m->stopped;
+}
+
+/* Why there is none. */
+static void note_no_start(main_branch *m, int fewer) {
+  const mhb_balance *b  = mhb_tracer_balance(m->tracer);
+  int                at = snprintf(m->no_start, sizeof m->no_start,
+                                   "no first solution with %d harmonic%s at %.6g %s", b->m, b->m == 1 ? "" : "s",
+                                   mhb_parameter_shown(b->parameter, m->sought), mhb_parameter_unit(b->parameter));
+  if (fewer > 0)
+    snprintf(m->no_start + at, sizeof m->no_start - (size_t)at,
+             "; %d have one: give mhb.harmonics no more, or auto", fewer);
+  m->other_reason = m->no_start;
+}
+
+/* x <- a solution at a value, by the balance in use, with a share of the work of a search. */
+static bool first_solution(main_branch *m, double value, double share) {
   mhb_arclength *curve = curve_of(m);
   mhb_balance   *b     = mhb_tracer_balance(m->tracer);
+  mhb_watch      watch = {.go_on = go_on, .context = m, .share = share};
   int            iterations;
   mhb_balance_use(b, NULL);
-  return mhb_first_solution(mhb_balance_curve_of(curve)->newton, b, value, curve->tolerance, m->x,
-                            &iterations) == MHB_CONVERGED;
+  m->sought = value;
+  m->n0     = b->eval->at.n0;
+  if (mhb_first_solution_watched(mhb_balance_curve_of(curve)->newton, b, value, curve->tolerance,
+                                 &watch, m->x, &iterations) == MHB_CONVERGED)
+    return true;
+  if (shb_interrupted()) m->stopped = true;
+  if (n_points(m) == 0 && !m->other_reason && !m->stopped) note_no_start(m, watch.harmonics);
+  return false;
 }
 
 /* The links from `from` on do not lead to the high end of the range: they become a branch of their
@@ -205,11 +238,12 @@ static shb_status go_beyond(main_branch *m, mhb_end *end, bool *over) {
   for (int i = 0; i < 8 && !found && !m->stopped && status == SHB_OK && !shb_interrupted(); i++) {
     double value = m->tracer->farthest + further[i] * span;
     if (value >= high) break;
-    if (first_solution(m, value))
+    if (first_solution(m, value, SHARE_BEYOND))
       status = trace_both_ways(m, value, lost.x ? &lost : NULL, &found, end);
   }
   mhb_curve_place_free(&lost);
   *over = !found;
+  if (found && m->other_reason == m->no_start) m->other_reason = NULL;
   if (!found) *end = why;
   if (!found && passed) m->other_reason = NOTHING_BEYOND;
   return status;
@@ -219,7 +253,7 @@ static shb_status go_beyond(main_branch *m, mhb_end *end, bool *over) {
 static shb_status trace_across_range(main_branch *m, mhb_end *end) {
   bool over = false;
   *end      = MHB_END_NO_START;
-  if (first_solution(m, curve_of(m)->low))
+  if (first_solution(m, curve_of(m)->low, 1))
     SHB_TRY(trace_upwards(m, curve_of(m)->low, mhb_tracer_balance(m->tracer)->m, false, end));
   while (!over && !m->stopped) {
     over = *end == MHB_END_HIGH || *end == MHB_END_MAX_POINTS ||

@@ -390,7 +390,8 @@ static double expected_size(const branch_search *h, const subharmonic_problem *s
 
 static bool go_on_searching(branch_search *h, double value, double share) {
   double shown = mhb_parameter_shown(h->settings->parameter, value);
-  h->go_on = h->go_on && h->monitor->searching(h->monitor, branch_at(h, 0)->n0[0], shown, share);
+  h->go_on = h->go_on && h->monitor->searching(h->monitor, MHB_SEEKS_OTHERS, branch_at(h, 0)->n0[0],
+                                               shown, share);
   return h->go_on;
 }
 

@@ -240,33 +240,35 @@ MHB_INLINE void add_block(int rows, int vectors, int stride, const mhb_lanes *b,
     for (int v = 0; v < vectors; v++) lanes_store(J + r * stride + v * MHB_LANES, sum[r][v]);
 }
 
-MHB_INLINE void add_rows(int rows, int vectors, int stride, const mhb_lanes *b, const double *y,
-                         double *J) {
+MHB_INLINE void add_rows(int rows, int vectors, int columns, int stride, const mhb_lanes *b,
+                         const double *y, double *J) {
   int j = 0;
-  for (; j + vectors * MHB_LANES <= stride; j += vectors * MHB_LANES)
+  for (; j + vectors * MHB_LANES <= columns; j += vectors * MHB_LANES)
     add_block(rows, vectors, stride, b, y + j, J + j);
-  for (; j < stride; j += MHB_LANES) add_block(rows, 1, stride, b, y + j, J + j);
+  for (; j < columns; j += MHB_LANES) add_block(rows, 1, stride, b, y + j, J + j);
 }
 
 /* The hot loop of the derivative. Six rows hide the latency of a multiplication; two and one make
  * up the rest. Two vectors at once load half as often, where the registers suffice. */
-MHB_INLINE void add_outer(int rows, int vectors, int stride, const mhb_lanes *b, const double *y,
-                          double *J) {
+MHB_INLINE void add_outer(int vectors, int rows, int columns, int stride, const mhb_lanes *b,
+                          const double *y, double *J) {
   int row = 0;
-  for (; row + 6 <= rows; row += 6) add_rows(6, vectors, stride, b + row, y, J + row * stride);
-  for (; row + 2 <= rows; row += 2) add_rows(2, vectors, stride, b + row, y, J + row * stride);
-  for (; row < rows; row++) add_rows(1, vectors, stride, b + row, y, J + row * stride);
+  for (; row + 6 <= rows; row += 6)
+    add_rows(6, vectors, columns, stride, b + row, y, J + row * stride);
+  for (; row + 2 <= rows; row += 2)
+    add_rows(2, vectors, columns, stride, b + row, y, J + row * stride);
+  for (; row < rows; row++) add_rows(1, vectors, columns, stride, b + row, y, J + row * stride);
 }
 
-MHB_HOT static void add_product(int rows, int stride, const mhb_lanes *b, const double *y,
-                                double *J) {
-  add_outer(rows, 1, stride, b, y, J);
+MHB_HOT static void add_product(int rows, int columns, int stride, const mhb_lanes *b,
+                                const double *y, double *J) {
+  add_outer(1, rows, columns, stride, b, y, J);
 }
 
 #ifdef MHB_HAS_WIDE
-MHB_WIDE static void add_product_wide(int rows, int stride, const mhb_lanes *b, const double *y,
-                                      double *J) {
-  add_outer(rows, 2, stride, b, y, J);
+MHB_WIDE static void add_product_wide(int rows, int columns, int stride, const mhb_lanes *b,
+                                      const double *y, double *J) {
+  add_outer(2, rows, columns, stride, b, y, J);
 }
 #else
 #define add_product_wide add_product
@@ -279,14 +281,55 @@ MHB_HOT static void propagate_columns(const mhb_contact_evaluator *c) {
   columns_through(c);
 }
 
-static void add_derivative(const mhb_contact_evaluator *c) {
-  const mhb_lanes *rows = c->node_basis + mhb_real_size(c->H + c->m);
-  propagate_columns(c);
-  if (mhb_has_wide()) {
-    add_product_wide(2 * c->nf, c->stride, rows, c->T_nodes, c->J);
-  } else {
-    add_product(2 * c->nf, c->stride, rows, c->T_nodes, c->J);
+/* most[kind] <- largest |T| at the nodes in the columns of v, u, w. */
+MHB_HOT static void largest_of_kinds(const mhb_contact_evaluator *c, double most[3]) {
+  for (int kind = 0; kind < 3; kind++) {
+    mhb_lanes top = lanes_all(0);
+    const int end = (kind + 1) * c->nb;
+    for (int l = 0; l < MHB_NODES; l++) {
+      const double *T = c->T_nodes + l * c->stride;
+      int           j = kind * c->nb;
+      for (; j + MHB_LANES <= end; j += MHB_LANES)
+        top = lanes_max(top, lanes_abs(lanes_load(T + j)));
+      for (; j < end; j++) top[0] = mhb_most(top[0], fabs(T[j]));
+    }
+    most[kind] = lanes_top(top);
   }
+}
+
+/* Rows of the derivative from which on a look at its blocks costs less than a tenth of them. */
+enum { WORTH_LOOKING = 16 };
+
+/* Parts of the derivative below this, relative to the stiffness, are rounding. */
+static const double ROUNDING = 1e-15;
+
+/* J of the friction f_k += the panel's part, over the kinds of columns that turn it. Where the
+ * motion keeps to a line nothing but w turns u, and nothing turns by u: five of six blocks are
+ * zero. */
+static void add_friction(const mhb_contact_evaluator *c, int k, const double most[3]) {
+  const mhb_panel *p      = &c->panel;
+  const mhb_lanes *rows   = c->node_basis + mhb_real_size(c->H + c->m) + k * c->nf;
+  const double     across = c->slip.mu * lanes_top(lanes_abs(p->y[0] * p->e[1 - k]));
+  const double     least  = ROUNDING * (fabs(c->K[0][0]) + fabs(c->K[1][1]));
+  for (int kind = 0, end; kind < 3; kind = end + 1) {
+    for (end = kind; end < 3 && across * most[end] > least;) end++;
+    if (end == kind) continue;
+    const int columns = mhb_whole_lanes((end - kind) * c->nb);
+    const int from    = kind * c->nb < c->stride - columns ? kind * c->nb : c->stride - columns;
+    double   *J       = c->J + (size_t)k * (size_t)c->nf * (size_t)c->stride + from;
+    if (mhb_has_wide()) {
+      add_product_wide(c->nf, columns, c->stride, rows, c->T_nodes + from, J);
+    } else {
+      add_product(c->nf, columns, c->stride, rows, c->T_nodes + from, J);
+    }
+  }
+}
+
+static void add_derivative(const mhb_contact_evaluator *c) {
+  double most[3] = {INFINITY, INFINITY, INFINITY};
+  propagate_columns(c);
+  if (c->nf >= WORTH_LOOKING) largest_of_kinds(c, most);
+  for (int k = 0; k < 2; k++) add_friction(c, k, most);
 }
 
 void mhb_sensitivity_panel(mhb_contact_evaluator *c) {

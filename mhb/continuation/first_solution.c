@@ -1,6 +1,7 @@
 #include "mhb/continuation/first_solution.h"
 
 #include <math.h>
+#include <stdlib.h>
 #include <string.h>
 
 #include "mesh/base/progress.h"
@@ -10,23 +11,64 @@
  * 311 with 300 times its contact stiffness. */
 enum { MAX_STAGES = 200, STAGES_A_PAIR = 10 };
 
+/* Linearisations after which a search is given up. The hardest of the tests, 20 pairs with stiff
+ * contact, takes 3018. */
+enum { MOST_LINEARISED = 2000, LINEARISED_A_PAIR = 400 };
+
+/* A softer contact has this part of the stiffness, then the same part of that, so many times. */
+static const double SOFTER = 0.25;
+enum { MOST_SOFTENED = 4 };
+
+/* One search. The balance's counts of linearisations bound it. */
+typedef struct {
+  mhb_newton  *newton;
+  mhb_balance *b;
+  double       tolerance;
+  double      *x;          /* [n] m */
+  int         *iterations; /* of the last Newton method */
+  long         last;       /* count at which it ends */
+  mhb_watch   *watch;
+} search;
+
+/* One way to a solution. */
+typedef mhb_reason way(const search *s, double omega);
+
+static long last_of(const mhb_balance *b, const mhb_watch *watch) {
+  const double most = MOST_LINEARISED + LINEARISED_A_PAIR * (double)b->n_pairs;
+  return b->n_linearised + lround(most * watch->share);
+}
+
+static bool goes_on(const search *s) {
+  return s->b->n_linearised < s->last && !shb_interrupted() &&
+         (!s->watch->go_on || s->watch->go_on(s->watch->context));
+}
+
+static mhb_reason newton(const search *s, double omega) {
+  if (!goes_on(s)) return MHB_GIVEN_UP;
+  return mhb_newton_solve(s->newton, s->b, omega, s->tolerance, s->x, s->iterations);
+}
+
+/* Whether no more is to be tried. */
+static bool is_over(const search *s, mhb_reason reason) {
+  return reason == MHB_CONVERGED || !goes_on(s);
+}
+
 /* Natural continuation of the preload (Seydel 2010), from one whose linear limit x solves. */
-static mhb_reason homotopy(mhb_newton *newton, mhb_balance *b, double omega, double tolerance,
-                           double from, double *x) {
-  double     to = b->eval->at.n0, part = 0, step = 0.25;
-  double     last[b->n];
-  mhb_reason reason = MHB_MAX_ITERATIONS;
-  for (int i = 0; i < MAX_STAGES && part < 1 && step > 1e-5 && !shb_interrupted(); i++) {
+static mhb_reason homotopy(const search *s, double omega, double from) {
+  mhb_balance *b  = s->b;
+  double       to = b->eval->at.n0, part = 0, step = 0.25;
+  double       last[b->n];
+  mhb_reason   reason = MHB_MAX_ITERATIONS;
+  for (int i = 0; i < MAX_STAGES && part < 1 && step > 1e-5 && goes_on(s); i++) {
     double next = fmin(1, part + step);
-    int    iterations;
-    memcpy(last, x, sizeof last);
+    memcpy(last, s->x, sizeof last);
     mhb_balance_set_preload(b, from + next * (to - from));
-    reason = mhb_newton_solve(newton, b, omega, tolerance, x, &iterations);
+    reason = newton(s, omega);
     if (reason == MHB_CONVERGED) {
       part = next;
-      step *= iterations < 6 ? 2 : 1;
+      step *= *s->iterations < 6 ? 2 : 1;
     } else {
-      memcpy(x, last, sizeof last);
+      memcpy(s->x, last, sizeof last);
       step *= 0.4;
     }
   }
@@ -49,100 +91,217 @@ static double far_preload(const mhb_balance *b, const double *x, int stuck) {
 }
 
 /* From the linear limits and from zero. */
-static mhb_reason directly(mhb_newton *newton, mhb_balance *b, double omega, double tolerance,
-                           double *x, int *iterations) {
-  mhb_reason reason   = MHB_MAX_ITERATIONS;
-  double     n0       = b->eval->at.n0;
-  int        order[3] = {n0 > 0, n0 <= 0, MHB_BY_PRELOAD}; /* the likelier limit first */
+static mhb_reason directly(const search *s, double omega) {
+  mhb_balance *b        = s->b;
+  mhb_reason   reason   = MHB_MAX_ITERATIONS;
+  double       n0       = b->eval->at.n0;
+  int          order[3] = {n0 > 0, n0 <= 0, MHB_BY_PRELOAD}; /* the likelier limit first */
   for (int i = b->n_interfaces > 1 ? -1 : 0; i < 2; i++) {
-    if (mhb_balance_linear_limit(b, omega, order[i < 0 ? 2 : i], x) != SHB_OK) continue;
-    reason = mhb_newton_solve(newton, b, omega, tolerance, x, iterations);
+    if (mhb_balance_linear_limit(b, omega, order[i < 0 ? 2 : i], s->x) != SHB_OK) continue;
+    reason = newton(s, omega);
     if (reason == MHB_CONVERGED) return reason;
   }
-  memset(x, 0, sizeof(double) * (size_t)b->n);
-  return mhb_newton_solve(newton, b, omega, tolerance, x, iterations);
+  memset(s->x, 0, sizeof(double) * (size_t)b->n);
+  return newton(s, omega);
 }
 
 /* The same, then by homotopy in the preload at this omega. */
-static mhb_reason solve_here(mhb_newton *newton, mhb_balance *b, double omega, double tolerance,
-                             double *x, int *iterations) {
-  mhb_reason reason = directly(newton, b, omega, tolerance, x, iterations);
-  for (int i = 0; i < 2 && reason != MHB_CONVERGED; i++) {
+static mhb_reason solve_here(const search *s, double omega) {
+  mhb_balance *b      = s->b;
+  mhb_reason   reason = directly(s, omega);
+  for (int i = 0; i < 2 && !is_over(s, reason); i++) {
     int stuck = b->eval->at.n0 > 0 ? 1 - i : i; /* the likelier limit first */
-    if (mhb_balance_linear_limit(b, omega, stuck, x) != SHB_OK) continue;
+    if (mhb_balance_linear_limit(b, omega, stuck, s->x) != SHB_OK) continue;
     mhb_balance_tie_preloads(b, 1);
-    reason = homotopy(newton, b, omega, tolerance, far_preload(b, x, stuck), x);
+    reason = homotopy(s, omega, far_preload(b, s->x, stuck));
     mhb_balance_tie_preloads(b, 0);
   }
   return reason;
 }
 
 /* x <- the solution at `to`, along the curve from a solution x at `from`. */
-static bool continue_to(mhb_balance *b, double from, double to, double *x) {
+static bool continue_to(const search *s, double from, double to) {
+  mhb_balance   *b = s->b;
   mhb_arclength *curve;
   const int      direction = to > from ? 1 : -1, most = MAX_STAGES + STAGES_A_PAIR * b->n_pairs;
   bool           arrived = false;
   if (mhb_balance_curve_create(b, fmin(from, to), fmax(from, to), &curve) != SHB_OK) return false;
-  bool goes_on = mhb_arclength_start(curve, x, from, direction) == MHB_CONVERGED;
-  for (int i = 0; i < most && goes_on && !arrived && !shb_interrupted(); i++) {
+  bool on = mhb_arclength_start(curve, s->x, from, direction) == MHB_CONVERGED;
+  for (int i = 0; i < most && on && !arrived && goes_on(s); i++) {
     mhb_arclength_outcome outcome = mhb_arclength_step(curve);
     int end = outcome == MHB_ARCLENGTH_AT_END ? 1 : outcome == MHB_ARCLENGTH_AT_START ? -1 : 0;
     arrived = end == direction;
-    goes_on = outcome != MHB_ARCLENGTH_STALLED;
+    on      = outcome != MHB_ARCLENGTH_STALLED;
     mhb_arclength_advance(curve);
     if (end == -direction) { /* back at `from` */
-      goes_on = mhb_arclength_excursion(curve, end, MHB_EXCURSION_FAR);
+      on = mhb_arclength_excursion(curve, end, MHB_EXCURSION_FAR);
       mhb_arclength_advance(curve);
     }
   }
-  memcpy(x, curve->current.x, sizeof(double) * (size_t)b->n);
+  memcpy(s->x, curve->current.x, sizeof(double) * (size_t)b->n);
   mhb_arclength_destroy(curve);
   return arrived;
 }
 
-static mhb_reason by_frequency(mhb_newton *newton, mhb_balance *b, double omega, double tolerance,
-                               double *x, int *iterations) {
+static mhb_reason by_frequency(const search *s, double omega) {
   static const double elsewhere[] = {0.98, 1.02, 0.95, 1.05, 0.9, 1.1, 0.8, 0.6};
-  mhb_reason          reason      = solve_here(newton, b, omega, tolerance, x, iterations);
-  for (int i = 0; i < 8 && reason != MHB_CONVERGED && !shb_interrupted(); i++) {
+  mhb_reason          reason      = solve_here(s, omega);
+  for (int i = 0; i < 8 && !is_over(s, reason); i++) {
     double from = elsewhere[i] * omega;
-    if (solve_here(newton, b, from, tolerance, x, iterations) != MHB_CONVERGED) continue;
-    if (!continue_to(b, from, omega, x)) continue;
-    reason = mhb_newton_solve(newton, b, omega, tolerance, x, iterations);
+    if (solve_here(s, from) != MHB_CONVERGED) continue;
+    if (!continue_to(s, from, omega)) continue;
+    reason = newton(s, omega);
   }
   return reason;
 }
 
 /* Along the curve in the preload, past its folds, from a preload at which the contact is stuck, or
  * open, throughout. */
-static mhb_reason by_preload(mhb_newton *newton, mhb_balance *b, double omega, double tolerance,
-                             double *x, int *iterations) {
-  double     n0     = b->eval->at.n0;
-  mhb_reason reason = MHB_MAX_ITERATIONS;
-  for (int stuck = 1; stuck >= 0 && reason != MHB_CONVERGED; stuck--) {
-    if (mhb_balance_linear_limit(b, omega, stuck, x) != SHB_OK) continue;
-    double from = far_preload(b, x, stuck);
+static mhb_reason by_preload(const search *s, double omega) {
+  mhb_balance *b      = s->b;
+  double       n0     = b->eval->at.n0;
+  mhb_reason   reason = MHB_MAX_ITERATIONS;
+  for (int stuck = 1; stuck >= 0 && !is_over(s, reason); stuck--) {
+    if (mhb_balance_linear_limit(b, omega, stuck, s->x) != SHB_OK) continue;
+    double from = far_preload(b, s->x, stuck);
     mhb_balance_tie_preloads(b, 1);
     mhb_balance_set_parameter(b, MHB_IN_N0);
-    bool found = continue_to(b, from, n0, x);
+    bool found = continue_to(s, from, n0);
     mhb_balance_set_parameter(b, MHB_IN_FREQUENCY);
     mhb_balance_set_preload(b, n0);
     mhb_balance_tie_preloads(b, 0);
-    if (found) reason = mhb_newton_solve(newton, b, omega, tolerance, x, iterations);
+    if (found) reason = newton(s, omega);
   }
   return reason;
 }
 
+/* Along the curve in the tangential stiffness from a softer contact, whose kinks are fewer. */
+static mhb_reason by_stiffness(const search *s, double omega) {
+  mhb_balance *b      = s->b;
+  const double ku     = b->eval->at.ku[0];
+  mhb_reason   reason = MHB_MAX_ITERATIONS;
+  double       part   = SOFTER;
+  for (int i = 0; i < MOST_SOFTENED && !is_over(s, reason); i++, part *= SOFTER) {
+    mhb_balance_go_to(b, MHB_IN_KU, part * ku);
+    if (directly(s, omega) == MHB_CONVERGED) {
+      mhb_balance_set_parameter(b, MHB_IN_KU);
+      if (continue_to(s, part * ku, ku)) reason = MHB_CONVERGED;
+    }
+    mhb_balance_go_to(b, MHB_IN_KU, ku);
+    if (reason == MHB_CONVERGED) reason = newton(s, omega);
+  }
+  return reason;
+}
+
+/* ---- fewer harmonics ---- */
+
+/* The same balance with fewer harmonics, and a search in it. */
+typedef struct {
+  mhb_settings settings;
+  search       search;
+  int          iterations;
+} smaller_balance;
+
+static void smaller_destroy(smaller_balance *w) {
+  if (!w) return;
+  free(w->search.x);
+  mhb_newton_destroy(w->search.newton);
+  mhb_balance_destroy(w->search.b);
+  free(w);
+}
+
+static shb_status smaller_create(const search *s, int m, smaller_balance **out) {
+  smaller_balance *w = calloc(1, sizeof *w);
+  SHB_CHECK(w, SHB_ERR_IO, "out of memory");
+  w->settings           = *s->b->settings;
+  w->settings.harmonics = m;
+  search *own           = &w->search;
+  *own = (search){.tolerance = s->tolerance, .iterations = &w->iterations, .watch = s->watch};
+  shb_status status = mhb_balance_create_on(s->b->receptance, &w->settings, &own->b);
+  if (status == SHB_OK) status = mhb_newton_create(own->b->n, &own->newton);
+  if (status == SHB_OK) own->x = calloc((size_t)own->b->n, sizeof *own->x);
+  if (status == SHB_OK && !own->x) status = shb_fail(SHB_ERR_IO, __FILE__, __LINE__, "no memory");
+  if (status != SHB_OK) {
+    smaller_destroy(w);
+    return status;
+  }
+  mhb_balance_set_operating_point(own->b, &s->b->eval->at);
+  own->last = last_of(own->b, s->watch);
+  *out      = w;
+  return SHB_OK;
+}
+
+/* to's x <- from's, with harmonics that are zero or left out. */
+static void copy_motion(const search *from, const search *to) {
+  const int nb = from->b->nb, wide = to->b->nb, rows = 3 * from->b->n_pairs;
+  memset(to->x, 0, sizeof(double) * (size_t)to->b->n);
+  for (int i = 0; i < rows; i++)
+    memcpy(to->x + i * wide, from->x + i * nb, sizeof(double) * (size_t)(nb < wide ? nb : wide));
+}
+
+/* From the solution of fewer harmonics to that of s, over numbers between where that is too far. */
+static mhb_reason raise(const search *from, const search *s, double omega) {
+  copy_motion(from, s);
+  if (from->b->m > s->watch->harmonics) s->watch->harmonics = from->b->m;
+  mhb_reason       reason = newton(s, omega);
+  const int        middle = (from->b->m + s->b->m + 1) / 2;
+  smaller_balance *w;
+  if (is_over(s, reason) || middle >= s->b->m) return reason;
+  if (smaller_create(s, middle, &w) != SHB_OK) return reason;
+  if (raise(from, &w->search, omega) == MHB_CONVERGED) reason = raise(&w->search, s, omega);
+  smaller_destroy(w);
+  return reason;
+}
+
+/* Highest harmonic of the load. */
+static int highest_driven(const mhb_balance *b) {
+  int k = b->m;
+  while (k > 0 && !b->receptance->driven[k]) k--;
+  return k > 0 ? k : 1;
+}
+
+/* Newton's method with half as many harmonics, and so on, then back. Few harmonics cannot follow
+ * the kinks of a stiff contact, which hold Newton's method up. */
+static mhb_reason by_fewer_harmonics(const search *s, double omega) {
+  const int        half   = s->b->m / 2;
+  mhb_reason       reason = MHB_MAX_ITERATIONS;
+  smaller_balance *w;
+  if (half < highest_driven(s->b) || smaller_create(s, half, &w) != SHB_OK) return reason;
+  mhb_reason first = directly(&w->search, omega);
+  if (!is_over(&w->search, first)) first = by_fewer_harmonics(&w->search, omega);
+  if (first == MHB_CONVERGED) reason = raise(&w->search, s, omega);
+  smaller_destroy(w);
+  return reason;
+}
+
+/* A way may take half of what is left. */
+static mhb_reason by(way *go, const search *s, double omega) {
+  search part = *s;
+  part.last   = s->b->n_linearised + (s->last - s->b->n_linearised) / 2;
+  return go(&part, omega);
+}
+
 /* The balance's parameter is restored. A first solution is sought with the frequency as value. */
-mhb_reason mhb_first_solution(mhb_newton *newton, mhb_balance *b, double value, double tolerance,
-                              double *x, int *iterations) {
-  mhb_parameter parameter = b->parameter;
+mhb_reason mhb_first_solution_watched(mhb_newton *with, mhb_balance *b, double value,
+                                      double tolerance, mhb_watch *watch, double *x,
+                                      int *iterations) {
+  static way *const ways[]    = {by_fewer_harmonics, by_preload, by_stiffness, by_frequency};
+  mhb_parameter     parameter = b->parameter;
+  search            s         = {with, b, tolerance, x, iterations, last_of(b, watch), watch};
+  *iterations                 = 0;
+  watch->harmonics            = 0;
   mhb_balance_set_value(b, value);
   mhb_balance_set_parameter(b, MHB_IN_FREQUENCY);
   double     omega  = b->eval->at.omega;
-  mhb_reason reason = directly(newton, b, omega, tolerance, x, iterations);
-  if (reason != MHB_CONVERGED) reason = by_preload(newton, b, omega, tolerance, x, iterations);
-  if (reason != MHB_CONVERGED) reason = by_frequency(newton, b, omega, tolerance, x, iterations);
+  mhb_reason reason = directly(&s, omega);
+  for (size_t i = 0; i < sizeof ways / sizeof *ways && !is_over(&s, reason); i++)
+    reason = by(ways[i], &s, omega);
   mhb_balance_set_parameter(b, parameter);
   return reason;
+}
+
+mhb_reason mhb_first_solution(mhb_newton *with, mhb_balance *b, double value, double tolerance,
+                              double *x, int *iterations) {
+  mhb_watch nobody = {.share = 1};
+  return mhb_first_solution_watched(with, b, value, tolerance, &nobody, x, iterations);
 }

@@ -6,14 +6,17 @@
 
 #include "mhb/response/response.h"
 
+/* What is searched for: the first solution of a curve, or other curves of a preload. */
+typedef enum { MHB_SEEKS_FIRST, MHB_SEEKS_OTHERS } mhb_sought;
+
 /* Its functions may be called from any thread. */
 typedef struct mhb_monitor mhb_monitor;
 struct mhb_monitor {
   /* A point of a branch was recorded, or judged. false: stop. */
   bool (*point)(mhb_monitor *monitor, const mhb_response *response, int branch, int point);
-  /* Other curves of a preload (N) are searched for. value: of the parameter, as the file shows it.
-   * share: of the search that is done. false: stop. */
-  bool (*searching)(mhb_monitor *monitor, double n0, double value, double share);
+  /* A search at a preload (N) begins or goes on. value: of the parameter, as the file shows it.
+   * share: of the search for other curves that is done. false: stop. */
+  bool (*searching)(mhb_monitor *monitor, mhb_sought what, double n0, double value, double share);
   /* Whether the curves so far of a preload are to be published, and their publication. */
   bool (*is_due)(mhb_monitor *monitor, const mhb_response *response);
   shb_status (*publish)(mhb_monitor *monitor, const mhb_response *response);

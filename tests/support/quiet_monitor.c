@@ -10,8 +10,10 @@ static bool point(mhb_monitor *monitor, const mhb_response *response, int branch
   return ++m->n_points != m->stop_at;
 }
 
-static bool searching(mhb_monitor *monitor, double n0, double value, double share) {
+static bool searching(mhb_monitor *monitor, mhb_sought what, double n0, double value,
+                      double share) {
   (void)monitor;
+  (void)what;
   (void)n0;
   (void)value;
   (void)share;

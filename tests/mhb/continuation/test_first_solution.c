@@ -101,6 +101,79 @@ static void a_failure_leaves_the_balance_as_it_was(void **state) {
   modal_model_free(&model);
 }
 
+typedef struct {
+  int calls, last; /* last: the call that gives up, 0: none */
+} counter;
+
+static bool count(void *context) {
+  counter *c = context;
+  return ++c->calls < c->last || c->last == 0;
+}
+
+/* Friction 400 to 40,000 times as stiff as the blade: Newton's method from the limits fails at some
+ * frequencies, and fewer harmonics or a softer contact lead on. A search takes no more than its
+ * share of work, and is told of all along. */
+static void nearly_rigid_friction_has_one_or_an_end(void **state) {
+  (void)state;
+  static const double ku[] = {400, 4000, 40000};
+  enum { FREQUENCIES = 6, MOST = 2400 + 300 }; /* the bound, and one Newton method beyond */
+  modal_model model;
+  long        dearest = 0;
+  int         found = 0, given_up = 0;
+  one_degree_model(0.01, 1, 0.05, &model);
+  for (int i = 0; i < 3; i++) {
+    mhb_settings s = ground_settings(0.3, 1, ku[i], 0.1, 31);
+    mhb_balance *b;
+    mhb_newton  *newton;
+    assert_ok(mhb_balance_create(&model, &s, &b));
+    assert_ok(mhb_newton_create(b->n, &newton));
+    double x[b->n];
+    for (int w = 0; w < FREQUENCIES; w++) {
+      counter    told   = {0};
+      mhb_watch  watch  = {.go_on = count, .context = &told, .share = 1};
+      const long before = b->n_linearised;
+      int        iterations;
+      double     omega = 0.5 + 0.26 * w;
+      mhb_reason reason =
+          mhb_first_solution_watched(newton, b, omega, 1e-10, &watch, x, &iterations);
+      dearest = b->n_linearised - before > dearest ? b->n_linearised - before : dearest;
+      assert_true(told.calls > 0);
+      assert_true(reason == MHB_CONVERGED || b->n_linearised - before <= MOST);
+      if (reason == MHB_CONVERGED) assert_below(relative_residual(b, x, omega), 1e-9);
+      *(reason == MHB_CONVERGED ? &found : &given_up) += 1;
+    }
+    mhb_newton_destroy(newton);
+    mhb_balance_destroy(b);
+  }
+  print_message("%d of %d found, the dearest search took %ld linearisations\n", found,
+                found + given_up, dearest);
+  assert_true(found >= 17);
+  assert_below((double)dearest, MOST);
+  modal_model_free(&model);
+}
+
+/* The third Newton method is not begun. */
+static void a_watch_stops_it(void **state) {
+  (void)state;
+  modal_model  model;
+  mhb_settings s = ground_settings(0.3, 1, 1, 0.05, 5);
+  mhb_balance *b;
+  mhb_newton  *newton;
+  counter      told  = {.last = 3};
+  mhb_watch    watch = {.go_on = count, .context = &told, .share = 1};
+  int          iterations;
+  one_degree_model(0.02, 1, 0.1, &model);
+  assert_ok(mhb_balance_create(&model, &s, &b));
+  assert_ok(mhb_newton_create(b->n, &newton));
+  double x[b->n];
+  assert_int_equal(mhb_first_solution_watched(newton, b, 1.2, -1, &watch, x, &iterations),
+                   MHB_GIVEN_UP);
+  assert_in_range(told.calls, 3, 4);
+  mhb_newton_destroy(newton);
+  mhb_balance_destroy(b);
+  modal_model_free(&model);
+}
+
 /* Curves that were started; the linker leads the calls here. */
 static int n_started;
 mhb_reason __real_mhb_arclength_start(mhb_arclength *curve, const double *x, double value,
@@ -144,6 +217,8 @@ int main(void) {
   const struct CMUnitTest tests[] = {cmocka_unit_test(there_is_one_at_every_preload),
                                      cmocka_unit_test(the_curve_passes_the_kinks_of_many_pairs),
                                      cmocka_unit_test(the_parameter_stands),
+                                     cmocka_unit_test(nearly_rigid_friction_has_one_or_an_end),
+                                     cmocka_unit_test(a_watch_stops_it),
                                      cmocka_unit_test(a_failure_leaves_the_balance_as_it_was)};
   return cmocka_run_group_tests(tests, NULL, NULL);
 }
