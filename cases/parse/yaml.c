@@ -1,12 +1,12 @@
 #include "cases/parse/yaml.h"
 
 #include <ctype.h>
-#include <errno.h>
 #include <stdarg.h>
 #include <stdlib.h>
 #include <string.h>
-#include <sys/stat.h>
 #include <yaml.h>
+
+#include "mesh/table/text_file.h"
 
 typedef struct {
   yaml_parser_t parser;
@@ -14,60 +14,9 @@ typedef struct {
   bool          indexed; /* indices are written <1> */
 } builder;
 
-/* Reads all bytes, at most CASE_MAX_BYTES + 1, and a NUL behind them. Returns 0, or an errno. Small
- * files take little memory: thousands are read in a study. */
-static int read_bytes(FILE *file, char **bytes, size_t *n) {
-  size_t room = 0;
-  for (bool more = true; more;) {
-    room        = room ? 4 * room : 4096;
-    char *grown = realloc(*bytes, room);
-    if (!grown) return ENOMEM;
-    *bytes      = grown;
-    size_t most = room - 1 <= CASE_MAX_BYTES ? room - 1 : CASE_MAX_BYTES + 1;
-    *n += fread(*bytes + *n, 1, most - *n, file);
-    more = *n == most && *n <= CASE_MAX_BYTES;
-  }
-  if (ferror(file)) return errno;
-  (*bytes)[*n] = '\0';
-  return 0;
-}
-
-shb_status case_file_kind(const char *path) {
-  struct stat about;
-  SHB_CHECK(stat(path, &about) != 0 || S_ISREG(about.st_mode) || S_ISDIR(about.st_mode), SHB_ERR_IO,
-            "%s: is a pipe or a device, not a file", path);
-  return SHB_OK;
-}
-
 shb_status case_text_read(const char *path, char **text, size_t *length) {
-  *text = NULL;
-  errno = 0;
-  SHB_TRY(case_file_kind(path)); /* and every stage reads the file again */
-  FILE *file = fopen(path, "rb");
-  SHB_CHECK(file, SHB_ERR_IO, "%s: cannot be opened: %s", path, strerror(errno));
-  char  *bytes = NULL;
-  size_t n     = 0;
-  int    why   = read_bytes(file, &bytes, &n);
-  fclose(file);
-  shb_status status = SHB_OK;
-  if (why) {
-    status =
-        shb_fail(SHB_ERR_IO, __FILE__, __LINE__, "%s: cannot be read: %s", path, strerror(why));
-  } else if (n > CASE_MAX_BYTES) {
-    status = shb_fail(SHB_ERR_INPUT, __FILE__, __LINE__,
-                      "%s: larger than 1 MiB; a case file is a page of YAML text", path);
-  } else if (memchr(bytes, '\0', n)) {
-    status = shb_fail(SHB_ERR_INPUT, __FILE__, __LINE__,
-                      "%s: holds binary data; a case file is YAML text in UTF-8", path);
-  }
-  if (status != SHB_OK) {
-    free(bytes);
-    errno = why;
-    return status;
-  }
-  *text   = bytes;
-  *length = n;
-  return SHB_OK;
+  return mesh_text_read(path, CASE_MAX_BYTES >> 20, "a case file is a page of YAML text", text,
+                        length);
 }
 
 /* Line and column (from 1, in characters) of a byte offset. */

@@ -32,12 +32,7 @@ struct case_node {
   case_node *child;                /* [n], in the order of the file */
 };
 
-/* Is it a pipe or a device? Opening one could wait for its other end. SHB_ERR_IO. */
-shb_status case_file_kind(const char *path);
-
-/* Read a whole file into malloc'ed memory. A NUL follows the length bytes. Errors: SHB_ERR_IO
- * unreadable, with errno ENOMEM where memory was short; SHB_ERR_INPUT above CASE_MAX_BYTES, or with
- * NUL bytes. */
+/* mesh_text_read of a case file, which has CASE_MAX_BYTES at most. */
 shb_status case_text_read(const char *path, char **text, size_t *length);
 
 /* Parse issues->text. NULL for a file without content, and after a syntax error, which is recorded.

@@ -15,6 +15,7 @@
 #include "cases/schema/materials.h"
 #include "mesh/base/constants.h"
 #include "mesh/core/file_format.h"
+#include "mesh/table/text_file.h"
 #include "mhb/problem/parameter.h"
 
 static void check_mesh(case_reader *r, int stages) {
@@ -310,7 +311,7 @@ static void check_integrate(case_reader *r) {
 /* Reports an input file that cannot be read. True if so. */
 static bool check_file(case_reader *r, const char *key, const char *path) {
   if (!path || !case_reader_good(r, key)) return false;
-  if (case_file_kind(path) != SHB_OK) {
+  if (mesh_file_kind(path) != SHB_OK) {
     case_reader_issue(r, key, "%s", shb_message());
     return true;
   }

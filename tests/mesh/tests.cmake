@@ -1,6 +1,7 @@
 foreach(noun arena memory axes crash_guard phases progress publish root shortest)
   shb_test(mesh/base ${noun} shb_mesh_base)
 endforeach()
+shb_test(mesh/table csv shb_mesh_table)
 foreach(noun face_match group_checks group_rules jacobian triangle)
   shb_test(mesh/core ${noun} tests_box)
 endforeach()

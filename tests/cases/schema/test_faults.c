@@ -668,7 +668,7 @@ static void strange_files(void **state) {
   free(said);
   assert_int_equal(judge("\x89HDF\r\n\x1a\n\0\0", 10, &said), SHB_ERR_INPUT);
   assert_string_equal(shb_message(),
-                      "c.yaml: holds binary data; a case file is YAML text in UTF-8");
+                      "c.yaml: holds binary data; a case file is a page of YAML text in UTF-8");
   free(said);
   memset(large, '[', 100000); /* deep */
   assert_int_equal(judge(large, 100000, &said), SHB_ERR_INPUT);
