@@ -28,6 +28,9 @@ endif()
 add_test(NAME cases.commands.modes_alone
   COMMAND sh ${CMAKE_CURRENT_SOURCE_DIR}/cases/commands/test_modes_alone.sh $<TARGET_FILE:shroudhb>
           ${PROJECT_SOURCE_DIR}/cases/z_notch_blade/case.yaml)
+add_test(NAME cases.commands.stale
+  COMMAND sh ${CMAKE_CURRENT_SOURCE_DIR}/cases/commands/test_stale.sh $<TARGET_FILE:shroudhb>
+          ${PROJECT_SOURCE_DIR}/cases/z_notch_blade/case.yaml)
 add_test(NAME cases.commands.contact
   COMMAND sh ${CMAKE_CURRENT_SOURCE_DIR}/cases/commands/test_contact.sh
           $<TARGET_FILE:shroudhb-mhb> ${PROJECT_SOURCE_DIR}/cases/prescribed_motion
@@ -91,6 +94,12 @@ if(SHROUDHB_PYTHON)
     COMMAND ${SHROUDHB_PYTHON} -B ${CMAKE_CURRENT_SOURCE_DIR}/cases/study/test_study.py
             $<TARGET_FILE_DIR:shroudhb-study> ${PROJECT_SOURCE_DIR}/cases/bring_your_own)
   set_tests_properties(cases.study.study PROPERTIES SKIP_RETURN_CODE 77)
+  foreach(noun study_inputs study_process)
+    add_test(NAME cases.study.${noun}
+      COMMAND ${SHROUDHB_PYTHON} -B ${CMAKE_CURRENT_SOURCE_DIR}/cases/study/test_${noun}.py
+              $<TARGET_FILE_DIR:shroudhb-study> ${PROJECT_SOURCE_DIR}/cases/bring_your_own)
+    set_tests_properties(cases.study.${noun} PROPERTIES SKIP_RETURN_CODE 77)
+  endforeach()
   add_test(NAME cases.study.samples
     COMMAND ${SHROUDHB_PYTHON} -B ${CMAKE_CURRENT_SOURCE_DIR}/cases/study/test_samples.py
             $<TARGET_FILE_DIR:shroudhb-study> ${PROJECT_SOURCE_DIR}/cases/bring_your_own)
