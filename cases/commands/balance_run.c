@@ -3,6 +3,7 @@
 #include <stdlib.h>
 
 #include "cases/commands/load_model.h"
+#include "cases/commands/stage.h"
 #include "cases/commands/up_to_date.h"
 #include "cases/schema/case.h"
 #include "cases/schema/case_paths.h"
@@ -137,6 +138,13 @@ static shb_status solve(const case_file *file, const char *modal, char *settings
   return status;
 }
 
+/* Other ranks read the modal file meanwhile, so it is not made again. */
+static shb_status check_modes(const case_file *file) {
+  SHB_CHECK(file->modal_file || up_to_date_modes(file), SHB_ERR_INPUT,
+            "%s: the modes are out of date; run `shroudhb modal %s` first", file->path, file->path);
+  return SHB_OK;
+}
+
 shb_status balance_run(const case_file *file, const command_options *options,
                        const mhb_sample_crew *crew) {
   shb_progress progress = shb_progress_start("mhb", options->quiet, options->verbose);
@@ -144,7 +152,7 @@ shb_status balance_run(const case_file *file, const command_options *options,
   char        *settings = NULL;
   shb_status   status =
       modal && output ? SHB_OK : shb_fail(SHB_ERR_IO, __FILE__, __LINE__, "out of memory");
-  if (status == SHB_OK && !file->modal_file) up_to_date_warn(file, CASE_MODAL, modal);
+  if (status == SHB_OK) status = crew ? check_modes(file) : stage_renew_modes(file, options);
   if (status == SHB_OK) status = up_to_date_settings(file, CASE_MHB, modal, &settings);
   if (status == SHB_OK) {
     if (!options->force && up_to_date(output, settings, file->mistuning.samples)) {

@@ -2,8 +2,10 @@
 
 #include <errno.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 
+#include "cases/parse/yaml.h"
 #include "cases/schema/case.h"
 #include "mesh/base/crash_guard.h"
 
@@ -55,30 +57,47 @@ static const char *argument(int argc, char **argv, int *i, const char *what) {
   return NULL;
 }
 
-/* --set and --into. Returns 0 if the word is neither, -1 after a message, else 1. */
+/* --set, --into and --text. Returns 0 if the word is none of them, -1 after a message, else 1. */
 static int set_override(int argc, char **argv, int *i, command_options *out) {
-  bool set = strcmp(argv[*i], "--set") == 0, into = strcmp(argv[*i], "--into") == 0;
-  if (!set && !into) return 0;
-  const char *text = argument(
-      argc, argv, i,
-      set ? "--set needs KEY=VALUE, such as contact.mu=0.4" : "--into needs the name of a folder");
+  static const char *const        word[] = {"--set", "--into", "--text"},
+                           *const lack[] = {"--set needs KEY=VALUE, such as contact.mu=0.4",
+                                            "--into needs the name of a folder",
+                                            "--text needs the name of a file"};
+  enum { SET, INTO, TEXT, N };
+  int which = 0;
+  while (which < N && strcmp(argv[*i], word[which]) != 0) which++;
+  if (which == N) return 0;
+  const char *text = argument(argc, argv, i, lack[which]);
   if (!text) return -1;
-  if (into) {
-    out->into = text;
-  } else if (out->n_set == COMMAND_SETS) {
+  if (which == SET && out->n_set == COMMAND_SETS) {
     refuse("more than 64 times --set", NULL);
     return -1;
-  } else {
-    out->set[out->n_set++] = text;
   }
+  *(which == SET ? &out->set[out->n_set++] : which == INTO ? &out->into : &out->text) = text;
   return 1;
 }
 
 shb_status command_read(const command_options *o, int stages, case_file *out) {
-  const case_overrides overrides = {o->n_set, o->set, o->into};
-  SHB_TRY(case_read_with(o->path, &overrides, stages, stderr, out));
-  shb_status status = o->into ? shb_make_folder(o->into) : SHB_OK;
+  case_overrides overrides = {o->n_set, o->set, o->into, NULL};
+  char          *document  = NULL;
+  size_t         length;
+  if (o->text) SHB_TRY(case_text_read(o->text, &document, &length));
+  overrides.document = document;
+  shb_status status  = case_read_with(o->path, &overrides, stages, stderr, out);
+  free(document);
+  SHB_TRY(status);
+  status = o->into ? shb_make_folder(o->into) : SHB_OK;
   if (status != SHB_OK) case_free(out);
+  return status;
+}
+
+shb_status command_keep_text(command_options *o, int *copy, char path[SUBPROCESS_COPY]) {
+  char  *text;
+  size_t length;
+  SHB_TRY(case_text_read(o->text ? o->text : o->path, &text, &length));
+  const shb_status status = subprocess_copy(text, copy, path);
+  free(text);
+  if (status == SHB_OK) o->text = path;
   return status;
 }
 
@@ -93,6 +112,10 @@ int command_forward(const command_options *o, const char **words, int n) {
   if (o->into) {
     words[n++] = "--into";
     words[n++] = o->into;
+  }
+  if (o->text) {
+    words[n++] = "--text";
+    words[n++] = o->text;
   }
   if (o->path[0] == '-') words[n++] = "--";
   words[n++] = o->path;

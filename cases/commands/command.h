@@ -4,6 +4,7 @@
 
 #include <stdbool.h>
 
+#include "cases/commands/subprocess.h"
 #include "cases/parse/case_file.h"
 #include "mesh/base/publish.h"
 #include "mesh/base/status.h"
@@ -21,11 +22,13 @@ typedef struct {
   int         n_set;
   const char *set[COMMAND_SETS]; /* arguments of --set */
   const char *into;              /* argument of --into, or NULL */
+  const char *text;              /* argument of --text, or NULL */
 } command_options;
 
 /* Parse a command line: options and one FILE, in any order; "--" ends the options.
  *
- * --set KEY=VALUE (any number) and --into FOLDER are known where the usage mentions --set.
+ * --set KEY=VALUE (any number) and --into FOLDER are known where the usage mentions --set, and so
+ * is --text COPY, which no user needs: the text of FILE stands in COPY, as it was when it was read.
  * --help prints the usage and ends the program with 0, --version likewise. --quiet, --verbose and
  * --force are always known. Any other long option in the usage text becomes out->mode. An unknown
  * word is one line on stderr and exit code 2.
@@ -36,6 +39,10 @@ int command_parse(int argc, char **argv, const char *usage, command_options *out
 /* Read the case of a command with its overrides, and make the folder of --into where it is missing.
  * Errors: as case_read and shb_make_folder. */
 shb_status command_read(const command_options *options, int stages, case_file *out);
+
+/* Read the text of the case once for all programs that the command starts: options->text becomes
+ * path, that of a copy (subprocess.h). The caller closes *copy. Errors: as case_text_read. */
+shb_status command_keep_text(command_options *options, int *copy, char path[SUBPROCESS_COPY]);
 
 /* Append the options that a stage passes on to another program: quiet, verbose, force, --set,
  * --into, and the file. The words belong to options.

@@ -7,6 +7,7 @@
 
 #include "cases/commands/command.h"
 #include "cases/commands/load_model.h"
+#include "cases/commands/stage.h"
 #include "cases/commands/up_to_date.h"
 #include "cases/schema/case.h"
 #include "cases/schema/case_paths.h"
@@ -157,12 +158,14 @@ static shb_status solve(const case_file *file, const char *modal, const mhb_resp
 }
 
 /* Reads the response file that holds the initial states. */
-static shb_status read_balance(const case_file *file, const char *path, mhb_response **balance) {
+static shb_status read_balance(const case_file *file, const char *path, const char *modal,
+                               mhb_response **balance) {
   SHB_CHECK(
       access(path, R_OK) == 0, SHB_ERR_INPUT,
       "%s: not there to start on; run `shroudhb mhb %s` first, or set integrate.start to rest "
       "or state",
       path, file->path);
+  SHB_TRY(up_to_date_check_modal(path, modal));
   up_to_date_warn(file, CASE_MHB, path);
   return mhb_response_read(path, balance);
 }
@@ -175,8 +178,8 @@ static shb_status run(const case_file *file, const command_options *options) {
   bool          needed  = file->integrate.start == MHB_START_FROM_BALANCE;
   shb_status    status =
       modal && output && start ? SHB_OK : shb_fail(SHB_ERR_IO, __FILE__, __LINE__, "out of memory");
-  if (status == SHB_OK && !file->modal_file) up_to_date_warn(file, CASE_MODAL, modal);
-  if (status == SHB_OK && needed) status = read_balance(file, start, &balance);
+  if (status == SHB_OK) status = stage_renew_modes(file, options);
+  if (status == SHB_OK && needed) status = read_balance(file, start, modal, &balance);
   if (status == SHB_OK) status = settings_of(file, modal, needed ? start : NULL, &settings);
   if (status == SHB_OK) {
     if (!options->force && up_to_date(output, settings)) {

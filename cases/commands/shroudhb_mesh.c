@@ -2,12 +2,11 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <unistd.h>
 
 #include "cases/commands/command.h"
+#include "cases/commands/up_to_date.h"
 #include "cases/schema/case.h"
 #include "cases/schema/case_paths.h"
-#include "cases/schema/stage_settings.h"
 #include "mesh/base/progress.h"
 #include "mesh/base/publish.h"
 #include "mesh/blade/airfoil.h"
@@ -15,7 +14,6 @@
 #include "mesh/core/face_pairing.h"
 #include "mesh/core/fe_mesh.h"
 #include "mesh/core/group_checks.h"
-#include "mesh/gmsh/provenance.h"
 #include "mesh/gmsh/reading.h"
 #include "mesh/io/inp_write.h"
 #include "mesh/io/msh_write.h"
@@ -127,33 +125,6 @@ static shb_status check_file(const case_file *file, shb_progress *progress) {
   return status;
 }
 
-static bool up_to_date(const char *path, const char *settings) {
-  char *found = NULL;
-  if (access(path, R_OK) != 0 || mesh_settings_read(path, &found) != SHB_OK) return false;
-  bool same = strcmp(found, settings) == 0;
-  free(found);
-  return same;
-}
-
-/* Everything that NAME.msh depends on. For a mesh file that is its contents, and the pitch at which
- * its sides must match. */
-static shb_status settings_of(const case_file *file, char **text) {
-  char fingerprint[17], *keys = case_settings(file, CASE_MESH);
-  SHB_CHECK(keys, SHB_ERR_IO, "out of memory");
-  *text = keys;
-  if (!file->mesh_file) return SHB_OK;
-  shb_status status = shb_fingerprint(file->mesh_file, fingerprint);
-  size_t     size   = strlen(keys) + 128;
-  *text             = status == SHB_OK ? malloc(size) : NULL;
-  if (*text)
-    snprintf(*text, size, "%smesh.fingerprint = %s\nsector = %d\n", keys, fingerprint,
-             file->source.blades);
-  free(keys);
-  SHB_TRY(status);
-  SHB_CHECK(*text, SHB_ERR_IO, "out of memory");
-  return SHB_OK;
-}
-
 /* Makes NAME.msh from a solid, or from a mesh in other units or without groups. */
 static shb_status make_from_file(const case_file *file, const char *output,
                                  const shb_provenance *provenance, shb_progress *progress) {
@@ -190,7 +161,7 @@ static shb_status make_blade(const case_file *file, const char *output,
 
 static shb_status make_at(const case_file *file, const command_options *options, const char *output,
                           char *settings, shb_progress *progress) {
-  if (!options->force && up_to_date(output, settings)) {
+  if (!options->force && up_to_date_mesh(output, settings)) {
     shb_progress_note(progress, "%s is up to date", output);
     return SHB_OK;
   }
@@ -203,7 +174,7 @@ static shb_status make_at(const case_file *file, const command_options *options,
 static shb_status make(const case_file *file, const command_options *options,
                        shb_progress *progress) {
   char      *settings = NULL, *output = case_output(file, ".msh");
-  shb_status status = output ? settings_of(file, &settings)
+  shb_status status = output ? up_to_date_mesh_settings(file, &settings)
                              : shb_fail(SHB_ERR_IO, __FILE__, __LINE__, "out of memory");
   if (status == SHB_OK) status = make_at(file, options, output, settings, progress);
   free(output);

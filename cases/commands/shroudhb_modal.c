@@ -7,13 +7,12 @@
 
 #include "cases/commands/command.h"
 #include "cases/commands/modal_changes.h"
-#include "cases/commands/subprocess.h"
+#include "cases/commands/stage.h"
 #include "cases/commands/up_to_date.h"
 #include "cases/schema/case.h"
 #include "cases/schema/case_paths.h"
 #include "cases/schema/nodal_diameters.h"
 #include "mesh/base/publish.h"
-#include "mesh/gmsh/provenance.h"
 #include "modal/common/session.h"
 #include "modal/hdf5/h5.h"
 #include "modal/hdf5/stamp.h"
@@ -32,7 +31,8 @@ static const char usage[] =
     "(unless --force), and keeps its modes if only damping or the amplitude of the load changed. "
     "Needs mesh, material and clamp only: without contact, load and damping the "
     "file\n"
-    "holds the modes alone. Meshes first if the mesh is missing. Options after the case go to "
+    "holds the modes alone. Meshes first if the mesh is missing or out of date. Options after the "
+    "case go to "
     "PETSc and SLEPc, such as -eps_view,\n"
     "-eps_block_size 8, -eps_type krylovschur, -st_pc_factor_mat_solver_type mumps,\n"
     "-st_mat_mumps_icntl_14 50.\n";
@@ -59,7 +59,8 @@ static bool split_words(int argc, char **argv, words *out) {
       continue;
     }
     out->own[out->n_own++] = argv[i];
-    bool takes = !ended && (strcmp(argv[i], "--set") == 0 || strcmp(argv[i], "--into") == 0);
+    bool takes = !ended && (strcmp(argv[i], "--set") == 0 || strcmp(argv[i], "--into") == 0 ||
+                            strcmp(argv[i], "--text") == 0);
     if (takes && i + 1 < argc) {
       out->own[out->n_own++] = argv[++i];
       continue;
@@ -159,37 +160,13 @@ static modal_settings stage_settings(const case_file *file, modal_probe probe[CA
   return out;
 }
 
-static bool holds(int n, const int *held, int diameter) {
-  for (int i = 0; i < n; i++)
-    if (held[i] == diameter) return true;
-  return false;
-}
-
-/* Does the modal file at path hold the nodal diameters of the case? true also if it is no file of
- * nodal diameters. */
-static bool holds_diameters(const case_file *file, const char *path) {
-  int   n = 0, *held = NULL, list[CASE_MOST_DIAMETERS];
-  bool  all = true;
-  hid_t at;
-  if (h5_open(path, &at) != SHB_OK) return true;
-  if (h5_exists(at, "/nodal_diameter_0") &&
-      h5_read_attribute_ints(at, "/", "nodal_diameters", &n, &held) == SHB_OK && n > 0) {
-    const int wanted = case_nodal_diameters(file, list);
-    for (int i = 0; i < wanted; i++) all = all && holds(n, held, list[i]);
-    for (int d = 0; wanted < 0 && d <= file->blades / 2; d++) all = all && holds(n, held, d);
-  }
-  free(held);
-  h5_close(at);
-  return all;
-}
-
 /* What the stage has to do. */
 typedef enum { NOTHING, REVISE, SOLVE } task;
 
 /* A modal file of the case but for damping and load is revised. */
 static task task_of(const case_file *file, bool force, const char *output, const char *settings,
                     modal_revision *revision) {
-  if (force || !holds_diameters(file, output)) return SOLVE;
+  if (force || !up_to_date_diameters(file, output)) return SOLVE;
   if (up_to_date_with(output, settings)) return NOTHING;
   char      *earlier = h5_stamp_check(output) == H5_INTACT ? up_to_date_written(output) : NULL;
   const bool revised = earlier && modal_changes_find(earlier, settings, revision);
@@ -276,28 +253,20 @@ static void warn(const case_file *file) {
   }
 }
 
-/* Makes the mesh of the case with shroudhb-mesh if there is none, on rank 0 before MPI starts. The
- * others wait in MPI_Init. Warns of a mesh that is there and of other keys. Returns the exit
- * code. */
+/* Makes the mesh of the case with shroudhb-mesh if there is none or it is out of date, on rank 0
+ * before MPI starts. The others wait in MPI_Init. Returns the exit code. */
 static int make_mesh(const case_file *file, const command_options *options) {
   if (launch_rank() != 0 || (file->mesh_file && !case_mesh_is_made(file))) return SHB_OK;
-  const char       *list[COMMAND_WORDS];
-  char             *mesh = case_mesh_path(file), *program = subprocess_program("shroudhb-mesh");
+  command_options   plain  = *options;
   subprocess_result result = {.code = SHB_OK};
-  shb_status        status = SHB_OK;
-  if (!mesh || !program) status = shb_fail(SHB_ERR_IO, __FILE__, __LINE__, "out of memory");
-  if (status == SHB_OK && access(mesh, F_OK) != 0) {
-    list[0] = program;
-    command_forward(options, list, 1);
-    status = subprocess_run((char *const *)list, &result);
-  } else if (status == SHB_OK) {
-    char *made_from = NULL;
-    if (mesh_settings_read(mesh, &made_from) == SHB_OK)
-      up_to_date_warn_of(file, CASE_MESH, mesh, made_from);
-    free(made_from);
-  }
+  char             *mesh = case_mesh_path(file), *settings = NULL;
+  shb_status        status = mesh ? up_to_date_mesh_settings(file, &settings)
+                                  : shb_fail(SHB_ERR_IO, __FILE__, __LINE__, "out of memory");
+  plain.force              = false; /* the modes are made again, not what they come from */
+  if (status == SHB_OK && !up_to_date_mesh(mesh, settings))
+    status = stage_run("mesh", &plain, &result);
   free(mesh);
-  free(program);
+  free(settings);
   return status == SHB_OK ? result.code : command_finish(status);
 }
 

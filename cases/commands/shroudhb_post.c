@@ -106,10 +106,13 @@ static char *current_convergence(const case_file *file) {
   return NULL;
 }
 
-/* Are there points by time integration that belong to the present case? */
-static bool has_points(const case_file *file, const char *path) {
+/* Are there points by time integration that belong to the present case and its response? */
+static bool has_points(const case_file *file, const char *path, const char *response) {
+  char points[17], curves[17];
   if (access(path, R_OK) != 0) return false;
-  if (up_to_date_keys(file, (case_stage)(CASE_MHB | CASE_INTEGRATE), path)) return true;
+  const bool foreign = up_to_date_modal_of(path, points) && up_to_date_modal_of(response, curves) &&
+                       strcmp(points, curves) != 0;
+  if (!foreign && up_to_date_keys(file, (case_stage)(CASE_MHB | CASE_INTEGRATE), path)) return true;
   fprintf(stderr,
           "shroudhb: warning: %s was made from other settings and is left out; run `shroudhb "
           "integrate` again\n",
@@ -124,6 +127,16 @@ static char *current_modal(const case_file *file) {
   if (there && (file->modal_file || up_to_date_keys(file, CASE_MODAL, path))) return path;
   free(path);
   return NULL;
+}
+
+/* A modal file that is there is the one of the response, whatever the case says now. */
+static shb_status check_modal(const case_file *file, const char *response) {
+  char      *path   = case_modal_path(file);
+  shb_status status = path && access(path, R_OK) == 0 && access(response, R_OK) == 0
+                          ? up_to_date_check_modal(response, path)
+                          : SHB_OK;
+  free(path);
+  return status;
 }
 
 /* The stress of the whole blade, where the modal file has it. */
@@ -241,10 +254,11 @@ static shb_status publish_summary(const case_file *file, const char *response, c
 /* --summary, --modes: print and write nothing. */
 static shb_status print_summary(const case_file *file, bool curves) {
   post_buffer text     = {0};
-  char       *response = curves ? case_output(file, ".response.h5") : NULL;
+  char       *response = curves && !file->only_modes ? case_output(file, ".response.h5") : NULL;
   char       *modal    = current_modal(file);
   stress_work stress   = {0};
-  shb_status  status   = response ? stress_read(file, modal, response, false, &stress) : SHB_OK;
+  shb_status  status   = response ? check_modal(file, response) : SHB_OK;
+  if (status == SHB_OK && response) status = stress_read(file, modal, response, false, &stress);
   if (status == SHB_OK) status = summarise(file, response, modal, &stress, &text);
   if (status == SHB_OK) status = print(&text);
   stress_free(&stress);
@@ -299,14 +313,15 @@ static shb_status publish(const case_file *file, const command_options *options)
   shb_status   status;
   if (response && html && csv && svg && points && diagram) {
     up_to_date_warn(file, CASE_MHB, response);
-    status             = stress_read(file, modal, response, !options->no_report, &stress);
+    status = check_modal(file, response);
+    if (status == SHB_OK) status = stress_read(file, modal, response, !options->no_report, &stress);
     const post_job job = {file->name,
                           response,
                           options->no_report ? NULL : html,
                           csv,
                           svg,
                           convergence,
-                          has_points(file, points) ? points : NULL,
+                          has_points(file, points, response) ? points : NULL,
                           modal,
                           diagram,
                           up_to_date_keys(file, CASE_MHB, response) ? &file->mhb : NULL,

@@ -4,6 +4,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "cases/commands/up_to_date.h"
+
 shb_status stage_run(const char *stage, const command_options *options, subprocess_result *result) {
   char        name[32];
   const char *words[COMMAND_WORDS];
@@ -17,4 +19,14 @@ shb_status stage_run(const char *stage, const command_options *options, subproce
   shb_status status = subprocess_run((char *const *)words, result);
   free(program);
   return status;
+}
+
+shb_status stage_renew_modes(const case_file *file, const command_options *options) {
+  command_options   plain = *options;
+  subprocess_result result;
+  if (file->modal_file || up_to_date_modes(file)) return SHB_OK;
+  plain.force = false;
+  SHB_TRY(stage_run("modal", &plain, &result));
+  return result.code == SHB_OK ? SHB_OK
+                               : shb_fail((shb_status)result.code, __FILE__, __LINE__, "%s", "");
 }

@@ -9,4 +9,9 @@
  * prints its own messages. Errors: as subprocess_run; its exit code is in the result. */
 shb_status stage_run(const char *stage, const command_options *options, subprocess_result *result);
 
+/* Run shroudhb-modal, which makes the mesh too, where the modes of the case are out of date: what
+ * `shroudhb run` does. Nothing is done with modal.file. Errors: that of the stage, which has told
+ * it. */
+shb_status stage_renew_modes(const case_file *file, const command_options *options);
+
 #endif

@@ -24,7 +24,10 @@ shb_status subprocess_run(char *const argv[], subprocess_result *result);
 /* The same with descriptors for its standard output and error; negative: those of this program. */
 shb_status subprocess_run_to(char *const argv[], int out, int err, subprocess_result *result);
 
-/* mpiexec of Open MPI refuses root unless two variables allow it. That is the user's choice. */
-bool subprocess_mpiexec_refuses_root(void);
+enum { SUBPROCESS_COPY = 32 };
+
+/* A text as a file without a name, which child processes may open at path until it is closed. It
+ * goes with the last process that holds it. *copy: its descriptor. Errors: SHB_ERR_IO. */
+shb_status subprocess_copy(const char *text, int *copy, char path[SUBPROCESS_COPY]);
 
 #endif

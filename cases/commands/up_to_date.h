@@ -11,6 +11,29 @@
 shb_status up_to_date_settings(const case_file *file, case_stage stage, const char *input,
                                char **text);
 
+/* The same of NAME.msh, which is made: its keys, the contents of mesh.file and of all that it
+ * includes, and the pitch at which its sides must match. */
+shb_status up_to_date_mesh_settings(const case_file *file, char **text);
+
+/* Was the mesh at path made from these settings? */
+bool up_to_date_mesh(const char *path, const char *settings);
+
+/* Are the mesh that the case makes and its modal file what `shroudhb run` would leave? Where there
+ * is no mesh any more, the keys of the modal file count. */
+bool up_to_date_modes(const case_file *file);
+
+/* Does the modal file at path hold the nodal diameters of the case? true also if it is no file of
+ * nodal diameters. */
+bool up_to_date_diameters(const case_file *file, const char *path);
+
+/* The fingerprint of the modal file from which a response or integration file was computed. False:
+ * it is not known, as of versions before 0.2. */
+bool up_to_date_modal_of(const char *path, char fingerprint[17]);
+
+/* Was the response file computed from this modal file? Errors: SHB_ERR_INPUT it was not, with what
+ * to do; SHB_ERR_IO. */
+shb_status up_to_date_check_modal(const char *response, const char *modal);
+
 /* The settings that the HDF5 file at path was made from; malloc'ed, NULL if unknown. */
 char *up_to_date_written(const char *path);
 

@@ -72,8 +72,8 @@ static const char *points_for(const convergence_study *s, const post_rung *row) 
 static shb_status start_rung(convergence_study *s, const study_row *p, const char *reference,
                              const char *points, subprocess_result *result) {
   char  setting[RUNG_SETTING_WORDS][RUNG_WORD], none[] = "-";
-  char  set[] = "--set", into[] = "--into";
-  char *words[RUNG_SETTING_WORDS + 7 + 2 * COMMAND_SETS + 2] = {
+  char  set[] = "--set", into[] = "--into", text[] = "--text";
+  char *words[RUNG_SETTING_WORDS + 7 + 2 * COMMAND_SETS + 4] = {
       subprocess_program("shroudhb-rung"), s->file->path, s->variant[p->variant].modal, p->stem};
   int n = 4;
   rung_words(&p->setting, setting);
@@ -89,6 +89,10 @@ static shb_status start_rung(convergence_study *s, const study_row *p, const cha
   if (s->options->into) {
     words[n++] = into;
     words[n++] = (char *)s->options->into;
+  }
+  if (s->options->text) {
+    words[n++] = text;
+    words[n++] = (char *)s->options->text;
   }
   shb_status status = made ? subprocess_run(words, result)
                            : shb_fail(SHB_ERR_IO, __FILE__, __LINE__, "out of memory");

@@ -37,7 +37,10 @@ int main(int argc, char **argv) {
   case_file       file;
   int             code = command_parse(argc, argv, usage, &options);
   if (code >= 0) return code;
-  shb_status status = command_read(&options, CONVERGE_STAGES, &file);
+  int        copy;
+  char       path[SUBPROCESS_COPY];
+  shb_status status = command_keep_text(&options, &copy, path); /* the same for every rung */
+  if (status == SHB_OK) status = command_read(&options, CONVERGE_STAGES, &file);
   if (status != SHB_OK) return command_finish(status);
   shb_interrupt_catch();
   status = converge_case(&file, &options);

@@ -234,18 +234,15 @@ static shb_status prepare(job *j) {
   return rung_output(&j->file, j->source.model.n_probes, j->source.model.probe_name, &j->output);
 }
 
-/* The words behind reference and points: pairs "--set" KEY=VALUE, "--into" FOLDER. False if they
- * are not. */
-static bool take_overrides(int n, char **words, const char *set[COMMAND_SETS],
-                           case_overrides *out) {
+/* The words behind reference and points: pairs "--set" KEY=VALUE, "--into" FOLDER, "--text" COPY.
+ * False if they are not. */
+static bool take_options(int n, char **words, command_options *out) {
   for (int i = 2; i < n; i += 2) {
-    bool into = strcmp(words[i], "--into") == 0;
-    if (i + 1 == n || (!into && strcmp(words[i], "--set") != 0) || out->n == COMMAND_SETS)
+    const bool into = strcmp(words[i], "--into") == 0, text = strcmp(words[i], "--text") == 0;
+    if (i + 1 == n || (!into && !text && strcmp(words[i], "--set") != 0) ||
+        out->n_set == COMMAND_SETS)
       return false;
-    if (into)
-      out->into = words[i + 1];
-    else
-      set[out->n++] = words[i + 1];
+    *(into ? &out->into : text ? &out->text : &out->set[out->n_set++]) = words[i + 1];
   }
   return true;
 }
@@ -256,10 +253,8 @@ int main(int argc, char **argv) {
     fputs(usage, stdout);
     return SHB_OK;
   }
-  const char    *set[COMMAND_SETS];
-  case_overrides overrides = {.text = set};
-  if (argc < LEAST_WORDS ||
-      !take_overrides(argc - LEAST_WORDS, argv + LEAST_WORDS, set, &overrides) ||
+  command_options options = {.path = argc > 1 ? argv[1] : NULL};
+  if (argc < LEAST_WORDS || !take_options(argc - LEAST_WORDS, argv + LEAST_WORDS, &options) ||
       !rung_from_words(argv + FIRST_WORD, &j.setting)) {
     fputs("shroudhb: error: shroudhb-rung is started by shroudhb converge; see --help\n", stderr);
     return SHB_ERR_INPUT;
@@ -268,11 +263,10 @@ int main(int argc, char **argv) {
   j.stem  = argv[3];
   j.reference =
       argc > LEAST_WORDS && strcmp(argv[LEAST_WORDS], "-") != 0 ? argv[LEAST_WORDS] : NULL;
-  j.points = argc > LEAST_WORDS + 1 && strcmp(argv[LEAST_WORDS + 1], "-") != 0
-                 ? argv[LEAST_WORDS + 1]
-                 : NULL;
-  shb_status status =
-      case_read_with(argv[1], &overrides, CASE_MHB | CASE_CONVERGE, stderr, &j.file);
+  j.points          = argc > LEAST_WORDS + 1 && strcmp(argv[LEAST_WORDS + 1], "-") != 0
+                          ? argv[LEAST_WORDS + 1]
+                          : NULL;
+  shb_status status = command_read(&options, CASE_MHB | CASE_CONVERGE, &j.file);
   if (status != SHB_OK) return command_finish(status);
   shb_interrupt_catch();
   openblas_set_num_threads(1);

@@ -1,21 +1,19 @@
-/* A table of designs: a CSV file whose header names the varied keys. */
+/* A table of designs: a CSV file whose first row names the varied keys (mesh/table/csv.h). */
 #ifndef CASES_DESIGNS_DESIGN_TABLE_H
 #define CASES_DESIGNS_DESIGN_TABLE_H
 
-#include <stdbool.h>
-#include <stddef.h>
+#include "cases/designs/study_keys.h"
 
-typedef struct {
-  int    n_columns, n_rows;
-  char **column; /* [n_columns] header; they point into text */
-  char **cell;   /* [n_rows][n_columns] as written, without surrounding blanks */
-  int   *line;   /* [n_rows] where a row stands in the file, from 1 */
-  char  *text;
-} design_table;
+/* Take the columns of a table as varied keys, and its rows as designs.
+ *
+ *   at      in   for messages: where the study file names the table
+ *   n       out  rows
+ *   design  out  [n][keys->n] malloc'ed, SI; NULL after a fault, which is recorded */
+void design_table_read(case_issues *issues, const case_node *at, const char *path, study_keys *keys,
+                       int *n, double **design);
 
-/* Read a CSV file with commas. Empty lines are left out; cells are not quoted. False with a reason,
- * one line. Free it after success. */
-bool design_table_read(const char *path, design_table *table, char *why, size_t size);
-void design_table_free(design_table *table);
+/* Take keys by their names, one a line, which came from a table. */
+void design_table_columns(case_issues *issues, const case_node *at, const char *columns,
+                          study_keys *keys);
 
 #endif

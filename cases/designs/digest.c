@@ -7,6 +7,7 @@
 
 #include "cases/schema/stage_settings.h"
 #include "mesh/base/publish.h"
+#include "mesh/io/source_files.h"
 
 /* Changes whenever the way to compute outputs changes. */
 static const char method[] = "exact peaks 2";
@@ -34,6 +35,15 @@ static void print(uint64_t hash, char out[DIGEST_TEXT]) {
   snprintf(out, DIGEST_TEXT, "%016" PRIx64, hash);
 }
 
+/* With all that a mesh file includes. */
+static shb_status add_mesh(const char *path, FILE *out) {
+  char print[17];
+  if (!path) return SHB_OK;
+  SHB_TRY(mesh_source_fingerprint(path, print));
+  fprintf(out, "%s\n", print);
+  return SHB_OK;
+}
+
 static shb_status add_file(const char *path, FILE *out) {
   char print[17];
   if (!path) return SHB_OK;
@@ -47,11 +57,12 @@ shb_status digest_inputs(const case_file *file, char **inputs) {
   *inputs     = NULL;
   FILE *out   = open_memstream(inputs, &size);
   SHB_CHECK(out, SHB_ERR_IO, "out of memory");
-  shb_status status = add_file(file->mesh_file, out);
+  shb_status status = add_mesh(file->mesh_file, out);
   if (status == SHB_OK) status = add_file(file->modal_file, out);
   if (status == SHB_OK) status = add_file(file->field_file, out);
   for (int i = 0; i < file->n_loads && status == SHB_OK; i++)
     status = add_file(file->loads[i].field, out);
+  if (status == SHB_OK) status = add_file(file->mistuning.file, out);
   fclose(out);
   return status;
 }

@@ -8,7 +8,7 @@
 
 enum { DIGEST_TEXT = 17 };
 
-/* Fingerprints of the files that a case reads (mesh, modes, load fields), as text; malloc'ed. A
+/* Fingerprints of the files that a case reads (mesh, modes, load fields, deviations), as text; malloc'ed. A
  * design cannot change them. Errors: SHB_ERR_IO. */
 shb_status digest_inputs(const case_file *file, char **inputs);
 

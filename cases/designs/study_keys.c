@@ -141,7 +141,26 @@ static void read_list(case_issues *issues, const case_node *node, study_key *key
   if (node->n == 0)
     fault(issues, node, key->path, "the list is empty; expected at least one number");
   if (node->n == 0 || !take_values(issues, key, node->n)) return;
-  for (int i = 0; i < node->n; i++) study_key_number(issues, key, &node->child[i], &key->value[i]);
+  for (int i = 0; i < node->n; i++) {
+    const case_node *one = &node->child[i];
+    if (!study_key_number(issues, key, one, &key->value[i])) continue;
+    for (int k = 0; k < i; k++) {
+      if (key->value[k] != key->value[i]) continue;
+      case_issue_add(issues, one->line, one->column, key->path,
+                     "is %s, which value %d is already; every value once, with a decimal point",
+                     one->text, k + 1);
+      return;
+    }
+  }
+}
+
+/* {from: 0,1} has a key 1. */
+static bool refuse_comma(case_issues *issues, const case_node *one, const char *path) {
+  if (one->kind != CASE_NULL || one->key[0] < '0' || one->key[0] > '9') return false;
+  case_issue_add(issues, one->key_line, one->key_column, path,
+                 "'%.40s': a number where a key belongs; write decimals with a point, such as 2.1",
+                 one->key);
+  return true;
 }
 
 /* Read the members of {from, to, points, scale}; false after a fault. */
@@ -153,14 +172,17 @@ static bool read_members(case_issues *issues, const case_node *node, study_key *
   for (int i = 0; i < node->n; i++) {
     const case_node *one = &node->child[i];
     char             hint[256], why[CASE_WHY];
-    if (strcmp(one->key, "from") == 0) {
+    if (refuse_comma(issues, one, key->path)) {
+      good = false;
+    } else if (strcmp(one->key, "from") == 0) {
       good = study_key_number(issues, key, one, &key->from) && good;
     } else if (strcmp(one->key, "to") == 0) {
       good = study_key_number(issues, key, one, &key->to) && good;
     } else if (strcmp(one->key, "points") == 0) {
       if (one->kind != CASE_SCALAR || !case_integer(one->text, &key->n, why) || key->n < 1 ||
           key->n > STUDY_MOST_DESIGNS) {
-        fault(issues, one, key->path, "points: expected a whole number from 1");
+        case_issue_add(issues, one->line, one->column, key->path,
+                       "points: expected a whole number from 1 to %d", STUDY_MOST_DESIGNS);
         good = false;
       }
     } else if (strcmp(one->key, "scale") == 0) {

@@ -1,5 +1,6 @@
 #include "cases/designs/study_optimise.h"
 
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -48,6 +49,18 @@ static int output_of(reading *r, const case_node *node, const char *name) {
   return -1;
 }
 
+/* A limit of stress below this without a unit is one in MPa: no metal fails at 1 MPa. */
+static const double LEAST_BARE_STRESS = 1e6;
+
+/* A bare number that cannot be meant in SI is asked back. */
+static bool refuse_bare(reading *r, const case_node *one, const char *unit, double value) {
+  const bool bare = one->text[strspn(one->text, "+-.0123456789eE")] == '\0';
+  if (strcmp(unit, "Pa") != 0 || !bare || fabs(value) >= LEAST_BARE_STRESS) return false;
+  case_issue_add(r->issues, one->line, one->column, "optimise", "%s: %s Pa: did you mean %s MPa?",
+                 one->key, one->text, one->text);
+  return true;
+}
+
 static void read_limits(reading *r, const case_node *node, bool least) {
   if (node->kind != CASE_MAPPING || node->n == 0)
     fault(r, node, "at_most, at_least: expected a mapping such as {frequency: 150 Hz}");
@@ -61,6 +74,8 @@ static void read_limits(reading *r, const case_node *node, bool least) {
       fault(r, one, "a limit is a number with its unit");
     } else if (!case_quantity(one->text, strcmp(unit, "-") == 0 ? "" : unit, &limit.value, why)) {
       case_issue_add(r->issues, one->line, one->column, "optimise", "%s: %s", one->key, why);
+    } else if (refuse_bare(r, one, unit, limit.value)) {
+      continue;
     } else if (r->o->n_limits == STUDY_MAX_LIMITS) {
       fault(r, one, "more than 16 limits");
     } else {

@@ -170,69 +170,6 @@ static void make_sample(case_issues *issues, const case_node *at, const study_pl
   *n_designs = plan->n_points;
 }
 
-/* Record the first fault of a table at the plan that names it; line 0 is that of no row. */
-static void table_fault(case_issues *issues, const case_node *at, const char *path, int line,
-                        const char *text) {
-  char number[32] = "";
-  if (line > 0) snprintf(number, sizeof number, ":%d", line);
-  case_issue_add(issues, at->line, at->column, "plan", "%s%s: %s", path, number, text);
-}
-
-/* A column becomes a key. False after a fault, which is recorded in own. */
-static bool name_column(case_issues *own, const char *name, int number, study_keys *keys) {
-  const case_node place = {.kind = CASE_SCALAR};
-  if (!name[0]) {
-    case_issue_add(own, 0, 0, NULL, "column %d has no name; expected a key of the case", number);
-  } else if (strchr(name, ';')) {
-    case_issue_add(own, 0, 0, NULL, "columns are separated by commas, not by ';'");
-  } else if (keys->n == STUDY_MAX_KEYS) {
-    case_issue_add(own, 0, 0, NULL, "the table has more than %d columns", STUDY_MAX_KEYS);
-  } else if (study_key_start(own, &place, name, &keys->key[keys->n])) {
-    for (int k = 0; k < keys->n; k++)
-      if (strcmp(keys->key[k].path, name) == 0)
-        case_issue_add(own, 0, 0, name, "is the column %d and %d", k + 1, number);
-    keys->n++;
-  }
-  return own->n == 0;
-}
-
-/* Columns and cells of a table as keys and designs [n_rows][n_columns]. Returns the line of the
- * first fault, which is recorded in own; 0: the header, or none. */
-static int read_table(case_issues *own, const design_table *table, study_keys *keys,
-                      double *design) {
-  for (int k = 0; k < table->n_columns; k++)
-    if (!name_column(own, table->column[k], k + 1, keys)) return 0;
-  for (int i = 0; i < table->n_rows * keys->n; i++) {
-    const case_node cell = {.kind = CASE_SCALAR, .text = table->cell[i]};
-    if (!study_key_number(own, &keys->key[i % keys->n], &cell, &design[i]))
-      return table->line[i / keys->n];
-  }
-  return 0;
-}
-
-/* Take the columns of a table as varied keys, and its rows as designs. */
-static void use_table(case_issues *issues, const case_node *at, const study_plan *plan,
-                      study_keys *keys, int *n_designs, double **design) {
-  design_table table;
-  char         why[512];
-  case_issues  own = {0};
-  if (!design_table_read(plan->table, &table, why, sizeof why)) {
-    fault(issues, at, "plan", why);
-    return;
-  }
-  if (take(issues, at, table.n_rows, table.n_columns, design)) {
-    int line = read_table(&own, &table, keys, *design);
-    if (own.no_memory)
-      case_issues_no_memory(issues);
-    else if (own.n > 0)
-      table_fault(issues, at, plan->table, line, own.issue[0].text);
-    else
-      *n_designs = table.n_rows;
-  }
-  case_issues_free(&own);
-  design_table_free(&table);
-}
-
 /* ---------------------------------------------------------------- samples */
 
 /* The values of the uncertain keys [group][n_uncertain]; NULL after a fault. */
@@ -277,8 +214,12 @@ void study_plan_make(case_issues *issues, const case_node *at, const study_plan 
                      study_keys *keys, int *n, double **design) {
   *n      = 0;
   *design = NULL;
-  if (plan->kind == STUDY_TABLE)
-    use_table(issues, at, plan, keys, n, design);
+  if (plan->kind == STUDY_TABLE && plan->columns)
+    design_table_columns(issues, at, plan->columns, keys);
+  else if (plan->kind == STUDY_TABLE && plan->table)
+    design_table_read(issues, at, plan->table, keys, n, design);
+  else if (plan->kind == STUDY_TABLE)
+    case_issues_no_memory(issues);
   else if (plan->kind == STUDY_GRID)
     make_grid(issues, at, keys, keys->n, n, design);
   else

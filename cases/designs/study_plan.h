@@ -12,6 +12,7 @@ typedef enum { STUDY_GRID, STUDY_TABLE, STUDY_SOBOL, STUDY_LATIN_HYPERCUBE } stu
 typedef struct {
   study_plan_kind kind;
   char           *table;     /* resolved path of the CSV file of STUDY_TABLE, else NULL */
+  const char     *columns;   /* its keys, one a line, where the file is not read again; else NULL */
   int             n_points;  /* of STUDY_SOBOL and STUDY_LATIN_HYPERCUBE */
   unsigned long   seed;      /* of these */
   int             n_samples; /* of the uncertain keys; 0: there are none */
@@ -33,7 +34,8 @@ bool study_plan_has_blocks(const study_plan *plan, const study_keys *keys);
 /* Number of designs for each design of the varied keys: 1 without uncertain keys. */
 int study_plan_group(const study_plan *plan, const study_keys *keys);
 
-/* Make the designs of the varied keys: one without any. The columns of a table become keys.
+/* Make the designs of the varied keys: one without any. The columns of a table become keys. Without
+ * its rows there are no designs.
  *
  *   at      in   for messages
  *   design  out  [n][keys->n] malloc'ed, NULL after a fault */

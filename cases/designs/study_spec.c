@@ -9,6 +9,7 @@
 #include "cases/designs/uncertain_keys.h"
 #include "cases/parse/diagnostics.h"
 #include "cases/parse/keys.h"
+#include "cases/parse/value.h"
 #include "cases/schema/case.h"
 
 enum { STAGES = CASE_MESH | CASE_MODAL | CASE_MHB };
@@ -23,8 +24,9 @@ static const case_key rows[] = {
 static const case_keys known = {sizeof rows / sizeof *rows, rows};
 
 typedef struct {
-  case_issues issues;
-  study_spec *spec;
+  case_issues        issues;
+  study_spec        *spec;
+  const study_texts *texts; /* NULL: the files are read */
 } reading;
 
 static void fault(reading *r, const case_node *node, const char *key, const char *text) {
@@ -44,6 +46,12 @@ static char *beside(const char *folder, const char *path) {
 static void add_output(reading *r, const case_node *node, const char *name) {
   study_spec *s = r->spec;
   char        why[512];
+  for (int i = 0; i < s->n_outputs; i++) {
+    if (strcmp(s->output[i].name, name) != 0) continue;
+    case_issue_add(&r->issues, node->line, node->column, "outputs",
+                   "'%s' is output %d already; every output once", name, i + 1);
+    return;
+  }
   if (s->n_outputs == STUDY_MAX_OUTPUTS) {
     fault(r, node, "outputs", "more than 64 outputs");
   } else if (!study_output_parse(name, &s->base, &s->output[s->n_outputs], why, sizeof why)) {
@@ -60,7 +68,7 @@ static void read_outputs(reading *r, const case_node *node, const case_node *roo
     return;
   }
   if (node->kind == CASE_SCALAR) add_output(r, node, node->text);
-  if (node->kind != CASE_SEQUENCE && node->kind != CASE_SCALAR)
+  if (node->kind == CASE_NULL || node->kind == CASE_MAPPING)
     fault(r, node, "outputs", "expected a list of outputs, such as [peak, frequency]");
   for (int i = 0; node->kind == CASE_SEQUENCE && i < node->n; i++) {
     const case_node *one = &node->child[i];
@@ -106,24 +114,25 @@ shb_status study_spec_design(const study_spec *s, const double *value, const cha
   for (; 2 * sets < n; sets++) text[sets] = words[2 * sets + 1];
   snprintf(named, sizeof named, "name=%s", name ? name : "");
   if (name) text[sets++] = named;
-  const case_overrides overrides = {sets, text, into};
+  const case_overrides overrides = {sets, text, into, s->base.text};
   *file                          = (case_file){.no_memory = status != SHB_OK};
   if (status == SHB_OK) status = case_read_with(s->case_path, &overrides, STAGES, errors, file);
   for (int i = 0; i < 2 * STUDY_MAX_KEYS; i++) free(words[i]);
   return status;
 }
 
-/* The digest of a design. False: it is refused, and *messages holds what was said, malloc'ed; NULL
- * without memory. */
+/* The digests of a design and of its modes. False: it is refused, and *messages holds what was
+ * said, malloc'ed; NULL without memory. */
 static bool digest_values(const study_spec *s, const double *value, char digest[DIGEST_TEXT],
-                          char **messages) {
+                          char modes[DIGEST_TEXT], char **messages) {
   size_t    length;
   case_file file;
   FILE     *into = open_memstream(messages, &length);
-  digest[0]      = '\0';
+  digest[0] = modes[0] = '\0';
   if (!into) return false;
   bool good = study_spec_design(s, value, NULL, NULL, into, &file) == SHB_OK;
   if (good) digest_design(&file, s->inputs, s->n_outputs, s->output, digest);
+  if (good) digest_modes(&file, s->inputs, modes);
   if (good) case_free(&file);
   if (!good) fputs(shb_message(), into); /* empty where the faults were printed */
   fclose(into);
@@ -135,8 +144,8 @@ static bool digest_values(const study_spec *s, const double *value, char digest[
 
 bool study_spec_digest(const study_spec *s, const double *value, char digest[DIGEST_TEXT],
                        char *why, size_t size) {
-  char *messages = NULL;
-  bool  good     = digest_values(s, value, digest, &messages);
+  char *messages = NULL, modes[DIGEST_TEXT];
+  bool  good     = digest_values(s, value, digest, modes, &messages);
   why[0]         = '\0';
   if (!good && messages) refusal_line(messages, s->case_path, why, size);
   free(messages);
@@ -180,6 +189,7 @@ static const case_node *make_designs(reading *r, const case_node *root) {
                   *optimise = case_node_find(root, "optimise"), *at = vary ? vary : root;
   const study_outputs outputs = {&s->base, &s->n_outputs, s->output};
   if (plan) study_plan_read(&r->issues, plan, s->folder, &s->plan);
+  if (r->texts) s->plan.columns = r->texts->columns;
   study_plan_read_samples(&r->issues, case_node_find(root, "samples"), case_node_find(root, "seed"),
                           &s->plan);
   check_parts(r, root);
@@ -191,7 +201,8 @@ static const case_node *make_designs(reading *r, const case_node *root) {
   if (r->issues.n == 0 && !optimise)
     study_plan_make(&r->issues, plan && !vary ? plan : at, &s->plan, &s->keys, &s->n_designs,
                     &s->design);
-  if (r->issues.n == 0 && s->n_designs == 0) fault(r, root, "plan", "holds no design");
+  if (r->issues.n == 0 && s->n_designs == 0 && !s->plan.columns)
+    fault(r, root, "plan", "holds no design");
   if (uncertain) uncertain_keys_read(&r->issues, uncertain, &s->keys);
   if (r->issues.n == 0 && uncertain)
     study_plan_add_samples(&r->issues, uncertain, &s->plan, &s->keys, &s->n_designs, &s->design);
@@ -199,22 +210,37 @@ static const case_node *make_designs(reading *r, const case_node *root) {
   return plan ? plan : uncertain ? uncertain : root;
 }
 
+static int by_text(const void *a, const void *b) {
+  return strcmp(a, b);
+}
+
+/* How many texts differ; they are sorted. */
+static int count_different(int n, char (*text)[DIGEST_TEXT]) {
+  int different = 0;
+  qsort(text, (size_t)n, sizeof *text, by_text);
+  for (int i = 0; i < n; i++) different += i == 0 || strcmp(text[i], text[i - 1]) != 0;
+  return different;
+}
+
 /* Read every design as a case, and report those that are refused. */
 static void check_designs(reading *r, const case_node *root, const case_node *at) {
-  study_spec *s       = r->spec;
-  refusals    refused = {0};
-  s->digest           = calloc((size_t)s->n_designs + 1, sizeof *s->digest);
-  for (int d = 0; s->digest && d < s->n_designs; d++) {
+  study_spec *s             = r->spec;
+  refusals    refused       = {0};
+  s->digest                 = calloc((size_t)s->n_designs + 1, sizeof *s->digest);
+  char(*modes)[DIGEST_TEXT] = calloc((size_t)s->n_designs + 1, sizeof *modes);
+  for (int d = 0; s->digest && modes && d < s->n_designs; d++) {
     const double *value    = s->design + (size_t)d * (size_t)s->keys.n;
     char         *messages = NULL;
-    const bool    good     = digest_values(s, value, s->digest[d], &messages);
+    const bool    good     = digest_values(s, value, s->digest[d], modes[d], &messages);
     if (!good && messages)
       refusals_take(&refused, &s->keys, d, messages, s->case_path);
     else if (!good)
       case_issues_no_memory(&r->issues);
     free(messages);
   }
-  if (!s->digest) case_issues_no_memory(&r->issues);
+  if (!s->digest || !modes) case_issues_no_memory(&r->issues);
+  if (modes && !s->base.modal_file) s->n_models = count_different(s->n_designs, modes);
+  free(modes);
   refusals_report(&refused, &s->keys, s->design, root, at, &r->issues);
 }
 
@@ -223,9 +249,9 @@ static void check_designs(reading *r, const case_node *root, const case_node *at
 static void read_name(reading *r, const case_node *node) {
   const char *from = r->spec->path, *slash = strrchr(from, '/');
   const char *leaf = slash ? slash + 1 : from, *dot = strrchr(leaf, '.');
-  bool        good = !node || (node->kind == CASE_SCALAR && node->text[0] &&
-                        !strpbrk(node->text, "/\\ \t") && strlen(node->text) < CASE_NAME);
-  if (!good) fault(r, node, "name", "expected a word that may be the name of a file");
+  bool        good = !node || node->kind == CASE_SCALAR;
+  if (!good) fault(r, node, "name", "expected the name of the study and its files");
+  if (node && good) good = case_value_is_name(&r->issues, "name", node);
   r->spec->name = node && good
                       ? strdup(node->text)
                       : strndup(leaf, dot && dot != leaf ? (size_t)(dot - leaf) : strlen(leaf));
@@ -242,11 +268,15 @@ static bool read_case(reading *r, const case_node *root, FILE *errors) {
     case_issues_no_memory(&r->issues);
     return false;
   }
-  const shb_status status = case_read(r->spec->case_path, STAGES, errors, &r->spec->base);
+  const case_overrides again = {.document = r->texts ? r->texts->base : NULL};
+  const shb_status     status =
+      case_read_with(r->spec->case_path, &again, STAGES, errors, &r->spec->base);
   if (status == SHB_OK) {
     if (r->spec->base.mhb.parameter != MHB_IN_FREQUENCY)
       fault(r, node, "case", "the case follows mhb.vary; a study needs a case over the frequency");
-    if (digest_inputs(&r->spec->base, &r->spec->inputs) == SHB_OK) return true;
+    if (r->texts) r->spec->inputs = strdup(r->texts->inputs);
+    if (r->texts && !r->spec->inputs) case_issues_no_memory(&r->issues);
+    if (r->texts || digest_inputs(&r->spec->base, &r->spec->inputs) == SHB_OK) return true;
     fault(r, node, "case", shb_message());
     return false;
   }
@@ -285,17 +315,42 @@ static void read_document(reading *r, bool check, FILE *errors) {
   case_document_free(root);
 }
 
-shb_status study_spec_read(const char *path, bool check, FILE *errors, study_spec *s) {
-  size_t length = 0;
-  *s            = (study_spec){0};
-  SHB_TRY(case_text_read(path, &s->text, &length));
+static shb_status read_study(reading *r, const char *path, bool check, FILE *errors) {
+  study_spec *s     = r->spec;
   const char *slash = strrchr(path, '/');
   s->path           = strdup(path);
   s->folder = slash ? strndup(path, slash == path ? 1 : (size_t)(slash - path)) : strdup(".");
-  SHB_CHECK(s->path && s->folder, SHB_ERR_IO, "%s: out of memory", path);
-  reading r = {case_issues_start(path, s->text, length), s};
-  read_document(&r, check, errors);
-  return case_issues_finish(&r.issues, errors);
+  SHB_CHECK(s->path && s->folder && s->text, SHB_ERR_IO, "%s: out of memory", path);
+  r->issues = case_issues_start(path, s->text, strlen(s->text));
+  read_document(r, check, errors);
+  s->plan.columns = NULL; /* of the reader */
+  return case_issues_finish(&r->issues, errors);
+}
+
+shb_status study_spec_read(const char *path, bool check, FILE *errors, study_spec *s) {
+  size_t  length = 0;
+  reading r      = {.spec = s};
+  *s             = (study_spec){0};
+  SHB_TRY(case_text_read(path, &s->text, &length));
+  return read_study(&r, path, check, errors);
+}
+
+shb_status study_spec_read_texts(const char *path, const study_texts *texts, FILE *errors,
+                                 study_spec *s) {
+  reading r = {.spec = s, .texts = texts};
+  *s        = (study_spec){.text = strdup(texts->study)};
+  return read_study(&r, path, false, errors);
+}
+
+shb_status study_spec_check_inputs(const study_spec *s, const case_file *inputs_of) {
+  char *now;
+  SHB_TRY(digest_inputs(inputs_of, &now));
+  const bool same = strcmp(now, s->inputs) == 0;
+  free(now);
+  SHB_CHECK(same, SHB_ERR_INPUT,
+            "a file that the case reads (mesh, modes, loads or deviations) has changed since the "
+            "study began; run the study again");
+  return SHB_OK;
 }
 
 void study_spec_free(study_spec *s) {

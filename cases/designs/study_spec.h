@@ -25,9 +25,18 @@ typedef struct {
   int            n_designs;
   double        *design;       /* [n_designs][keys.n]; of an optimisation study_optimise_starts */
   char (*digest)[DIGEST_TEXT]; /* [n_designs] of everything the outputs depend on, if checked */
-  char     *inputs;            /* fingerprints of the files that the case reads */
-  case_file base;              /* the case as it is */
+  int       n_models; /* modal files that the designs need, if checked; 0 with modal.file */
+  char     *inputs;   /* fingerprints of the files that the case reads */
+  case_file base;     /* the case as it is */
 } study_spec;
+
+/* The texts of a study that was read, so that a process that computes designs reads no file again:
+ * one that was edited meanwhile would give rows of two cases in one table. */
+typedef struct {
+  const char *study, *base; /* texts of the study file and of its case */
+  const char *columns;      /* keys of the table, one a line; "" without one */
+  const char *inputs;       /* fingerprints of the files that the case reads, as digest_inputs */
+} study_texts;
 
 /* Read and check a study file, its case and its table. All errors are printed to errors with line,
  * column and caret. Nothing is run. Free it in any case.
@@ -37,7 +46,15 @@ typedef struct {
  *
  * Errors: SHB_ERR_INPUT a fault in the file; SHB_ERR_IO a file cannot be opened. */
 shb_status study_spec_read(const char *path, bool check, FILE *errors, study_spec *spec);
+/* The same from the texts of another process, which has checked them. The designs of a table are
+ * not made. */
+shb_status study_spec_read_texts(const char *path, const study_texts *texts, FILE *errors,
+                                 study_spec *spec);
 void       study_spec_free(study_spec *spec);
+
+/* Whether the files that the case reads are still those of the study; inputs_of is the case or a
+ * design. Errors: SHB_ERR_INPUT they are not; SHB_ERR_IO. */
+shb_status study_spec_check_inputs(const study_spec *spec, const case_file *inputs_of);
 
 /* Read a case with the values of a design. Errors as of case_read, printed to errors. */
 shb_status study_spec_design(const study_spec *spec, const double *value, const char *name,

@@ -1,9 +1,11 @@
 #include "cases/designs/uncertain_keys.h"
 
+#include <math.h>
 #include <stdio.h>
 #include <string.h>
 
 #include "cases/parse/keys.h"
+#include "cases/parse/units.h"
 
 static const char *const PARAMETERS[PLAN_N_DISTRIBUTIONS] = {
     [PLAN_UNIFORM] = "low, high",          [PLAN_LOG_UNIFORM] = "low, high",
@@ -33,17 +35,45 @@ static void refuse_name(case_issues *issues, const case_node *node, const study_
                  node->key, hint);
 }
 
+static bool is_percent(const case_node *node) {
+  const size_t n = node->kind == CASE_SCALAR ? strlen(node->text) : 0;
+  return n > 0 && node->text[n - 1] == '%';
+}
+
+/* A parameter in percent beside a mean without: a deviation is relative to the mean. */
+static void read_percent(case_issues *issues, const case_node *node, bool deviation,
+                         const char *path, double mean, double *value) {
+  char why[CASE_WHY];
+  if (!deviation)
+    case_issue_add(issues, node->line, node->column, path,
+                   "'%.40s': percent of what? A deviation is relative to the mean; give the value "
+                   "itself",
+                   node->text);
+  else if (!case_quantity(node->text, "", value, why))
+    fault(issues, node, path, why);
+  else
+    *value *= fabs(mean);
+}
+
 static void read_parameters(case_issues *issues, const case_node *node, plan_kind kind,
                             study_key *key) {
   int n = plan_distribution_parameters(kind), before = issues->n;
+  if (node->kind == CASE_BROKEN) return; /* told */
   if (node->kind != CASE_SEQUENCE || node->n != n) {
     case_issue_add(issues, node->line, node->column, key->path, "%s: expected %d numbers [%s]",
                    plan_distribution_name(kind), n, PARAMETERS[kind]);
     return;
   }
   key->distribution.kind = kind;
-  for (int i = 0; i < n; i++)
-    study_key_number(issues, key, &node->child[i], &key->distribution.parameter[i]);
+  double    *parameter   = key->distribution.parameter;
+  const bool has_mean    = strncmp(PARAMETERS[kind], "mean", strlen("mean")) == 0;
+  for (int i = 0; i < n; i++) {
+    const case_node *one = &node->child[i];
+    if (i > 0 && is_percent(one) && !is_percent(&node->child[0]))
+      read_percent(issues, one, has_mean && i == 1, key->path, parameter[0], &parameter[i]);
+    else
+      study_key_number(issues, key, one, &parameter[i]);
+  }
   if (issues->n == before && plan_distribution_check(&key->distribution, key->path) != SHB_OK)
     fault(issues, node, NULL, shb_message());
 }

@@ -3,6 +3,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "cases/commands/up_to_date.h"
 #include "mesh/base/publish.h"
 #include "modal/hdf5/h5.h"
 #include "postproc/analysis/file_origin.h"
@@ -124,6 +125,7 @@ static void release(material *m) {
 static shb_status gather(const field_options *o, const char *modal, material *m) {
   candidate chosen = {0};
   SHB_TRY(mhb_response_read(o->response, &m->response));
+  SHB_TRY(up_to_date_check_modal(o->response, modal));
   SHB_TRY(choose(m->response, o, &chosen));
   SHB_TRY(post_blade_field_read_motion(modal, &m->field));
   SHB_CHECK(m->field.n_nodes > 0, SHB_ERR_INPUT,

@@ -12,9 +12,14 @@
 #include "cases/schema/case_paths.h"
 #include "mesh/base/publish.h"
 
-enum { N_STAGES = 4 };
+enum { MESH, MODAL, MHB, POST, N_STAGES };
 
 static const char *const stage_name[N_STAGES] = {"mesh", "modal", "mhb", "post"};
+
+/* A case of modes alone ends with them. */
+static int last_stage(const case_file *file) {
+  return file->only_modes ? MODAL : POST;
+}
 
 /* --verbose: prints the time of each stage. */
 static void print_times(const subprocess_result result[N_STAGES]) {
@@ -39,11 +44,12 @@ static void print_result(const case_file *file, const char *what, const char *su
 
 static void print_results(const case_file *file, bool no_report, int code) {
   if (code == SHB_NOT_CONVERGED) puts("not converged everywhere: the report says where and why");
-  if (!no_report) print_result(file, "report", ".html");
-  print_result(file, "curves", ".csv");
-  print_result(file, "summary", ".summary.json");
+  const bool curves = !file->only_modes;
+  if (curves && !no_report) print_result(file, "report", ".html");
+  if (curves) print_result(file, "curves", ".csv");
+  if (curves) print_result(file, "summary", ".summary.json");
   if (!file->modal_file) print_result(file, "modes", ".modal.h5");
-  print_result(file, "response", ".response.h5");
+  if (curves) print_result(file, "response", ".response.h5");
   fflush(stdout);
 }
 
@@ -71,8 +77,9 @@ static shb_status check_outputs(const case_file *file, bool no_report) {
  *               everywhere; else 0 */
 static shb_status run_stages(const case_file *file, const command_options *options, int *code,
                              subprocess_result result[N_STAGES]) {
-  *code = SHB_OK;
-  for (int i = file->modal_file ? 2 : 0; i < N_STAGES; i++) {
+  *code           = SHB_OK;
+  const int first = file->modal_file ? MHB : 0, last = last_stage(file);
+  for (int i = first; i <= last; i++) {
     SHB_TRY(stage_run(stage_name[i], options, &result[i]));
     if (result[i].code == SHB_OK) continue;
     *code = result[i].code;
@@ -81,23 +88,34 @@ static shb_status run_stages(const case_file *file, const command_options *optio
   return SHB_OK;
 }
 
-shb_status run_case(const command_options *options) {
+/* All stages have the case as it is now, also where it is edited meanwhile. */
+static shb_status run_kept(const command_options *options) {
   case_file file;
-  SHB_TRY(command_read(options, RUN_ALL, &file));
+  SHB_TRY(command_read(options, RUN_ALL | CASE_OR_MODES, &file));
   int               claim, code = SHB_OK;
   subprocess_result result[N_STAGES] = {{0}};
   shb_status        status           = claim_results(&file, &claim);
   if (status == SHB_OK) clear_temporaries(&file);
-  if (status == SHB_OK) status = check_outputs(&file, options->no_report);
+  if (status == SHB_OK && !file.only_modes) status = check_outputs(&file, options->no_report);
   if (status == SHB_OK) status = run_stages(&file, options, &code, result);
   if (options->verbose && !options->quiet) print_times(result);
-  bool done = status == SHB_OK && result[N_STAGES - 1].seconds > 0 &&
+  bool done = status == SHB_OK && result[last_stage(&file)].seconds > 0 &&
               (code == SHB_OK || code == SHB_NOT_CONVERGED);
   if (done && !options->quiet) print_results(&file, options->no_report, code);
   case_free(&file);
   if (claim >= 0) close(claim);
   if (status != SHB_OK) return status;
   return code == SHB_OK ? SHB_OK : shb_fail((shb_status)code, __FILE__, __LINE__, "%s", "");
+}
+
+shb_status run_case(const command_options *options) {
+  command_options kept = *options;
+  int             copy;
+  char            path[SUBPROCESS_COPY];
+  SHB_TRY(command_keep_text(&kept, &copy, path));
+  const shb_status status = run_kept(&kept);
+  close(copy);
+  return status;
 }
 
 static void describe_source(const case_file *file, FILE *out) {

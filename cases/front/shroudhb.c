@@ -1,8 +1,5 @@
-#define _GNU_SOURCE /* sched_getaffinity */
 /* The front command: checks the case, runs the stages as programs of their own. */
 #include <errno.h>
-#include <limits.h>
-#include <sched.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -151,63 +148,6 @@ static int parse(int argc, char **argv, command_options *options) {
   return SHB_ERR_INPUT;
 }
 
-/* Cores that this process may use. */
-static int n_cores(void) {
-  cpu_set_t set;
-  CPU_ZERO(&set);
-  int n = sched_getaffinity(0, sizeof set, &set) == 0 ? CPU_COUNT(&set) : 1;
-  return n > 0 ? n : 1;
-}
-
-/* Is there a program of this name in PATH? */
-static bool in_path(const char *name) {
-  const char *at = getenv("PATH");
-  while (at && *at) {
-    char   path[PATH_MAX];
-    size_t n = strcspn(at, ":");
-    snprintf(path, sizeof path, "%.*s/%s", (int)n, at, name);
-    if (access(path, X_OK) == 0) return true;
-    at += n + (at[n] == ':');
-  }
-  return false;
-}
-
-/* Does a word ask for something that needs no workers? */
-static bool runs_alone(int argc, char **argv) {
-  for (int i = 1; i < argc; i++)
-    if (strcmp(argv[i], "--help") == 0 || strcmp(argv[i], "--check") == 0 ||
-        strcmp(argv[i], "--version") == 0 || strncmp(argv[i], "--design", 8) == 0)
-      return true;
-  return argc < 2 || !in_path("mpiexec") || subprocess_mpiexec_refuses_root();
-}
-
-/* shroudhb-study with a worker a core and a manager, which sleeps. The processes are not bound to
- * cores: those that compute are children of the ranks. */
-static int study_main(const char *name, int argc, char **argv, run_words end) {
-  if (runs_alone(argc, argv)) return become("study", NULL, argc, argv, end);
-  command_options options; /* a wrong word is told once, not by every process */
-  int             code = parse(argc, argv, &options);
-  if (code >= 0) return code;
-  static char *const start[] = {"mpiexec", "--quiet", "--bind-to", "none", "--oversubscribe", "-n"};
-  enum { STARTS = sizeof start / sizeof *start };
-  char   ranks[16];
-  char **words = calloc((size_t)argc + STARTS + 3, sizeof *words);
-  char  *path  = subprocess_program("shroudhb-study");
-  (void)name;
-  snprintf(ranks, sizeof ranks, "%d", n_cores() + 1);
-  if (isatty(STDERR_FILENO)) setenv("SHROUDHB_TERMINAL", "1", 1); /* the ranks write to a pipe */
-  if (!words || !path) {
-    fputs("shroudhb: error: out of memory\n", stderr);
-    return SHB_ERR_IO;
-  }
-  int n = 0;
-  for (; n < STARTS; n++) words[n] = start[n];
-  words[n++] = ranks;
-  words[n++] = path;
-  for (int i = 1; i < argc; i++) words[n++] = argv[i];
-  return end(words);
-}
-
 /* A study file has the keys case and vary, plan or uncertain. */
 static bool is_study(const char *path) {
   char  *text;
@@ -288,7 +228,7 @@ static const struct {
                 {"post", stage_main, JSON_OWN},      {"converge", stage_main, JSON_OWN},
                 {"check", check_main, JSON_CHECK},   {"keys", keys_main, JSON_NONE},
                 {"inspect", inspect_main, JSON_OWN}, {"contact", contact_main, JSON_NONE},
-                {"study", study_main, JSON_OWN},     {"integrate", stage_main, JSON_SUMMARY},
+                {"study", stage_main, JSON_OWN},     {"integrate", stage_main, JSON_SUMMARY},
                 {"field", stage_main, JSON_NONE},    {"eval", stage_main, JSON_NONE}};
 
 enum { N_COMMANDS = sizeof commands / sizeof *commands };

@@ -11,6 +11,7 @@
 #include "cases/parse/lists.h"
 #include "cases/parse/units.h"
 #include "cases/parse/value_context.h"
+#include "mesh/base/publish.h"
 
 /* Of the tangential stiffness. The contact law needs the more steps the larger it is: at 2e7 twice
  * as many as at 1. */
@@ -98,31 +99,27 @@ static bool keep_text(const case_value_context *c, void *slot, char *copy) {
   return copy != NULL;
 }
 
-static bool is_control(unsigned char c) {
-  return c < 0x20 || c == 0x7F;
+bool case_value_is_name(case_issues *issues, const char *path, const case_node *node) {
+  const char *text = node->text;
+  const bool  good = shb_name_is_plain(text) && text[0] != '.' && text[0] != '-' &&
+                    strlen(text) <= 100 && !strchr(text, '/');
+  if (!good)
+    case_issue_add(issues, node->line, node->column, path,
+                   "'%.60s' cannot be a file name: at most 100 characters, no '/', no '.' or '-' "
+                   "first, no control characters",
+                   text);
+  return good;
 }
 
 static bool read_word(const case_value_context *c, const case_node *node, void *slot) {
   if (node->kind != CASE_SCALAR) return case_value_refuse(c, node);
-  const char *text = node->text;
-  bool        good = text[0] && text[0] != '.' && text[0] != '-' && strlen(text) <= 100;
-  for (const char *at = text; *at; at++)
-    good = good && *at != '/' && !is_control((unsigned char)*at);
-  if (!good) {
-    case_issue_add(
-        c->issues, node->line, node->column, c->path,
-        "'%.60s' cannot be a file name: at most 100 characters, no '/', no '.' or '-' first", text);
-    return false;
-  }
-  return keep_text(c, slot, strdup(text));
+  return case_value_is_name(c->issues, c->path, node) && keep_text(c, slot, strdup(node->text));
 }
 
 static bool read_label(const case_value_context *c, const case_node *node, void *slot) {
   if (node->kind != CASE_SCALAR) return case_value_refuse(c, node);
   const char *text = node->text;
-  bool        good = text[0] && strlen(text) < MESH_WORD;
-  for (const char *at = text; *at; at++)
-    good = good && !strchr("/\",", *at) && !is_control((unsigned char)*at);
+  bool        good = shb_name_is_plain(text) && strlen(text) < MESH_WORD && !strpbrk(text, "/\",");
   if (good) {
     strcpy(slot, text);
   } else {

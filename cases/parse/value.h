@@ -15,4 +15,8 @@
 bool case_value_read(case_issues *issues, const case_key *key, const char *path,
                      const case_node *node, case_file *file, void *slot);
 
+/* May the text of a scalar be the name of a case or study, after which its files are called? A
+ * fault is recorded under path. */
+bool case_value_is_name(case_issues *issues, const char *path, const case_node *node);
+
 #endif

@@ -142,6 +142,45 @@ static bool has_tag(const yaml_event_t *event) {
 static bool build(builder *b, const yaml_event_t *event, const char *path, int depth,
                   case_node *out);
 
+/* Digits with a sign, and no more. */
+static bool is_whole(const char *text) {
+  if (*text == '+' || *text == '-') text++;
+  return *text && strspn(text, "0123456789") == strlen(text);
+}
+
+/* Does the next value stand behind the comma, without a blank? Columns count characters, which are
+ * bytes in a number. */
+static bool is_adjacent(const case_node *value) {
+  const case_node *next = value + 1;
+  return value->kind == CASE_SCALAR && next->kind == CASE_SCALAR && next->line == value->line &&
+         next->column == value->column + (int)strlen(value->text) + 1;
+}
+
+/* Decimals with a comma make two values each: [0,2, 0,4] has four. They are told where other commas
+ * of the list have a blank behind them, or where a value begins with a zero, as in 0,05. */
+static void refuse_decimal_comma(builder *b, const char *path, case_node *list) {
+  const case_node *value = list->child;
+  int              found = -1;
+  bool             mixed = false, zero = false;
+  for (int i = 0; i + 1 < list->n; i++) {
+    const bool cut = is_adjacent(&value[i]) && is_whole(value[i].text) &&
+                     isdigit((unsigned char)value[i + 1].text[0]) &&
+                     !strchr(value[i + 1].text, '.');
+    if (cut && found < 0) found = i;
+    mixed = mixed || !is_adjacent(&value[i]);
+    zero  = zero ||
+           (cut && value[i + 1].text[0] == '0' && isdigit((unsigned char)value[i + 1].text[1]));
+  }
+  if (found < 0 || !(mixed || zero)) return;
+  const char *whole = value[found].text, *rest = value[found + 1].text;
+  case_issue_add(
+      b->issues, value[found].line, value[found].column, path,
+      "%.40s,%.40s has a decimal comma; write %.40s.%.40s, or a blank behind every comma "
+      "of the list",
+      whole, rest, whole, rest);
+  list->kind = CASE_BROKEN;
+}
+
 static bool build_sequence(builder *b, const char *path, int depth, case_node *out) {
   for (;;) {
     yaml_event_t event;
@@ -257,7 +296,9 @@ static bool build(builder *b, const yaml_event_t *event, const char *path, int d
       return build_scalar(b, event, path, out);
     case YAML_SEQUENCE_START_EVENT:
       out->kind = CASE_SEQUENCE;
-      return build_sequence(b, path, depth, out);
+      if (!build_sequence(b, path, depth, out)) return false;
+      refuse_decimal_comma(b, path, out);
+      return true;
     case YAML_MAPPING_START_EVENT:
       out->kind = CASE_MAPPING;
       return build_mapping(b, path, depth, out);

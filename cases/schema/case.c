@@ -137,6 +137,15 @@ static shb_status note_overrides(const case_overrides *overrides, case_file *out
   return SHB_OK;
 }
 
+/* The text of the file at path, or a copy of what was read before. */
+static shb_status take_text(const char *path, const char *document, char **text, size_t *length) {
+  if (!document) return case_text_read(path, text, length);
+  *length = strlen(document);
+  *text   = strdup(document);
+  SHB_CHECK(*text, SHB_ERR_IO, "%s: out of memory", path);
+  return SHB_OK;
+}
+
 shb_status case_read(const char *path, int stages, FILE *errors, case_file *out) {
   return case_read_with(path, NULL, stages, errors, out);
 }
@@ -147,7 +156,7 @@ shb_status case_read_with(const char *path, const case_overrides *overrides, int
   if (!overrides) overrides = &none;
   *out                    = (case_file){0};
   size_t           length = 0;
-  const shb_status found  = case_text_read(path, &out->text, &length);
+  const shb_status found  = take_text(path, overrides->document, &out->text, &length);
   out->no_memory          = found != SHB_OK && errno == ENOMEM;
   SHB_TRY(found);
   out->path   = strdup(path);

@@ -6,11 +6,13 @@
 
 #include "cases/schema/stage_settings.h"
 #include "mesh/base/publish.h"
+#include "mesh/io/source_files.h"
 
 shb_status converge_settings(const case_file *file, char **text) {
   const char *input     = file->modal_file ? file->modal_file : file->mesh_file;
   char        print[17] = "none";
-  if (input) SHB_TRY(shb_fingerprint(input, print));
+  if (file->modal_file) SHB_TRY(shb_fingerprint(input, print));
+  if (input && !file->modal_file) SHB_TRY(mesh_source_fingerprint(input, print));
   char *keys = case_settings(file, (case_stage)CONVERGE_STAGES);
   SHB_CHECK(keys, SHB_ERR_IO, "out of memory");
   size_t size = strlen(keys) + 64;

@@ -12,8 +12,9 @@
  * contact.n0[2]. VALUE is YAML: "5 N", "[0.2, 0.3]", "{1: [1, 0 deg]}". */
 typedef struct {
   int                n;
-  const char *const *text; /* [n] */
-  const char        *into; /* folder of the output files; NULL: that of the case file */
+  const char *const *text;     /* [n] */
+  const char        *into;     /* folder of the output files; NULL: that of the case file */
+  const char        *document; /* text of the case file, read before; NULL: it is read */
 } case_overrides;
 
 /* Apply the overrides in their order. A missing key or block is added; an entry of a list must be

@@ -18,6 +18,14 @@ typedef struct {
   shb_status (*tick)(void *context);
 } crew_work;
 
+/* Who computes the jobs. */
+typedef struct {
+  void *context;
+  int   n;
+  /* Hand out jobs until none is left and all are done. */
+  shb_status (*manage)(void *context, const crew_work *work);
+} crew_staff;
+
 /* What computes a job. */
 typedef struct {
   void *context;

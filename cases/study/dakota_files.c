@@ -1,6 +1,6 @@
 #include "cases/study/dakota_files.h"
 
-#include <ctype.h>
+#include <errno.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -34,68 +34,129 @@ static bool is_count(const entry *e, const char *standard, const char *aprepro) 
   return strcmp(e->tag, standard) == 0 || strcmp(e->tag, aprepro) == 0;
 }
 
+enum { NOT_YET = -1 };
+
 typedef struct {
   dakota_parameters *p;
-  int                variables, responses; /* announced */
+  int                variables, responses, derivatives; /* announced, or NOT_YET */
   char              *why;
   size_t             size;
 } reading;
 
+/* A whole number from least to most. */
+static bool whole(reading *r, const entry *e, int least, int most, int *value) {
+  char *end;
+  errno     = 0;
+  long wide = strtol(e->number, &end, 10);
+  if (end != e->number && *end == '\0' && errno == 0 && wide >= least && wide <= most) {
+    *value = (int)wide;
+    return true;
+  }
+  snprintf(r->why, r->size, "%s %s: expected a whole number from %d to %d", e->number, e->tag,
+           least, most);
+  return false;
+}
+
 static bool take_variable(reading *r, const entry *e) {
   dakota_parameters *p = r->p;
+  if (is_count(e, "functions", "DAKOTA_FNS")) {
+    snprintf(r->why, r->size, "%d variables are announced, %d stand there", r->variables,
+             p->n_variables);
+    return false;
+  }
   if (!is_number(e->number, &p->value[p->n_variables])) {
     snprintf(r->why, r->size, "%s: '%s' is no number", e->tag, e->number);
+    return false;
+  }
+  for (int i = 0; i < p->n_variables; i++) {
+    if (strcmp(p->variable[i], e->tag) != 0) continue;
+    snprintf(r->why, r->size, "the variable %s stands there twice", e->tag);
     return false;
   }
   strcpy(p->variable[p->n_variables++], e->tag);
   return true;
 }
 
-/* "ASV_1:peak" */
+/* "ASV_1:peak"; 0 asks for nothing, the sum of 1 value, 2 gradient, 4 Hessian for these. */
 static bool take_response(reading *r, const entry *e) {
+  enum { ALL = 7 };
   dakota_parameters *p    = r->p;
   const char        *name = strchr(e->tag, ':');
   if (!name || !name[1]) {
     snprintf(r->why, r->size, "%s names no response; give the responses descriptors", e->tag);
     return false;
   }
-  p->active[p->n_responses] = atoi(e->number);
+  if (p->n_responses == r->responses) {
+    snprintf(r->why, r->size, "%s is response %d, of %d", e->tag, p->n_responses + 1, r->responses);
+    return false;
+  }
+  if (!whole(r, e, 0, ALL, &p->active[p->n_responses])) return false;
+  for (int i = 0; i < p->n_responses; i++) {
+    if (strcmp(p->response[i], name + 1) != 0) continue;
+    snprintf(r->why, r->size, "the response %s stands there twice", name + 1);
+    return false;
+  }
   strcpy(p->response[p->n_responses++], name + 1);
   return true;
 }
 
 static bool take_derivative(reading *r, const entry *e) {
   dakota_parameters *p = r->p;
-  int                i = atoi(e->number);
-  if (i < 1 || i > p->n_variables || p->n_derivatives == DAKOTA_MOST) {
-    snprintf(r->why, r->size, "%s: there is no variable %s", e->tag, e->number);
+  int                i;
+  if (p->n_derivatives == r->derivatives || p->n_derivatives == DAKOTA_MOST) {
+    snprintf(r->why, r->size, "%s is derivative variable %d, of %d", e->tag, p->n_derivatives + 1,
+             p->n_derivatives);
     return false;
   }
+  if (!whole(r, e, 1, p->n_variables, &i)) return false;
   p->derivative[p->n_derivatives++] = i - 1;
   return true;
 }
 
-static bool take_count(reading *r, const entry *e, int *count) {
-  *count = atoi(e->number);
-  if (*count >= 1 && *count <= DAKOTA_MOST) return true;
-  snprintf(r->why, r->size, "%s %s: expected 1 to %d", e->number, e->tag, DAKOTA_MOST);
+/* What stands between the variables and the count of functions is a variable too many. */
+static bool refuse_further(reading *r, const entry *e) {
+  snprintf(r->why, r->size,
+           "'%s %s' stands where the functions are announced: %d variables were announced",
+           e->number, e->tag, r->variables);
   return false;
 }
 
 static bool take(reading *r, const entry *e) {
-  if (r->variables < 0)
-    return is_count(e, "variables", "DAKOTA_VARS") ? take_count(r, e, &r->variables) : true;
+  if (r->variables == NOT_YET)
+    return !is_count(e, "variables", "DAKOTA_VARS") || whole(r, e, 1, DAKOTA_MOST, &r->variables);
   if (r->p->n_variables < r->variables) return take_variable(r, e);
-  if (is_count(e, "functions", "DAKOTA_FNS")) return take_count(r, e, &r->responses);
-  if (strncmp(e->tag, "ASV_", 4) == 0 && r->p->n_responses < DAKOTA_MOST)
-    return take_response(r, e);
+  if (r->responses == NOT_YET)
+    return is_count(e, "functions", "DAKOTA_FNS") ? whole(r, e, 1, DAKOTA_MOST, &r->responses)
+                                                  : refuse_further(r, e);
+  if (strncmp(e->tag, "ASV_", 4) == 0) return take_response(r, e);
+  if (is_count(e, "derivative_variables", "DAKOTA_DER_VARS"))
+    return whole(r, e, 0, DAKOTA_MOST, &r->derivatives);
   if (strncmp(e->tag, "DVV_", 4) == 0) return take_derivative(r, e);
   return true;
 }
 
+/* Whether as many stand there as were announced. */
+static bool check_counts(reading *r) {
+  const dakota_parameters *p = r->p;
+  if (r->variables == NOT_YET || r->responses == NOT_YET) {
+    snprintf(r->why, r->size, "is no parameters file of Dakota: it announces no %s",
+             r->variables == NOT_YET ? "variables" : "functions");
+    return false;
+  }
+  if (p->n_responses == r->responses &&
+      (r->derivatives == NOT_YET || p->n_derivatives == r->derivatives))
+    return true;
+  const bool short_of = p->n_responses != r->responses;
+  snprintf(r->why, r->size, "%d %s are announced, %d stand there",
+           short_of ? r->responses : r->derivatives,
+           short_of ? "functions" : "derivative variables",
+           short_of ? p->n_responses : p->n_derivatives);
+  return false;
+}
+
 bool dakota_read(const char *path, dakota_parameters *p, char *why, size_t size) {
   char    line[1024];
-  reading r    = {p, -1, -1, why, size};
+  reading r    = {p, NOT_YET, NOT_YET, NOT_YET, why, size};
   FILE   *file = fopen(path, "r");
   bool    good = file != NULL;
   *p           = (dakota_parameters){0};
@@ -105,13 +166,7 @@ bool dakota_read(const char *path, dakota_parameters *p, char *why, size_t size)
     if (read_entry(line, &e)) good = take(&r, &e);
   }
   if (file) fclose(file);
-  if (good && (r.variables < 1 || p->n_variables < r.variables || p->n_responses < 1 ||
-               p->n_responses != r.responses)) {
-    snprintf(why, size, "is no parameters file of Dakota: %d variables and %d responses found",
-             p->n_variables, p->n_responses);
-    good = false;
-  }
-  return good;
+  return good && check_counts(&r);
 }
 
 void dakota_path(const char *descriptor, char path[2 * DAKOTA_TAG]) {

@@ -2,6 +2,7 @@
 
 #include <errno.h>
 #include <fcntl.h>
+#include <poll.h>
 #include <signal.h>
 #include <spawn.h>
 #include <stdbool.h>
@@ -13,10 +14,13 @@
 
 #include "cases/commands/subprocess.h"
 #include "cases/study/design_message.h"
+#include "mesh/base/progress.h"
 
 extern char **environ;
 
 static const size_t MOST_BYTES = 1 << 24;
+
+enum { N_TEXTS = 4 };
 
 static bool put_all(int fd, const void *data, size_t size) {
   for (const char *at = data; size > 0;) {
@@ -59,10 +63,10 @@ static char **own_environment(void) {
 
 static int spawn(design_process *p, int in, int out) {
   char                      *program = subprocess_program("shroudhb-design");
-  char                      *study = strdup(p->study), **own = own_environment(), sharing[16];
+  char                      *study = strdup(p->job->study), **own = own_environment(), sharing[16];
   char                      *words[] = {program, study, sharing, NULL};
   posix_spawn_file_actions_t actions;
-  snprintf(sharing, sizeof sharing, "%d", p->sharing);
+  snprintf(sharing, sizeof sharing, "%d", p->job->sharing);
   posix_spawn_file_actions_init(&actions);
   posix_spawn_file_actions_adddup2(&actions, in, STDIN_FILENO);
   posix_spawn_file_actions_adddup2(&actions, out, STDOUT_FILENO);
@@ -92,11 +96,16 @@ static shb_status start(design_process *p) {
   if (out[1] >= 0) close(out[1]);
   p->to   = in[1];
   p->from = out[0];
-  if (!why) return SHB_OK;
+  if (!why) { /* a child that is gone already is noticed at the first request */
+    (void)(put_all(p->to, &p->job->size, sizeof p->job->size) &&
+           put_all(p->to, p->job->texts, p->job->size));
+    return SHB_OK;
+  }
   p->child = 0;
   if (p->to >= 0) close(p->to);
   if (p->from >= 0) close(p->from);
-  SHB_FAIL(SHB_ERR_IO, "shroudhb-design cannot be started: %s", strerror(why));
+  SHB_FAIL(SHB_ERR_IO, "a process for designs cannot be started: %s%s", strerror(why),
+           why == EMFILE ? "; raise ulimit -n" : "");
 }
 
 /* Wait for the end of the child; its status. */
@@ -114,7 +123,7 @@ static int reap(design_process *p) {
 static shb_status pack_death(const design_process *p, int status, char **bytes, size_t *size) {
   char          reason[160];
   design_study  one;
-  shb_status    packed = design_study_create(0, p->n_outputs, p->n_derivatives, &one);
+  shb_status    packed = design_study_create(0, p->job->n_outputs, p->job->n_derivatives, &one);
   study_design *d      = packed == SHB_OK ? design_study_add(&one, NULL) : NULL;
   if (WIFSIGNALED(status)) {
     int number = WTERMSIG(status);
@@ -127,7 +136,7 @@ static shb_status pack_death(const design_process *p, int status, char **bytes, 
   if (d) {
     d->state = STUDY_FAILED;
     study_design_set_reason(d, reason);
-    packed = design_message_pack(d, p->n_outputs, p->n_derivatives, bytes, size);
+    packed = design_message_pack(d, p->job->n_outputs, p->job->n_derivatives, bytes, size);
   } else {
     packed = shb_fail(SHB_ERR_IO, __FILE__, __LINE__, "out of memory");
   }
@@ -135,20 +144,152 @@ static shb_status pack_death(const design_process *p, int status, char **bytes, 
   return packed;
 }
 
-shb_status design_process_run(design_process *p, const double *value, char **bytes, size_t *size) {
-  *bytes = NULL;
-  if (!p->child) SHB_TRY(start(p));
-  bool good = put_all(p->to, value, (size_t)p->n_request * sizeof *value) &&
-              get_all(p->from, size, sizeof *size) && *size <= MOST_BYTES;
+/* Send a request to the child, which is started if it is not running. One that has died while it
+ * had nothing to do is replaced. */
+static shb_status ask(design_process *p, const double *value) {
+  const size_t size    = (size_t)p->job->n_request * sizeof *value;
+  const bool   running = p->child != 0;
+  if (!running) SHB_TRY(start(p));
+  if (put_all(p->to, value, size) || !running) return SHB_OK;
+  reap(p);
+  SHB_TRY(start(p));
+  (void)put_all(p->to, value, size); /* the answer tells whether it has come */
+  return SHB_OK;
+}
+
+/* The answer; false: the child is gone, or sends none. */
+static bool listen_to(design_process *p, char **bytes, size_t *size) {
+  *bytes    = NULL;
+  bool good = get_all(p->from, size, sizeof *size) && *size <= MOST_BYTES;
   if (good) *bytes = malloc(*size + 1);
   good = good && *bytes && get_all(p->from, *bytes, *size);
-  if (good) return SHB_OK;
+  if (good) return true;
   free(*bytes);
-  return pack_death(p, reap(p), bytes, size);
+  *bytes = NULL;
+  return false;
+}
+
+shb_status design_process_run(design_process *p, const double *value, char **bytes, size_t *size) {
+  SHB_TRY(ask(p, value));
+  return listen_to(p, bytes, size) ? SHB_OK : pack_death(p, reap(p), bytes, size);
 }
 
 void design_process_stop(design_process *p) {
   if (p->child) reap(p);
+}
+
+/* ---------------------------------------------------------------- the pool */
+
+shb_status design_pool_create(const design_job *job, int n, design_pool *pool) {
+  *pool = (design_pool){n, calloc((size_t)n, sizeof *pool->process),
+                        calloc((size_t)n, sizeof *pool->design)};
+  SHB_CHECK(pool->process && pool->design, SHB_ERR_IO, "out of memory");
+  for (int i = 0; i < n; i++) pool->process[i].job = job;
+  for (int i = 0; i < n; i++) pool->design[i] = -1;
+  return SHB_OK;
+}
+
+void design_pool_free(design_pool *pool) {
+  for (int i = 0; pool->process && i < pool->n; i++) {
+    design_process *p = &pool->process[i];
+    if (p->child && pool->design[i] >= 0) kill(p->child, SIGTERM);
+    design_process_stop(p);
+  }
+  free(pool->process);
+  free(pool->design);
+  *pool = (design_pool){0};
+}
+
+/* Give designs to those that have none. Returns how many are at work. */
+static shb_status hand_out(design_pool *pool, const crew_work *w, int *busy) {
+  *busy = 0;
+  for (int i = 0; i < pool->n; i++) *busy += pool->design[i] >= 0;
+  for (int i = 0; i < pool->n && !shb_interrupted(); i++) {
+    const double *value;
+    if (pool->design[i] >= 0) continue;
+    const int design = w->next(w->context, &value);
+    if (design < 0) return SHB_OK;
+    pool->design[i] = design;
+    ++*busy;
+    SHB_TRY(ask(&pool->process[i], value));
+  }
+  return SHB_OK;
+}
+
+/* The answer of a process, or its death. What an interruption has cut is not done. */
+static shb_status take_answer(design_pool *pool, int i, const crew_work *w) {
+  design_process *p      = &pool->process[i];
+  const int       design = pool->design[i];
+  char           *bytes;
+  size_t          size;
+  shb_status      status = SHB_OK;
+  const bool      good   = listen_to(p, &bytes, &size);
+  pool->design[i]        = -1;
+  if (!good) {
+    const int how = reap(p);
+    if (shb_interrupted()) return SHB_OK;
+    status = pack_death(p, how, &bytes, &size);
+  }
+  if (status == SHB_OK) status = w->done(w->context, design, bytes, size);
+  free(bytes);
+  return status;
+}
+
+/* Wait for answers, a short time, and take those that have come. */
+static shb_status wait_for_answers(design_pool *pool, const crew_work *w, struct pollfd *watched) {
+  enum { LONGEST = 200 }; /* ms, for the ticks */
+  for (int i = 0; i < pool->n; i++) {
+    const bool at_work = pool->design[i] >= 0;
+    watched[i]         = (struct pollfd){at_work ? pool->process[i].from : -1, POLLIN, 0};
+  }
+  if (poll(watched, (nfds_t)pool->n, LONGEST) <= 0) return SHB_OK;
+  for (int i = 0; i < pool->n; i++)
+    if (watched[i].revents) SHB_TRY(take_answer(pool, i, w));
+  return SHB_OK;
+}
+
+static void stop_all(const design_pool *pool) {
+  for (int i = 0; i < pool->n; i++)
+    if (pool->process[i].child) kill(pool->process[i].child, SIGTERM);
+}
+
+shb_status design_pool_manage(void *context, const crew_work *w) {
+  design_pool   *pool    = context;
+  struct pollfd *watched = calloc((size_t)pool->n, sizeof *watched);
+  shb_status     status  = SHB_OK;
+  bool           stopped = false;
+  SHB_CHECK(watched, SHB_ERR_IO, "out of memory");
+  for (int busy = 1; status == SHB_OK && busy > 0;) {
+    status = hand_out(pool, w, &busy);
+    if (shb_interrupted() && !stopped) stop_all(pool);
+    stopped = shb_interrupted();
+    if (status == SHB_OK && busy > 0) status = wait_for_answers(pool, w, watched);
+    if (status == SHB_OK) status = w->tick(w->context);
+  }
+  free(watched);
+  return status;
+}
+
+/* ---------------------------------------------------------------- the child */
+
+shb_status design_process_texts(char **texts, study_texts *out) {
+  size_t       size;
+  const char **to[N_TEXTS] = {&out->study, &out->base, &out->columns, &out->inputs}, *end;
+  *texts                   = NULL;
+  bool good = get_all(STDIN_FILENO, &size, sizeof size) && size <= N_TEXTS * MOST_BYTES;
+  if (good) *texts = malloc(size + 1);
+  good     = good && *texts && get_all(STDIN_FILENO, *texts, size);
+  char *at = *texts;
+  end      = good ? *texts + size : NULL;
+  if (good) (*texts)[size] = '\0';
+  for (int i = 0; i < N_TEXTS && good; i++) {
+    good   = at < end;
+    *to[i] = at;
+    if (good) at += strlen(at) + 1;
+  }
+  SHB_CHECK(good, SHB_ERR_IO,
+            "standard input holds no study; `shroudhb study` starts this program");
+  return SHB_OK;
 }
 
 shb_status design_process_serve(int n_request, design_compute *compute, void *context) {

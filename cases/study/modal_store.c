@@ -12,7 +12,6 @@
 
 #include "cases/commands/command.h"
 #include "cases/commands/modal_changes.h"
-#include "cases/commands/subprocess.h"
 #include "cases/commands/up_to_date.h"
 #include "cases/designs/digest.h"
 #include "cases/schema/case.h"
@@ -31,7 +30,7 @@ static char *text3(const char *a, const char *b, const char *c) {
 
 shb_status modal_store_open(const study_spec *spec, modal_store *s) {
   char *stem = text3(spec->folder, "/", spec->name), number[32];
-  *s         = (modal_store){.spec = spec};
+  *s         = (modal_store){.spec = spec, .copy = -1};
   s->folder  = stem ? text3(stem, ".study.d", "") : NULL;
   free(stem);
   snprintf(number, sizeof number, "/log.%ld", (long)getpid());
@@ -39,7 +38,7 @@ shb_status modal_store_open(const study_spec *spec, modal_store *s) {
   SHB_CHECK(s->log, SHB_ERR_IO, "out of memory");
   SHB_CHECK(mkdir(s->folder, 0777) == 0 || errno == EEXIST, SHB_ERR_IO, "%s: cannot be made: %s",
             s->folder, strerror(errno));
-  return SHB_OK;
+  return subprocess_copy(spec->base.text, &s->copy, s->copy_path);
 }
 
 static void clear(modal_store *s, int at) {
@@ -52,6 +51,7 @@ static void clear(modal_store *s, int at) {
 void modal_store_close(modal_store *s) {
   for (int i = 0; i < STORE_MODELS; i++) clear(s, i);
   if (s->log) unlink(s->log);
+  if (s->log && s->copy >= 0) close(s->copy);
   free(s->folder);
   free(s->log);
   *s = (modal_store){0};
@@ -87,7 +87,9 @@ static shb_status run_stage(const modal_store *s, const char *stage, const doubl
                             const char *digest) {
   char *words[2 * STUDY_MAX_KEYS + MORE_WORDS] = {NULL};
   char  program[32], name[64], quiet[] = "--quiet", into[] = "--into", set[] = "--set";
-  int   n = 0;
+  char  text[] = "--text", copy[SUBPROCESS_COPY];
+  int   n      = 0;
+  memcpy(copy, s->copy_path, sizeof copy);
   snprintf(program, sizeof program, "shroudhb-%s", stage);
   snprintf(name, sizeof name, "name=%s", digest);
   char *path               = subprocess_program(program);
@@ -95,6 +97,8 @@ static shb_status run_stage(const modal_store *s, const char *stage, const doubl
   words[n++]               = quiet;
   words[n++]               = into;
   words[n++]               = s->folder;
+  words[n++]               = text;
+  words[n++]               = copy;
   words[n++]               = set;
   words[n++]               = name;
   int               sets   = study_spec_words(s->spec, value, words + n);
@@ -270,6 +274,7 @@ static shb_status load(modal_store *s, const double *value, const case_file *fil
   if (!path) status = make_file(s, value, file, digest, &path);
   if (status == SHB_OK) {
     status = case_model_read(file, path, 0, true, &s->entry[at].model);
+    if (status == SHB_OK) status = study_spec_check_inputs(s->spec, file);
     if (status == SHB_OK && peak_field_wanted(s->spec->n_outputs, s->spec->output))
       status = peak_field_create(path, s->spec->n_outputs, s->spec->output, &s->entry[at].field);
     if (status != SHB_OK) case_model_free(&s->entry[at].model);

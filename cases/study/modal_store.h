@@ -6,6 +6,7 @@
 #define CASES_STUDY_MODAL_STORE_H
 
 #include "cases/commands/load_model.h"
+#include "cases/commands/subprocess.h"
 #include "cases/designs/study_spec.h"
 #include "cases/peaks/peak_field.h"
 
@@ -15,6 +16,8 @@ typedef struct {
   const study_spec *spec;
   char             *folder; /* NAME.study.d beside the study file */
   char             *log;    /* of this process: messages of the stages */
+  int               copy;   /* text of the case for the stages, as it was when it was read */
+  char              copy_path[SUBPROCESS_COPY];
   struct {
     char        digest[17]; /* "": free */
     case_model  model;
@@ -24,7 +27,7 @@ typedef struct {
   long clock;
 } modal_store;
 
-/* Make the folder. Errors: SHB_ERR_IO. */
+/* Make the folder. Close it in any case; a zeroed one too. Errors: SHB_ERR_IO. */
 shb_status modal_store_open(const study_spec *spec, modal_store *store);
 void       modal_store_close(modal_store *store);
 
@@ -34,7 +37,8 @@ void       modal_store_close(modal_store *store);
  *   file   in   its case
  *   model  out  owned by the store
  *   field  out  likewise; NULL if no output of the study needs it
- * Errors: SHB_ERR_INPUT no mesh or no modes, with the message of the stage; SHB_ERR_IO. */
+ * Errors: SHB_ERR_INPUT no mesh or no modes, with the message of the stage; a file of the case has
+ * changed since the study began; SHB_ERR_IO. */
 shb_status modal_store_get(modal_store *store, const double *value, const case_file *file,
                            case_model *model, peak_field **field);
 

@@ -3,8 +3,10 @@
 #include <cblas.h>
 #include <math.h>
 #include <omp.h>
+#include <signal.h>
 #include <stdio.h>
 #include <stdlib.h>
+#include <sys/prctl.h>
 
 #include "cases/commands/command.h"
 #include "cases/parse/units.h"
@@ -19,8 +21,10 @@
 static const char usage[] =
     "usage: shroudhb-design STUDY.yaml [PROCESSES]\n"
     "\n"
-    "Computes designs for `shroudhb study`, which starts it. Values of the varied keys come from\n"
-    "standard input, results go to standard output, both in binary. PROCESSES such programs share\n"
+    "Computes designs for `shroudhb study`, which starts it. What the study has read and values "
+    "of\n"
+    "the varied keys come from standard input, results go to standard output, in binary. PROCESSES "
+    "such programs share\n"
     "the memory of this machine, else one.\n";
 
 typedef struct {
@@ -107,6 +111,35 @@ static void share_cores(int sharing) {
   setenv("OMP_NUM_THREADS", threads, 0);
 }
 
+/* The manager tells this process when to stop, and it goes with the manager. What it leaves undone
+ * is not its to tell: a second signal, or the end of the grace, ends it without a word. Ctrl-C goes
+ * to all processes of a terminal, and is left to the manager. */
+static void follow_manager(void) {
+  enum { GRACE = 5 }; /* s */
+  struct sigaction action;
+  shb_interrupt_catch();
+  shb_interrupt_grace(GRACE);
+  sigaction(SIGTERM, NULL, &action);
+  action.sa_flags |= (int)SA_RESETHAND;
+  sigaction(SIGTERM, &action, NULL);
+  signal(SIGALRM, SIG_DFL);
+  signal(SIGINT, SIG_IGN);
+  prctl(PR_SET_PDEATHSIG, SIGTERM);
+}
+
+static shb_status serve(server *s, const char *path) {
+  char       *texts;
+  study_texts read;
+  shb_status  status = design_process_texts(&texts, &read);
+  if (status == SHB_OK) status = study_spec_read_texts(path, &read, stderr, &s->spec);
+  if (status == SHB_OK) status = modal_store_open(&s->spec, &s->store);
+  if (status == SHB_OK) status = design_process_serve(2 * s->spec.keys.n, compute, s);
+  modal_store_close(&s->store);
+  study_spec_free(&s->spec);
+  free(texts);
+  return status;
+}
+
 int main(int argc, char **argv) {
   command_options options;
   server          s = {.sharing = take_sharing(&argc, argv)};
@@ -116,15 +149,10 @@ int main(int argc, char **argv) {
   }
   int code = command_parse(argc, argv, usage, &options);
   if (code >= 0) return code;
-  shb_status status = study_spec_read(options.path, false, stderr, &s.spec);
-  if (status == SHB_OK) status = modal_store_open(&s.spec, &s.store);
-  if (status != SHB_OK) return command_finish(status);
-  shb_interrupt_catch();
+  follow_manager();
   share_cores(s.sharing);
   openblas_set_num_threads(1);
   omp_set_num_threads(1); /* the designs run side by side */
-  status = design_process_serve(2 * s.spec.keys.n, compute, &s);
-  modal_store_close(&s.store);
-  study_spec_free(&s.spec);
-  return command_finish(status);
+  const shb_status status = serve(&s, options.path);
+  return status == SHB_INTERRUPTED ? SHB_INTERRUPTED : command_finish(status);
 }

@@ -155,7 +155,6 @@ static shb_status evaluate(evaluation *e) {
   SHB_TRY(write_study(e));
   SHB_TRY(study_spec_read(e->text_path, true, stderr, &e->spec));
   unlink(e->text_path);
-  SHB_CHECK(e->spec.n_outputs == e->p.n_responses, SHB_ERR_INPUT, "two responses are the same");
   SHB_TRY(beside_case(e));
   shb_status status = compute(e, &one, &design);
   bool       good   = status == SHB_OK && take_results(e, design, why, sizeof why);

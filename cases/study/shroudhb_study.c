@@ -1,6 +1,10 @@
-/* shroudhb-study: a design study over MPI, one manager and workers; or one design of it in full. */
+#define _GNU_SOURCE /* sched_getaffinity */
+/* shroudhb-study: a design study on the cores of this machine, or over MPI on several; or one design
+ * of it in full. */
 #include <errno.h>
+#include <glob.h>
 #include <mpi.h>
+#include <sched.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -8,6 +12,7 @@
 
 #include "cases/commands/command.h"
 #include "cases/commands/subprocess.h"
+#include "cases/designs/study_echo.h"
 #include "cases/parse/units.h"
 #include "cases/peaks/design_memory.h"
 #include "cases/study/design_process.h"
@@ -23,8 +28,9 @@ static const char usage[] =
     "       shroudhb-study --design=I STUDY.yaml\n"
     "       shroudhb-study --check [--json] STUDY.yaml\n"
     "\n"
-    "Runs the designs of STUDY.yaml and writes NAME.study.h5 and NAME.study.csv. Of N processes\n"
-    "one manages and the others compute; `shroudhb study` starts one for every core.\n"
+    "Runs the designs of STUDY.yaml and writes NAME.study.h5 and NAME.study.csv. A process for\n"
+    "every core computes designs. On several machines mpiexec starts N of this program: one\n"
+    "manages and the others compute.\n"
     "A study that was stopped goes on where it was. Modal files stay in NAME.study.d.\n"
     "\n"
     "  --design=I  run design I alone, all stages, with a report of its own\n"
@@ -75,19 +81,44 @@ static shb_status run_design(const study_spec *spec, int design, const command_o
   SHB_FAIL(SHB_ERR_IO, "%s: cannot be started: %s", words[0], strerror(errno));
 }
 
-static void print_key(const study_key *key) {
-  char name[STUDY_KEY_TEXT];
-  bool pure = key->unit[0] == '-';
-  study_key_name(key, name);
-  printf("  %-9s %s%s%s", key->is_uncertain ? "uncertain" : "vary", name, pure ? "" : ", ",
-         pure ? "" : key->unit);
-  if (key->is_uncertain) printf(", %s", plan_distribution_name(key->distribution.kind));
-  printf("\n");
+/* Cores that this process may use. */
+static int n_cores(void) {
+  cpu_set_t set;
+  CPU_ZERO(&set);
+  int n = sched_getaffinity(0, sizeof set, &set) == 0 ? CPU_COUNT(&set) : 1;
+  return n > 0 ? n : 1;
+}
+
+/* The time that the designs in a file of this case took. */
+static void add_cost(const study_spec *spec, const char *path, study_cost *cost, double *seconds) {
+  design_study known;
+  if (study_file_read(path, &known) != SHB_OK) return;
+  const bool ours = known.case_text && strcmp(known.case_text, spec->base.text) == 0;
+  for (int i = 0; ours && i < known.n; i++) {
+    if (!(known.design[i].seconds > 0)) continue;
+    *seconds += known.design[i].seconds;
+    cost->n++;
+  }
+  design_study_free(&known);
+}
+
+/* From all studies beside this one. */
+static study_cost cost_of(const study_spec *spec) {
+  study_cost   cost    = {0};
+  double       seconds = 0;
+  const size_t size    = strlen(spec->folder) + 32;
+  char        *pattern = malloc(size);
+  glob_t       found   = {0};
+  if (pattern) snprintf(pattern, size, "%s/*.study.h5", spec->folder);
+  if (pattern && glob(pattern, 0, NULL, &found) != 0) found.gl_pathc = 0;
+  for (size_t i = 0; i < found.gl_pathc; i++) add_cost(spec, found.gl_pathv[i], &cost, &seconds);
+  globfree(&found);
+  free(pattern);
+  if (cost.n > 0) cost.seconds = seconds / cost.n;
+  return cost;
 }
 
 static shb_status check(const study_spec *spec, const command_options *options) {
-  char plan[STUDY_NAME];
-  int  group = study_plan_group(&spec->plan, &spec->keys);
   if (options->json) {
     post_buffer text = {0};
     post_put(&text, "{\"ok\": true, \"name\": ");
@@ -98,24 +129,10 @@ static shb_status check(const study_spec *spec, const command_options *options) 
              spec->optimise.wanted ? spec->optimise.evaluations : spec->n_designs);
     if (text.text) fputs(text.text, stdout);
     post_buffer_free(&text);
-    return SHB_OK;
+  } else if (!options->quiet) {
+    const study_cost cost = cost_of(spec);
+    study_echo(spec, &cost, n_cores(), stdout);
   }
-  if (options->quiet) return SHB_OK;
-  if (spec->optimise.wanted) {
-    const study_optimise *o = &spec->optimise;
-    printf("%s: ok\n  case      %s\n  optimise  %s by %s, %d starts of %d evaluations\n",
-           spec->path, spec->case_path, spec->output[o->objective].name,
-           study_algorithm_name(o->algorithm), o->starts, o->evaluations / o->starts);
-    for (int k = 0; k < spec->keys.n; k++) print_key(&spec->keys.key[k]);
-    return SHB_OK;
-  }
-  study_plan_text(&spec->plan, &spec->keys, plan, sizeof plan);
-  printf("%s: ok\n  case      %s\n  plan      %s\n  designs   %d\n", spec->path, spec->case_path,
-         plan, spec->n_designs);
-  if (study_plan_has_blocks(&spec->plan, &spec->keys))
-    printf("  samples   %d; the other designs are for the Sobol' indices\n",
-           2 * group / (spec->keys.n + 2));
-  for (int k = 0; k < spec->keys.n; k++) print_key(&spec->keys.key[k]);
   return SHB_OK;
 }
 
@@ -130,15 +147,6 @@ static shb_status print_json(const study_spec *spec) {
   return status;
 }
 
-/* `shroudhb study` starts a worker a core; where mpiexec refuses, one process does everything. */
-static void tell_one_core(void) {
-  if (getenv("OMPI_COMM_WORLD_SIZE") || !subprocess_mpiexec_refuses_root()) return;
-  fputs(
-      "shroudhb: warning: mpiexec refuses to run as root, so one core computes; set "
-      "OMPI_ALLOW_RUN_AS_ROOT=1\nand OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1 to use all\n",
-      stderr);
-}
-
 /* A design, by the child process. */
 static shb_status compute(void *process, const double *value, char **bytes, size_t *size) {
   return design_process_run(process, value, bytes, size);
@@ -146,13 +154,11 @@ static shb_status compute(void *process, const double *value, char **bytes, size
 
 /* The study on the manager. */
 static shb_status manage(const study_spec *spec, const command_options *options,
-                         const crew_computer *computer) {
+                         const crew_staff *workers) {
   shb_progress progress = shb_progress_start("study", options->quiet, options->verbose);
   design_study study    = {0};
-  if (getenv("SHROUDHB_TERMINAL")) progress.terminal = true; /* `shroudhb study` says so */
-  tell_one_core();
-  shb_status status = study_run(spec, options->force, computer, &progress, &study);
-  bool       whole  = status == SHB_OK || status == SHB_NOT_CONVERGED;
+  shb_status   status   = study_run(spec, options->force, workers, &progress, &study);
+  bool         whole    = status == SHB_OK || status == SHB_NOT_CONVERGED;
   if (whole && options->json) {
     shb_status printed = print_json(spec);
     if (printed != SHB_OK) status = printed;
@@ -172,33 +178,124 @@ static shb_status check_outputs(const study_spec *spec) {
   return SHB_OK;
 }
 
-/* All ranks: the manager reads and checks, the workers need the numbers of keys and outputs. */
-static int work(const command_options *options) {
-  study_spec spec = {0};
-  int        rank, go[4] = {SHB_OK, 0, 0, 0};
-  const int  sharing = crew_sharing();
-  shb_status status  = SHB_OK;
+/* Read and check on the manager. */
+static shb_status read_study(const command_options *options, study_spec *spec) {
+  SHB_TRY(study_spec_read(options->path, true, stderr, spec));
+  return check_outputs(spec);
+}
+
+/* The texts of a study for the processes that compute designs, each with its NUL; malloc'ed. */
+static shb_status pack_texts(const study_spec *spec, char **texts, size_t *size) {
+  *texts    = NULL;
+  FILE *out = open_memstream(texts, size);
+  SHB_CHECK(out, SHB_ERR_IO, "out of memory");
+  fprintf(out, "%s%c%s%c", spec->text, 0, spec->base.text, 0);
+  for (int k = 0; spec->plan.kind == STUDY_TABLE && k < spec->keys.n; k++)
+    if (!spec->keys.key[k].is_uncertain) fprintf(out, "%s\n", spec->keys.key[k].path);
+  fprintf(out, "%c%s%c", 0, spec->inputs, 0);
+  SHB_CHECK(fclose(out) == 0 && *texts, SHB_ERR_IO, "out of memory");
+  return SHB_OK;
+}
+
+static design_job job_of(const study_spec *spec, const char *texts, size_t size, int sharing) {
+  return (design_job){.study         = spec->path,
+                      .texts         = texts,
+                      .size          = size,
+                      .n_request     = 2 * spec->keys.n,
+                      .n_outputs     = spec->n_outputs,
+                      .n_derivatives = study_derivatives(spec->n_outputs, spec->output),
+                      .sharing       = sharing};
+}
+
+/* Of a core each, no more than there are designs. */
+static int n_workers(const study_spec *spec) {
+  const int cores = n_cores();
+  const int most  = spec->optimise.wanted ? spec->optimise.evaluations : spec->n_designs;
+  return cores < most ? cores : most > 1 ? most : 1;
+}
+
+/* As many processes as fit into memory beside each other, halved until they do. */
+static shb_status fit(const study_spec *spec, int *n) {
+  const int asked = *n;
+  while (*n > 1 && design_memory_check(spec, *n) == SHB_ERR_INPUT) *n /= 2;
+  SHB_TRY(design_memory_check(spec, *n));
+  if (*n < asked)
+    fprintf(stderr, "shroudhb: warning: %d of %d processes fit into memory beside each other\n", *n,
+            asked);
+  return SHB_OK;
+}
+
+/* A process a core on this machine. */
+static shb_status work_here(const command_options *options, study_spec *spec) {
+  char  *texts = NULL;
+  size_t size  = 0;
+  SHB_TRY(read_study(options, spec));
+  int         n = n_workers(spec);
+  design_pool pool;
+  SHB_TRY(fit(spec, &n));
+  SHB_TRY(pack_texts(spec, &texts, &size));
+  const design_job job    = job_of(spec, texts, size, n);
+  shb_status       status = design_pool_create(&job, n, &pool);
+  const crew_staff all    = {&pool, n, design_pool_manage};
+  if (status == SHB_OK) status = manage(spec, options, &all);
+  design_pool_free(&pool);
+  free(texts);
+  return status;
+}
+
+/* ---------------------------------------------------------------- over MPI */
+
+/* The workers on other ranks, or the only rank by itself. */
+typedef struct {
+  const crew_computer *computer;
+  bool                 managed; /* the workers were released */
+} ranks;
+
+static shb_status manage_ranks(void *context, const crew_work *work) {
+  ranks *r   = context;
+  r->managed = true;
+  return crew_manage(work, r->computer);
+}
+
+/* All ranks: the manager reads and checks, the workers get what it has read. */
+static shb_status work_over_mpi(const command_options *options, study_spec *spec) {
+  enum { STATUS, KEYS, OUTPUTS, DERIVATIVES, SIZE, N };
+  int        rank, go[N] = {SHB_OK};
+  char      *texts  = NULL;
+  size_t     size   = 0;
+  shb_status status = SHB_OK;
   MPI_Comm_rank(MPI_COMM_WORLD, &rank);
-  if (rank == 0) status = study_spec_read(options->path, true, stderr, &spec);
-  if (rank == 0 && status == SHB_OK) status = check_outputs(&spec);
-  if (rank == 0 && status == SHB_OK) status = design_memory_check(&spec, sharing);
-  go[0] = (int)status;
-  go[1] = spec.keys.n;
-  go[2] = spec.n_outputs;
-  go[3] = study_derivatives(spec.n_outputs, spec.output);
-  MPI_Bcast(go, 4, MPI_INT, 0, MPI_COMM_WORLD);
-  design_process      process  = {.study         = options->path,
-                                  .n_request     = 2 * go[1],
-                                  .n_outputs     = go[2],
-                                  .n_derivatives = go[3],
-                                  .sharing       = sharing};
-  const crew_computer computer = {&process, process.n_request, compute};
-  if (go[0] == SHB_OK)
-    status = rank == 0 ? manage(&spec, options, &computer) : crew_serve(&computer);
+  const int sharing = crew_sharing();
+  if (rank == 0) status = read_study(options, spec);
+  if (rank == 0 && status == SHB_OK) status = design_memory_check(spec, sharing);
+  if (rank == 0 && status == SHB_OK) status = pack_texts(spec, &texts, &size);
+  design_job job = job_of(spec, texts, size, sharing);
+  memcpy(go, (int[N]){(int)status, job.n_request, job.n_outputs, job.n_derivatives, (int)size},
+         sizeof go);
+  MPI_Bcast(go, N, MPI_INT, 0, MPI_COMM_WORLD);
+  if (go[STATUS] != SHB_OK) return status;
+  if (rank > 0) texts = malloc((size_t)go[SIZE]);
+  if (!texts) MPI_Abort(MPI_COMM_WORLD, SHB_ERR_IO);
+  MPI_Bcast(texts, go[SIZE], MPI_CHAR, 0, MPI_COMM_WORLD);
+  job = (design_job){options->path, texts,           (size_t)go[SIZE], go[KEYS],
+                     go[OUTPUTS],   go[DERIVATIVES], sharing};
+  design_process      process  = {.job = &job};
+  const crew_computer computer = {&process, job.n_request, compute};
+  ranks               others   = {&computer, false};
+  const crew_staff    all      = {&others, crew_workers(), manage_ranks};
+  status                       = rank == 0 ? manage(spec, options, &all) : crew_serve(&computer);
+  if (rank == 0 && !others.managed) crew_dismiss();
   design_process_stop(&process);
-  int code = rank == 0 ? command_finish(status) : SHB_OK;
-  study_spec_free(&spec);
-  return code;
+  free(texts);
+  return rank == 0 ? status : SHB_OK;
+}
+
+/* Whether mpiexec, srun or the like has started this process as one of several, or as one of one. */
+static bool is_launched(void) {
+  static const char *const variable[] = {"OMPI_COMM_WORLD_SIZE", "PMI_SIZE", "PMIX_RANK"};
+  for (size_t i = 0; i < sizeof variable / sizeof *variable; i++)
+    if (getenv(variable[i])) return true;
+  return false;
 }
 
 /* --design=I and --check: without MPI. */
@@ -241,12 +338,18 @@ int main(int argc, char **argv) {
   int code = command_parse(argc, argv, usage, &options);
   if (code >= 0) return code;
   if (design > 0 || options.mode) return work_alone(&options, design);
-  if (MPI_Init(&argc, &argv) != MPI_SUCCESS) {
+  study_spec spec     = {0};
+  const bool launched = is_launched();
+  int        rank     = 0;
+  if (launched && MPI_Init(&argc, &argv) != MPI_SUCCESS) {
     fputs("shroudhb: error: MPI cannot be started\n", stderr);
     return SHB_ERR_IO;
   }
+  if (launched) MPI_Comm_rank(MPI_COMM_WORLD, &rank);
   shb_interrupt_catch(); /* after MPI_Init, because the launcher sets handlers of its own */
-  code = work(&options);
-  MPI_Finalize();
+  shb_status status = launched ? work_over_mpi(&options, &spec) : work_here(&options, &spec);
+  code              = rank == 0 ? command_finish(status) : SHB_OK;
+  study_spec_free(&spec);
+  if (launched) MPI_Finalize();
   return code;
 }

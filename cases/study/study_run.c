@@ -375,15 +375,15 @@ static shb_status put_statistics(running *r) {
   return spec->keys.n_uncertain > 0 ? design_statistics(&samples, r->study) : SHB_OK;
 }
 
-static shb_status run_all(running *r, bool force, const crew_computer *computer) {
+static shb_status run_all(running *r, bool force, const crew_staff *workers) {
   SHB_TRY(find_twins(r));
   if (!force) SHB_TRY(take_all_known(r));
   r->n_to_compute = count_work(r);
   shb_progress_note(r->progress, "%d designs, %d to compute, %d at a time", r->study->n,
-                    r->n_to_compute, crew_workers());
+                    r->n_to_compute, workers->n);
   r->started = r->published = shb_seconds();
   const crew_work work      = {r, next_design, done, tick};
-  SHB_TRY(crew_manage(&work, computer));
+  SHB_TRY(workers->manage(workers->context, &work));
   SHB_TRY(copy_twins(r));
   shb_progress_clear(r->progress);
   if (!shb_interrupted()) SHB_TRY(put_statistics(r));
@@ -392,17 +392,13 @@ static shb_status run_all(running *r, bool force, const crew_computer *computer)
 }
 
 /* An optimisation: the designs come from its search. */
-static shb_status search(running *r, bool force, const crew_computer *computer) {
+static shb_status search(running *r, bool force, const crew_staff *workers) {
   const crew_work work   = {r, next_design, done, tick};
   shb_status      status = force ? SHB_OK : take_all_known(r);
   r->n_to_compute        = r->spec->optimise.evaluations;
-  shb_progress_note(r->progress, "at most %d designs, %d at a time", r->n_to_compute,
-                    crew_workers());
+  shb_progress_note(r->progress, "at most %d designs, %d at a time", r->n_to_compute, workers->n);
   r->started = r->published = shb_seconds();
-  if (status == SHB_OK)
-    status = crew_manage(&work, computer);
-  else
-    crew_dismiss();
+  if (status == SHB_OK) status = workers->manage(workers->context, &work);
   shb_progress_clear(r->progress);
   if (status == SHB_OK) status = optimisation_finish(r->search);
   SHB_TRY(status);
@@ -410,17 +406,14 @@ static shb_status search(running *r, bool force, const crew_computer *computer) 
   return study_publish(r->study, r->path);
 }
 
-static shb_status search_all(running *r, bool force, const crew_computer *computer) {
+static shb_status search_all(running *r, bool force, const crew_staff *workers) {
   shb_status status = optimisation_create(r->spec, r->study, &r->search);
-  if (status == SHB_OK)
-    status = search(r, force, computer);
-  else
-    crew_dismiss();
+  if (status == SHB_OK) status = search(r, force, workers);
   optimisation_destroy(r->search);
   return status;
 }
 
-shb_status study_run(const study_spec *spec, bool force, const crew_computer *computer,
+shb_status study_run(const study_spec *spec, bool force, const crew_staff *workers,
                      shb_progress *progress, design_study *s) {
   shb_status status = set_up(spec, s);
   running    r      = {.spec = spec, .study = s, .progress = progress};
@@ -433,11 +426,9 @@ shb_status study_run(const study_spec *spec, bool force, const crew_computer *co
   if (status == SHB_OK && !(r.path && r.twin && r.given && r.tried && r.request))
     status = shb_fail(SHB_ERR_IO, __FILE__, __LINE__, "out of memory");
   if (status == SHB_OK && spec->optimise.wanted)
-    status = search_all(&r, force, computer);
+    status = search_all(&r, force, workers);
   else if (status == SHB_OK)
-    status = run_all(&r, force, computer);
-  else
-    crew_dismiss();
+    status = run_all(&r, force, workers);
   free(r.path);
   free(r.twin);
   free(r.given);

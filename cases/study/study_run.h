@@ -17,7 +17,7 @@
  *   study  out  the result; free it in any case
  * Errors: SHB_NOT_CONVERGED some design failed, all is published; SHB_INTERRUPTED, likewise so far;
  * SHB_ERR_IO. */
-shb_status study_run(const study_spec *spec, bool force, const crew_computer *computer,
+shb_status study_run(const study_spec *spec, bool force, const crew_staff *workers,
                      shb_progress *progress, design_study *study);
 
 /* Path of a file of the study: folder/NAME and a suffix; malloc'ed. */

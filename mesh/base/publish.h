@@ -2,6 +2,7 @@
 #ifndef MESH_BASE_PUBLISH_H
 #define MESH_BASE_PUBLISH_H
 
+#include <stdbool.h>
 #include <stddef.h>
 
 #include "mesh/base/status.h"
@@ -40,6 +41,11 @@ void shb_publish_abandon(void);
 /* fsync the temporary file, rename it to path, fsync the folder. After an error the temporary file
  * is removed. SHB_ERR_IO. */
 shb_status shb_publish(const char *temporary, const char *path);
+
+/* May a text be the name of a file, a column or a probe? Not if it is empty, or holds a control
+ * character or one that turns the direction of a text: what is shown would not be the name. Bytes
+ * that are not UTF-8 are left to the reader of the text. */
+bool shb_name_is_plain(const char *text);
 
 /* Make a folder and those above it, where they are missing. SHB_ERR_IO, also where a part of the
  * path is a file. */

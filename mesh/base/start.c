@@ -5,6 +5,7 @@
 #define _GNU_SOURCE /* syscall */
 #include <fcntl.h>
 #include <locale.h>
+#include <signal.h>
 #include <stdbool.h>
 #include <stdlib.h>
 #include <string.h>
@@ -80,6 +81,22 @@ static void check_address_space(char **environment) {
   _exit(SHB_ERR_IO);
 }
 
+/* With fewer open files a library waits for ever, or says something else. Measured: the modal stage
+ * holds 20 at once, and a study two more for each core. */
+static void check_open_files(void) {
+  enum { LEAST_FILES = 64 };
+  struct rlimit limit;
+  if (getrlimit(RLIMIT_NOFILE, &limit) != 0 || limit.rlim_cur == RLIM_INFINITY ||
+      limit.rlim_cur >= LEAST_FILES)
+    return;
+  say("shroudhb: error: the number of open files is limited to ");
+  say_number(limit.rlim_cur);
+  say("; ");
+  say_number(LEAST_FILES);
+  say(" are needed: raise ulimit -n\n");
+  _exit(SHB_ERR_IO);
+}
+
 static bool starts_with(const char *text, const char *start) {
   return strncmp(text, start, strlen(start)) == 0;
 }
@@ -105,6 +122,7 @@ static void let_waiting_threads_sleep(char **argv, char **environment) {
 static void start(int argc, char **argv, char **environment) {
   (void)argc;
   fill_descriptors();
+  check_open_files();
   check_address_space(environment);
   let_waiting_threads_sleep(argv, environment);
 }
@@ -115,6 +133,11 @@ __attribute__((section(".preinit_array"),
 /* Numbers have a decimal point, also where a library has taken the locale of the user. */
 __attribute__((constructor)) static void set_locale(void) {
   setlocale(LC_ALL, "C");
+}
+
+/* A file over the limit of sizes (ulimit -f) fails the write, which is told, and not the process. */
+__attribute__((constructor)) static void keep_size_limit(void) {
+  signal(SIGXFSZ, SIG_IGN);
 }
 
 /* Without mpiexec Open MPI starts a daemon for processes that the program may add. There are none.

@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "mesh/base/constants.h"
+#include "mesh/base/publish.h"
 
 static const char model_format[] = "shroudhb modal model";
 /* Version 2 adds several speeds (modal/model/speeds.h), version 3 nodal diameters
@@ -489,12 +490,28 @@ static shb_status read_contact(hid_t at, const char *path, modal_model *model, m
   return check_patches(path, model);
 }
 
+/* Columns of tables and keys of summaries are known by these names. */
+static shb_status check_names(const char *path, const char *dataset, int n, char *const *name) {
+  for (int i = 0; i < n; i++) {
+    SHB_CHECK(shb_name_is_plain(name[i]), SHB_ERR_INPUT,
+              "%s: /%s: name %d (from 0) is empty, or holds a control character or one that turns "
+              "the direction of text; letters, digits and _ - . + would do",
+              path, dataset, i);
+    for (int k = 0; k < i; k++)
+      SHB_CHECK(strcmp(name[i], name[k]) != 0, SHB_ERR_INPUT,
+                "%s: /%s: names %d and %d (from 0) are both '%s'; give each its own", path, dataset,
+                k, i, name[i]);
+  }
+  return SHB_OK;
+}
+
 /* Read which interface each pair belongs to. */
 static shb_status read_interfaces(hid_t at, const char *path, modal_model *model) {
   h5_shape pairs = H5_SHAPE((hsize_t)model->n_pairs);
   if (!h5_exists(at, "contact/interface")) return SHB_OK;
   SHB_TRY(
       h5_read_strings(at, "contact/interface_name", &model->n_interfaces, &model->interface_name));
+  SHB_TRY(check_names(path, "contact/interface_name", model->n_interfaces, model->interface_name));
   SHB_TRY(h5_read_int(at, "contact/interface", &pairs, &model->interface));
   for (int i = 0; i < model->n_pairs; i++)
     SHB_CHECK(model->interface[i] >= 0 && model->interface[i] < model->n_interfaces, SHB_ERR_INPUT,
@@ -520,11 +537,12 @@ static shb_status read_load(hid_t at, const char *path, modal_model *model) {
   return read_tail(at, path, "load/residual_tail", model->n_load + 1, &model->load_tail);
 }
 
-static shb_status read_probes(hid_t at, modal_model *model, modal_model *im) {
+static shb_status read_probes(hid_t at, const char *path, modal_model *model, modal_model *im) {
   if (!h5_exists(at, "probe")) return SHB_OK;
   SHB_TRY(h5_read_strings(at, "probe/name", &model->n_probes, &model->probe_name));
   const hsize_t q = (hsize_t)model->n_probes, c = (hsize_t)modal_model_contact_dofs(model);
   if (q == 0) return SHB_OK;
+  SHB_TRY(check_names(path, "probe/name", model->n_probes, model->probe_name));
   h5_shape shape = H5_SHAPE(q, 3, (hsize_t)model->n_modes);
   SHB_TRY(read_split(at, "probe/shape", &shape, &model->probe, im ? &im->probe : NULL));
   h5_shape contact = H5_SHAPE(3 * q, c), load = H5_SHAPE((hsize_t)model->n_load + 1, 3 * q);
@@ -604,7 +622,7 @@ shb_status modal_model_read_complex_at(hid_t at, const char *path, modal_model *
   SHB_TRY(read_contact(at, path, model, imaginary));
   SHB_TRY(read_interfaces(at, path, model));
   SHB_TRY(read_load(at, path, model));
-  SHB_TRY(read_probes(at, model, imaginary));
+  SHB_TRY(read_probes(at, path, model, imaginary));
   if (model->contact_tail) SHB_TRY(read_order(at, path, &model->tail_order));
   return read_residual_modes(at, path, model, imaginary);
 }

@@ -173,7 +173,7 @@ static shb_status check_list(const char *path, int blades, int n, const int *dia
             "%s: the root attribute blades is %d; the number of sectors is wanted, 2 to %d", path,
             blades, MOST_BLADES);
   for (int i = 0; i < n; i++) {
-    SHB_CHECK(diameter[i] >= 0 && 2 * diameter[i] <= blades, SHB_ERR_INPUT,
+    SHB_CHECK(diameter[i] >= 0 && diameter[i] <= blades / 2, SHB_ERR_INPUT,
               "%s: the root attribute nodal_diameters holds %d; 0 to %d are wanted with %d blades",
               path, diameter[i], blades / 2, blades);
     SHB_CHECK(i == 0 || diameter[i] > diameter[i - 1], SHB_ERR_INPUT,

@@ -103,10 +103,22 @@ void post_put_printable(post_buffer *buffer, const char *text) {
   for (; *text; text++) post_put_bytes(buffer, is_control(*text) ? "?" : text, 1);
 }
 
+/* Would a spreadsheet take this text for a formula? */
+static bool is_formula(const char *text) {
+  char *end;
+  if (!*text || !strchr("=+-@", *text)) return false;
+  (void)strtod(text, &end);
+  return end == text || *end != '\0' || strspn(text, "+-.0123456789eE") != strlen(text);
+}
+
 void post_put_csv(post_buffer *buffer, const char *text) {
-  bool quoted = strpbrk(text, ",\"\r\n") != NULL;
+  bool quoted = strpbrk(text, ",\"\n") != NULL;
   if (quoted) post_put(buffer, "\"");
-  for (const char *c = text; *c; c++) post_put(buffer, *c == '"' ? "\"\"" : "%c", *c);
+  if (is_formula(text)) post_put(buffer, "'");
+  for (const char *c = text; *c; c++) {
+    const bool control = is_control(*c) || *c == '\t';
+    post_put(buffer, *c == '"' ? "\"\"" : "%c", control ? '?' : *c);
+  }
   if (quoted) post_put(buffer, "\"");
 }
 
@@ -155,7 +167,8 @@ shb_status post_buffer_publish(const post_buffer *buffer, const char *path) {
   SHB_CHECK(temporary, SHB_ERR_IO, "%s: not enough memory", path);
   errno      = 0;
   FILE *file = fopen(temporary, "wb");
-  bool  good = file && fwrite(buffer->text, 1, buffer->length, file) == buffer->length;
+  bool  good = file && (buffer->length == 0 ||
+                       fwrite(buffer->text, 1, buffer->length, file) == buffer->length);
   if (file && fclose(file) != 0) good = false;
   shb_status status;
   if (good) {

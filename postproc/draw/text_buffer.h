@@ -26,7 +26,9 @@ void post_put_escaped(post_buffer *buffer, const char *text);
 /* Text for a terminal; control characters but newline and tab become '?'. */
 void post_put_printable(post_buffer *buffer, const char *text);
 
-/* A field of a CSV file, in quotes if it needs them. */
+/* A field of a CSV file, in quotes if it needs them. Spreadsheets compute what begins with = + - or
+ * @: an apostrophe stands before such a text unless it is a number. Control characters but newline
+ * become '?'. */
 void post_put_csv(post_buffer *buffer, const char *text);
 
 /* A JSON string with its quotes. '<' is written \u003c, so it may stand inside <script>. */

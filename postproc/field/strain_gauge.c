@@ -209,7 +209,8 @@ shb_status post_gauge_strain(const post_blade_field *field, const post_gauge *ga
 static void put_row(const post_gauge *gauge, const mhb_branch *b, int branch, int point,
                     const double complex *strain, post_buffer *out) {
   post_put_kept_point(b, branch, point, out);
-  post_put(out, ",%s", gauge->name);
+  post_put(out, ",");
+  post_put_csv(out, gauge->name);
   post_put_cell(out, cabs(strain[b->order]));
   post_put_cell(out, post_peak_to_peak(1, b->n_harmonics, strain));
   post_put_cell(out, creal(strain[0]));

@@ -30,6 +30,7 @@ static bool is_number(const char *word) {
 }
 
 static void put_field(const char *word, bool head, post_buffer *out) {
+  if (word[0] == '\'' && word[1] && strchr("=+-@", word[1])) word++; /* as post_put_csv has it */
   if (!head && (!*word || strcmp(word, "nan") == 0))
     post_put(out, "null");
   else if (!head && is_number(word))

@@ -17,6 +17,8 @@ if(NOT SHROUDHB_INSTRUMENTED) # they reserve more
 endif()
 shb_shell_test(cases.commands.modes_alone UNIT cases/commands/test_modes_alone.sh
   $<TARGET_FILE:shroudhb> ${CASES}/z_notch_blade/case.yaml)
+shb_shell_test(cases.commands.stale INTEGRATION cases/commands/test_stale.sh
+  $<TARGET_FILE:shroudhb> ${CASES}/z_notch_blade/case.yaml)
 shb_shell_test(cases.commands.contact UNIT cases/commands/test_contact.sh
   $<TARGET_FILE:shroudhb-mhb> ${CASES}/prescribed_motion "${SHROUDHB_PYTHON}")
 shb_python_test(cases.commands.json INTEGRATION cases/commands/test_json.py
@@ -61,6 +63,11 @@ shb_python_test(cases.study.eval INTEGRATION cases/study/test_eval.py ${PROGRAMS
   ${CASES}/bring_your_own)
 shb_python_test(cases.study.blade_study INTEGRATION cases/study/test_blade_study.py
   ${PROGRAMS_FOLDER})
+
+shb_python_test(cases.study.study_inputs INTEGRATION cases/study/test_study_inputs.py
+  ${PROGRAMS_FOLDER} ${CASES}/bring_your_own)
+shb_python_test(cases.study.study_process INTEGRATION cases/study/test_study_process.py
+  ${PROGRAMS_FOLDER} ${CASES}/bring_your_own)
 
 # shb_scene_test(noun LABEL scene): a shipped scene from mesh to curves.
 function(shb_scene_test noun label scene)

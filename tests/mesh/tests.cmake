@@ -3,7 +3,7 @@ shb_test(mesh/base UNIT arena memory axes crash_guard phases progress publish ro
 shb_test(mesh/table UNIT csv LIBRARIES shb_mesh_table)
 shb_test(mesh/core UNIT face_match group_checks group_rules jacobian triangle face_pairing
   file_format fe_mesh regions cyclic_sides LIBRARIES tests_fem ${GMSH_LIBRARY})
-shb_test(mesh/io UNIT inp_read msh_check msh_read write INTEGRATION source
+shb_test(mesh/io UNIT source_files inp_read msh_check msh_read write INTEGRATION source
   LIBRARIES tests_box ${GMSH_LIBRARY})
 shb_test(mesh/gmsh UNIT reading LIBRARIES tests_box)
 target_include_directories(test_mesh_core PRIVATE ${GMSH_INCLUDE})

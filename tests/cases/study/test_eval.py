@@ -88,6 +88,37 @@ def check():
         assert said in errors, errors
 
 
+def check_counts():
+    """What a parameters file announces stands there, and the active set is 0 to 7."""
+    good = standard({'contact.n0': 0.3, 'contact.mu': 0.41}, [('peak', 1), ('frequency', 1)],
+                    ['contact.n0'])
+    plain = [line.split() for line in good.splitlines()]
+    for number, tag, put, said in (
+            ('2', 'variables', '1', '1 variables were announced'),
+            ('2', 'variables', '3', '3 variables are announced, 2 stand there'),
+            ('2', 'variables', '2x', 'expected a whole number'),
+            ('2', 'functions', '3', '3 functions are announced, 2 stand there'),
+            ('2', 'functions', '1', 'ASV_2:frequency is response 2, of 1'),
+            ('1', 'derivative_variables', '2', '2 derivative variables are announced, 1 stand'),
+            ('1', 'derivative_variables', '0', 'is derivative variable 1, of 0'),
+            ('1', 'ASV_1:peak', 'x', 'expected a whole number from 0 to 7'),
+            ('1', 'ASV_1:peak', '1.5', 'expected a whole number from 0 to 7'),
+            ('1', 'ASV_1:peak', '8', 'expected a whole number from 0 to 7'),
+            ('1', 'ASV_1:peak', '-1', 'expected a whole number from 0 to 7'),
+            ('1', 'DVV_1:contact.n0', '3', 'expected a whole number from 1 to 2')):
+        assert [number, tag] in plain, (number, tag)
+        text = '\n'.join(f'{put} {tag}' if words == [number, tag] else ' '.join(words)
+                         for words in plain) + '\n'
+        result, errors = evaluate(text, 2)
+        assert result.startswith('FAIL') and said in errors, (put, tag, errors)
+        assert len(errors.splitlines()) == 1, errors
+    for text, said in (
+            (good.replace('contact.mu\n', 'contact.n0\n'), 'contact.n0 stands there twice'),
+            (good.replace('ASV_2:frequency', 'ASV_2:peak'), 'response peak stands there twice')):
+        assert said in evaluate(text, 2)[1], text
+    assert evaluate(standard({'contact.n0': 0.3}, [('peak', 0)])) == ('', '')
+
+
 def main():
     with bring_your_own(SCENE):
         subprocess.run([sys.executable, 'write_modal.py'], check=True)
@@ -96,6 +127,7 @@ def main():
         with open('case.yaml', 'w') as out:
             out.write(text.replace('n0: [-0.2 N, 0 N, 0.3 N, 1.0 N]', 'n0: 0.3 N'))
         check()
+        check_counts()
 
 
 main()

@@ -144,6 +144,27 @@ static void fingerprints_are_fnv_1a(void **state) {
   assert_int_equal(shb_fingerprint(path, hash), SHB_ERR_IO);
 }
 
+static void names_show_what_they_are(void **state) {
+  (void)state;
+  static const char *const        plain[]   = {"tip",   "-rf", "=1+2", "two words", "a.b_c+d",
+                                               "größe", "翼",  "\xc3", "\xe2\x80"},
+                           *const refused[] = {"",
+                                               "a\nb",
+                                               "\x1b[31mred",
+                                               "a\tb",
+                                               "\x7f",
+                                               "\xc2\x85",     /* U+0085 */
+                                               "a\u200fb",     /* right-to-left mark */
+                                               "x\u202egnp.b", /* right-to-left override */
+                                               "\u2066",
+                                               "\ufeffname",
+                                               "\u061c"};
+  for (size_t i = 0; i < sizeof plain / sizeof *plain; i++)
+    assert_true(shb_name_is_plain(plain[i]));
+  for (size_t i = 0; i < sizeof refused / sizeof *refused; i++)
+    assert_false(shb_name_is_plain(refused[i]));
+}
+
 static int n_entries(void) {
   int  n    = 0;
   DIR *list = opendir(scratch_folder);
@@ -220,6 +241,7 @@ int main(void) {
                                      cmocka_unit_test(a_folder_that_is_absent_is_told),
                                      cmocka_unit_test(abandoned_files_are_removed),
                                      cmocka_unit_test(orphans_are_removed),
-                                     cmocka_unit_test(fingerprints_are_fnv_1a)};
+                                     cmocka_unit_test(fingerprints_are_fnv_1a),
+                                     cmocka_unit_test(names_show_what_they_are)};
   return cmocka_run_group_tests(tests, scratch_make, scratch_remove);
 }

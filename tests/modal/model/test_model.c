@@ -276,6 +276,30 @@ static void test_missing(void **state) {
   modal_model_free(&model);
 }
 
+/* Tables and summaries know probes by their names. */
+static void test_names(void **state) {
+  (void)state;
+  char        empty[] = "", red[] = "a\x1b[31mred\nb", turned[] = "x\u202ey", formula[] = "=1+2";
+  modal_model model  = sample(true);
+  char *const own    = model.probe_name[0];
+  char *const name[] = {empty, red, turned};
+  for (size_t i = 0; i < sizeof name / sizeof *name; i++) {
+    model.probe_name[0] = name[i];
+    write_model("names.h5", &model);
+    assert_refused(read_only(scratch("names.h5")), SHB_ERR_INPUT,
+                   "names.h5: /probe/name: name 0 (from 0) is empty, or holds a control");
+  }
+  model.probe_name[0] = formula; /* no cell of a table begins so */
+  write_model("names.h5", &model);
+  assert_ok(read_only(scratch("names.h5")));
+  model.probe_name[0] = model.probe_name[1];
+  write_model("names.h5", &model);
+  assert_refused(read_only(scratch("names.h5")), SHB_ERR_INPUT,
+                 "names.h5: /probe/name: names 0 and 1 (from 0) are both");
+  model.probe_name[0] = own;
+  modal_model_free(&model);
+}
+
 /* Residual terms are optional, except below residual modes, which need them. */
 static void test_residual_modes_need_terms(void **state) {
   (void)state;
@@ -484,17 +508,12 @@ static void test_other_types(void **state) {
 
 int main(void) {
   const struct CMUnitTest tests[] = {
-      cmocka_unit_test(test_round_trip),
-      cmocka_unit_test(test_least),
-      cmocka_unit_test(test_described),
-      cmocka_unit_test(test_format),
-      cmocka_unit_test(test_truncated),
-      cmocka_unit_test(test_missing),
-      cmocka_unit_test(test_residual_modes_need_terms),
-      cmocka_unit_test(test_shapes),
-      cmocka_unit_test(test_values),
-      cmocka_unit_test(test_symmetry_bound),
-      cmocka_unit_test(test_other_types),
+      cmocka_unit_test(test_round_trip),     cmocka_unit_test(test_least),
+      cmocka_unit_test(test_described),      cmocka_unit_test(test_format),
+      cmocka_unit_test(test_truncated),      cmocka_unit_test(test_missing),
+      cmocka_unit_test(test_names),          cmocka_unit_test(test_residual_modes_need_terms),
+      cmocka_unit_test(test_shapes),         cmocka_unit_test(test_values),
+      cmocka_unit_test(test_symmetry_bound), cmocka_unit_test(test_other_types),
   };
   return cmocka_run_group_tests(tests, scratch_make, scratch_remove);
 }

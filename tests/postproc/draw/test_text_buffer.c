@@ -64,9 +64,37 @@ static void publishing(void **state) {
   post_buffer_free(&b);
 }
 
+static void a_cell_is_no_formula(void **state) {
+  (void)state;
+  static const struct {
+    const char *text, *cell;
+  } row[] = {{"tip", "tip"},
+             {"-5", "-5"},
+             {"+1.5e-3", "+1.5e-3"},
+             {"=1+2", "'=1+2"},
+             {"-5+cmd", "'-5+cmd"},
+             {"-inf", "'-inf"},
+             {"-0x10", "'-0x10"},
+             {"@SUM(A1)", "'@SUM(A1)"},
+             {"+A1,B1", "\"'+A1,B1\""},
+             {"-", "'-"},
+             {"a=b", "a=b"},
+             {"say \"x\"", "\"say \"\"x\"\"\""},
+             {"\t=1", "?=1"},
+             {"\r\n", "\"?\n\""},
+             {"\x1b[31m", "?[31m"}};
+  for (size_t i = 0; i < sizeof row / sizeof *row; i++) {
+    post_buffer out = {0};
+    post_put_csv(&out, row[i].text);
+    assert_string_equal(out.text, row[i].cell);
+    post_buffer_free(&out);
+  }
+}
+
 int main(void) {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(escaping), cmocka_unit_test(json),
-                                     cmocka_unit_test(base64), cmocka_unit_test(growth),
-                                     cmocka_unit_test(publishing)};
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(escaping),   cmocka_unit_test(json),
+      cmocka_unit_test(base64),     cmocka_unit_test(growth),
+      cmocka_unit_test(publishing), cmocka_unit_test(a_cell_is_no_formula)};
   return cmocka_run_group_tests(tests, NULL, NULL);
 }
