@@ -22,6 +22,8 @@ shb_bench(lasting z_notch_settings.c)
 target_link_libraries(bench_lasting PRIVATE tests_models OpenMP::OpenMP_C)
 shb_bench(study z_notch_settings.c)
 target_link_libraries(bench_study PRIVATE shb_cases_study tests_models OpenMP::OpenMP_C)
+shb_bench(study_agreement z_notch_settings.c)
+target_link_libraries(bench_study_agreement PRIVATE shb_cases_study tests_models OpenMP::OpenMP_C)
 shb_bench(mistuning z_notch_settings.c)
 target_link_libraries(bench_mistuning PRIVATE tests_models)
 # it counts their calls
