@@ -5,9 +5,9 @@
 #include <string.h>
 
 #include "mesh/base/constants.h"
+#include "mhb/branches/branch_stability.h"
 #include "mhb/branches/record.h"
 #include "mhb/continuation/nearest_solution.h"
-#include "mhb/floquet/floquet.h"
 #include "mhb/numerics/fourier.h"
 
 /* Of the residual, relative to the motion. */
@@ -230,14 +230,10 @@ shb_status point_matcher_record(point_matcher *matcher, mhb_response *response, 
 }
 
 shb_status point_matcher_judge(point_matcher *matcher, int *stable) {
-  enum { SUBSTEPS = 128, MAX_STATES = 600 }; /* as of curves with many states (branch_stability) */
-  const mhb_balance    *b        = matcher->balance;
-  const mhb_evaluation *e        = b->eval;
-  mhb_solution          solution = {e->at.omega, b->law, e->info, matcher->x, e->p};
-  mhb_floquet          *floquet  = NULL;
-  mhb_multipliers       multipliers;
-  SHB_TRY(mhb_floquet_create(b->receptance, &matcher->settings, SUBSTEPS, MAX_STATES, &floquet));
-  mhb_floquet_evaluate(floquet, &solution, &multipliers);
+  mhb_multipliers multipliers;
+  mhb_floquet    *floquet = NULL;
+  SHB_TRY(mhb_branch_floquet_create(matcher->balance, &floquet));
+  mhb_branch_floquet_evaluate(floquet, matcher->balance, matcher->x, &multipliers);
   *stable = multipliers.verdict == MHB_UNSTABLE ? 0 : multipliers.verdict == MHB_STABLE ? 1 : -1;
   mhb_floquet_destroy(floquet);
   return SHB_OK;

@@ -11,7 +11,7 @@
 static const struct {
   const char *name, *unit;
 } words[] = {{"peak", "m"},        {"frequency", "Hz"}, {"peak_to_peak", "m"}, {"stable", "-"},
-             {"dissipation", "J"}, {"stress", "Pa"},    {"safety", "-"}};
+             {"dissipation", "J"}, {"stress", "Pa"},    {"safety", "-"},       {"rss", "m"}};
 enum { N_WORDS = sizeof words / sizeof *words };
 
 static void set(study_output *out, study_quantity quantity, int index, const char *name,

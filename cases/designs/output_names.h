@@ -12,10 +12,11 @@ typedef enum {
   STUDY_PEAK,           /* m, highest first harmonic of the first output over all curves */
   STUDY_FREQUENCY,      /* Hz, where */
   STUDY_PEAK_TO_PEAK,   /* m, there */
-  STUDY_STABLE,         /* 1, 0, -1: not judged; there */
+  STUDY_STABLE,         /* 1, 0, NAN: not judged; there */
   STUDY_DISSIPATION,    /* J a cycle, all pairs; there */
   STUDY_STRESS,         /* Pa, greatest amplitude of the signed von Mises stress; there */
   STUDY_SAFETY,         /* -, least safety against Goodman's line; there */
+  STUDY_RSS,            /* m, root of the sum of squares of that harmonic's components; there */
   STUDY_PROBE,          /* m, highest first harmonic of a probe over all curves */
   STUDY_GAUGE,          /* -, amplitude of the strain at a gauge; at the highest peak */
   STUDY_MODE_FREQUENCY, /* Hz, of a mode with free contacts */

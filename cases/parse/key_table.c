@@ -382,10 +382,11 @@ static const case_key table[] = {
     {"mhb.output", CASE_LABEL, "", AT(mhb.output), .stages = CASE_MHB, .when = CASE_IF_TRACKED,
      .help = "whose peak: a probe, or contact for the first contact point; default: the first "
              "probe"},
-    {"mhb.output_quantity", CASE_CHOICE, "", .words = "harmonic peak_to_peak",
+    {"mhb.output_quantity", CASE_CHOICE, "", .words = "harmonic peak_to_peak rss",
      .fallback = "harmonic", AT(mhb.output_quantity), .stages = CASE_MHB, .when = CASE_IF_TRACKED,
-     .help = "its size: of one harmonic, the root of the sum over the three components; or peak to "
-             "peak, the largest distance between two instants of a period"},
+     .help = "its size: the largest displacement of one harmonic, as in reports and studies; peak "
+             "to peak, the largest distance between two instants of a period; or rss, the root of "
+             "the sum of the squares of the harmonic's three components"},
     {"mhb.output_harmonic", CASE_INTEGER, "", 1, 15, .fallback = "1", AT(mhb.output_harmonic),
      .stages = CASE_MHB, .when = CASE_IF_TRACKED,
      .help = "harmonic of the excitation whose amplitude that is; of the motion there must be as "

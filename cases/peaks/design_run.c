@@ -88,11 +88,14 @@ static void put_peak(job *j, const exact_peak *peak) {
       case STUDY_PEAK_TO_PEAK:
         put(j, i, peak->peak_to_peak, peak->peak_to_peak_error);
         break;
+      case STUDY_RSS:
+        put(j, i, peak->rss, peak->rss_error);
+        break;
       case STUDY_DISSIPATION:
         put(j, i, peak->dissipation, peak->dissipation_error);
         break;
       case STUDY_STABLE:
-        put(j, i, peak->stable, NAN);
+        put(j, i, peak->stable < 0 ? NAN : peak->stable, NAN);
         break;
       case STUDY_STRESS:
       case STUDY_SAFETY:

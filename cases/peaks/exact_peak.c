@@ -163,7 +163,7 @@ static shb_status solve_first(maximum *m, matched_solution *solution, mhb_peak_d
 
 static void no_errors(exact_peak *peak) {
   peak->frequency_error = peak->amplitude_error = NAN;
-  peak->peak_to_peak_error = peak->dissipation_error = NAN;
+  peak->peak_to_peak_error = peak->rss_error = peak->dissipation_error = NAN;
   for (int i = 0; i < STUDY_MAX_OUTPUTS; i++) peak->field[i] = peak->field_error[i] = NAN;
 }
 
@@ -171,15 +171,18 @@ static void no_errors(exact_peak *peak) {
 static shb_status describe(const work *w, mhb_response *response, int branch, int point,
                            exact_peak *peak) {
   const mhb_branch *b     = &response->branch[branch];
-  double           *value = NULL;
+  double           *value = NULL, *rss = NULL;
   SHB_TRY(post_series(response, b, w->output, POST_QUANTITY_PEAK_TO_PEAK, &value));
+  shb_status status  = post_series(response, b, w->output, POST_QUANTITY_RSS, &rss);
   peak->found        = true;
   peak->frequency    = b->frequency[point];
   peak->amplitude    = post_amplitude(response, b, point, w->output, post_first_harmonic(b));
   peak->peak_to_peak = value[point];
+  peak->rss          = status == SHB_OK ? rss[point] : NAN;
   peak->dissipation  = post_dissipation(response, b, point);
   free(value);
-  if (!w->asked.field) return SHB_OK;
+  free(rss);
+  if (!w->asked.field) return status;
   return peak_field_evaluate(w->asked.field, w->model, w->settings, response, branch, point,
                              peak->field);
 }
@@ -239,6 +242,7 @@ static void set_errors(exact_peak *peak, const exact_peak *fewer) {
   peak->frequency_error    = fabs(fewer->frequency - peak->frequency);
   peak->amplitude_error    = fabs(fewer->amplitude - peak->amplitude);
   peak->peak_to_peak_error = fabs(fewer->peak_to_peak - peak->peak_to_peak);
+  peak->rss_error          = fabs(fewer->rss - peak->rss);
   peak->dissipation_error  = fabs(fewer->dissipation - peak->dissipation);
   for (int i = 0; i < STUDY_MAX_OUTPUTS; i++)
     peak->field_error[i] = fabs(fewer->field[i] - peak->field[i]);

@@ -21,8 +21,8 @@ typedef struct {
   bool   exact;  /* solved again; false: a point of the coarse curve */
   bool   doubt;  /* a place where the curve may be higher has no fine solution */
   bool   walked; /* it is the peak that was walked to from another design */
-  double frequency, amplitude, peak_to_peak, dissipation; /* Hz, m, m, J */
-  double frequency_error, amplitude_error, peak_to_peak_error, dissipation_error;
+  double frequency, amplitude, peak_to_peak, rss, dissipation; /* Hz, m, m, m, J */
+  double frequency_error, amplitude_error, peak_to_peak_error, rss_error, dissipation_error;
   int    stable;           /* 1, 0; -1: not judged or undecided */
   mhb_peak_derivatives by; /* of kind MHB_PEAK_UNJUDGED if they were not asked for */
   double field[STUDY_MAX_OUTPUTS], field_error[STUDY_MAX_OUTPUTS]; /* of peak_field; NAN: none */

@@ -76,6 +76,14 @@ shb_status mhb_branch_floquet_create(mhb_balance *b, mhb_floquet **floquet) {
                             count_states(b) > DEAR ? SUBSTEPS_DEAR : SUBSTEPS, MAX_STATES, floquet);
 }
 
+void mhb_branch_floquet_evaluate(mhb_floquet *floquet, const mhb_balance *b, const double *x,
+                                 mhb_multipliers *out) {
+  const mhb_evaluation *e        = b->eval;
+  mhb_solution          solution = {e->at.omega, b->law, e->info, x, e->p};
+  if (b->settings->run_up) mhb_floquet_move(floquet, b->receptance);
+  mhb_floquet_evaluate(floquet, &solution, out);
+}
+
 double mhb_branch_floquet_bytes(int blades, int pairs, int modes, bool mistuned) {
   return mhb_floquet_bytes(blades, pairs, modes, mistuned, MAX_STATES);
 }
@@ -116,13 +124,8 @@ static double value_of(const mhb_branch_stability *w, int point) {
   return mhb_parameter_value(w->balance->parameter, branch_of(w)->value[point]);
 }
 
-/* Multipliers at the solution of the last evaluation of the balance. */
 static void evaluate(mhb_branch_stability *w, const double *x, mhb_multipliers *out) {
-  const mhb_balance    *b        = w->balance;
-  const mhb_evaluation *e        = b->eval;
-  mhb_solution          solution = {e->at.omega, b->law, e->info, x, e->p};
-  if (b->settings->run_up) mhb_floquet_move(w->floquet, b->receptance);
-  mhb_floquet_evaluate(w->floquet, &solution, out);
+  mhb_branch_floquet_evaluate(w->floquet, w->balance, x, out);
 }
 
 /* The largest multiplier that is not on the positive axis; -1: none. */
@@ -183,6 +186,19 @@ static bool is_linear_point(const mhb_branch_stability *w, int point) {
   return mhb_response_is_linear(w->response, branch_of(w), point);
 }
 
+/* The point where the first output is largest: that of the headline. */
+static int highest_output(const mhb_branch_stability *w) {
+  double top  = -1;
+  int    best = -1;
+  for (int i = 0; i < w->n; i++) {
+    const double size = mhb_response_output(w->response, branch_of(w), i);
+    if (size <= top) continue;
+    top  = size;
+    best = i;
+  }
+  return w->at[best].computed ? -1 : best;
+}
+
 /* The point of the largest motion that is not judged yet; -1: none. */
 static int largest_motion(const mhb_branch_stability *w) {
   double top  = -1;
@@ -202,7 +218,7 @@ static int largest_motion(const mhb_branch_stability *w) {
  * ring (bloch.h). */
 static int affordable(const mhb_branch_stability *w) {
   int    g      = mhb_floquet_cells(w->floquet);
-  double states = w->states < MAX_STATES ? w->states : MAX_STATES;
+  double states = mhb_floquet_states(w->floquet);
   double cube   = SECONDS_A_CUBE * states * states * states * (g > 2 ? 2. : 1.) / (g * g);
   double blades = w->balance->receptance->ring ? w->balance->receptance->ring->blades : 0;
   double period = SECONDS_A_STATE + SECONDS_MISTUNED * blades * blades;
@@ -244,7 +260,8 @@ static void set_verdicts(const mhb_branch_stability *w, mhb_curve_verdict *verdi
 /* Slipping points, one after the other, until their neighbours decide the rest or the budget is
  * used. */
 static bool judge_some(mhb_branch_stability *w, mhb_curve_verdict *verdict) {
-  bool go_on = true;
+  const int highest = highest_output(w);
+  bool      go_on   = highest < 0 || judge_point(w, highest);
   for (int left = affordable(w), first = 1; left > 0 && go_on; left--, first = 0) {
     set_verdicts(w, verdict);
     int i = first ? largest_motion(w) : mhb_curve_verdicts_next(w->n, verdict);

@@ -6,9 +6,9 @@
  *   more                 every point, if the slipping ones cost 1 s a branch at most
  *   else                 every linear point (no slip, opening or closing), and slipping points as
  *                        many as 1 s allows, at least twelve
- * The order of the latter is that of mhb/floquet/curve_verdicts.h: the largest motion, peaks, slip
- * onset and both sides of folds, then by bisection. The cost is computed from the number of states,
- * never measured.
+ * The first of the latter is the highest point of the first output, then those of
+ * mhb/floquet/curve_verdicts.h: the largest motion, peaks, slip onset and both sides of folds, then
+ * by bisection. The cost is computed from the number of states, never measured.
  *
  * Verdicts, and what they rest on (judged):
  *   multipliers  all inside the unit circle, or some outside by more than the margin
@@ -29,6 +29,10 @@
 /* A workspace for multipliers with the sub-steps and dynamic modes that points of a branch get.
  * SHB_ERR_IO: no memory. */
 shb_status mhb_branch_floquet_create(mhb_balance *balance, mhb_floquet **floquet);
+
+/* Multipliers at the solution x[n] of the last evaluation of the balance. */
+void mhb_branch_floquet_evaluate(mhb_floquet *floquet, const mhb_balance *balance, const double *x,
+                                 mhb_multipliers *multipliers);
 
 /* Bytes of that workspace (mhb_floquet_bytes). */
 double mhb_branch_floquet_bytes(int blades, int pairs, int modes, bool mistuned);

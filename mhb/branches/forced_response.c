@@ -149,9 +149,7 @@ static bool point(mhb_monitor *monitor, const mhb_response *own, int branch, int
   const mhb_settings   *c    = s->settings;
   const mhb_branch     *b    = &own->branch[branch];
   mhb_parameter         what = c->parameter;
-  int                   K = b->n_harmonics + 1, first = b->order < K ? b->order : K - 1;
-  const double complex *u = b->motion + (size_t)at * 3 * (size_t)own->n_pairs * (size_t)K + first;
-  double amplitude        = sqrt(pow(cabs(u[0]), 2) + pow(cabs(u[K]), 2) + pow(cabs(u[2 * K]), 2));
+  double amplitude        = mhb_response_amplitude(own, b, at, own->n_probes);
   double low              = mhb_parameter_shown(what, mhb_parameter_end(c, what, 0));
   double high = mhb_parameter_shown(what, mhb_parameter_end(c, what, 1)), total = 0;
   mhb_publisher_lock(&s->publisher, true);

@@ -44,8 +44,9 @@ static void force_change(const mhb_balance *b, const double *dx, double dvalue, 
   }
 }
 
-static double dot(double complex a, double complex b) {
-  return creal(a) * creal(b) + cimag(a) * cimag(b);
+/* dA of a motion's three components that change by dz. */
+static double change(const double complex w[3], const double complex dz[3]) {
+  return creal(w[0] * dz[0] + w[1] * dz[1] + w[2] * dz[2]);
 }
 
 /* Where nothing changes (another parameter than the frequency, all stuck) the sign of a slope is
@@ -124,22 +125,20 @@ static double ring_slope(mhb_balance *b, const mhb_curve_point *point, int k, in
   const int                  place = 3 * (o % places), N = ring->blades;
   double complex             q[all + 1], dq[all + 1], z[3], dz[3];
   double                     most = -1, slope = 0, mean = 0, by_mean = 0;
+  double complex             w[3];
   if (ring->q > 0) mhb_probe_change(b, point, k, q, dq);
   for (int blade = 0; blade < N; blade++) {
-    double square = 0, own = 0;
     ring_motion(b, point, k, blade, q + place, dq + place, z, dz);
-    for (int axis = 0; axis < 3; axis++) {
-      own += 2 * dot(z[axis], dz[axis]);
-      square += dot(z[axis], z[axis]);
+    const double a = mhb_semi_major_weight(z, w), da = change(w, dz);
+    if (a > most) {
+      most  = a;
+      slope = da;
     }
-    if (square > most) {
-      most  = square;
-      slope = own;
-    }
-    mean += sqrt(square) / N;
-    if (square > 0) by_mean += own / (2 * sqrt(square)) / N;
+    mean += a / N;
+    by_mean += da / N;
   }
-  return o < places ? unless_flat(slope, most) : unless_flat(2 * mean * by_mean, mean * mean);
+  return o < places ? unless_flat(2 * most * slope, most * most)
+                    : unless_flat(2 * mean * by_mean, mean * mean);
 }
 
 double mhb_output_slope(mhb_balance *b, const mhb_curve_point *point, int o) {
@@ -155,10 +154,8 @@ double mhb_output_slope(mhb_balance *b, const mhb_curve_point *point, int o) {
   }
   double complex q[3 * probes], dq[3 * probes];
   mhb_probe_change(b, point, k, q, dq);
-  double sum = 0, square = 0;
-  for (int axis = 0; axis < 3; axis++) {
-    sum += 2 * dot(q[3 * o + axis], dq[3 * o + axis]);
-    square += dot(q[3 * o + axis], q[3 * o + axis]);
-  }
-  return unless_flat(sum, square);
+  double complex w[3];
+  const bool     rss = b->settings->output_quantity == MHB_OUTPUT_RSS;
+  const double   a   = (rss ? mhb_rss_weight : mhb_semi_major_weight)(q + 3 * o, w);
+  return unless_flat(2 * a * change(w, dq + 3 * o), a * a);
 }

@@ -20,8 +20,8 @@ void mhb_probe_change(mhb_balance *balance, const mhb_curve_point *point, int k,
                       double complex *dq);
 
 /* d a^2/ds of output o along the tangent of a point; 0 below 1e-9 a^2. a is the amplitude of
- * its harmonic. For a probe a^2 is the sum over its three components. Or a is the peak to peak, of
- * all harmonics. */
+ * its harmonic: of a probe the semi-major axis, or its rss. Or a is the peak to peak, of all
+ * harmonics. */
 double mhb_output_slope(mhb_balance *balance, const mhb_curve_point *point, int o);
 
 #endif

@@ -11,8 +11,9 @@
  * For a wave around the ring any disturbance of any blade is followed, whether or not it has the
  * form of the wave. Integrated is g/N of a period, after which the blades are renamed
  * (transition_schedule.h). In a mistuned ring the whole period is integrated, and nothing repeats.
- * There are 2 modes + 2 contacts states a blade. If these exceed
- * max_states the lowest modes keep their dynamics and the others respond statically. Derivation:
+ * There are 2 modes + 2 contacts states a blade. If these exceed max_states the lowest modes keep
+ * their dynamics and the others respond statically. A ring of g cells has g^1/2 times as many
+ * states where modes within five times the highest frequency need them. Derivation:
  * docs/theory/stability.md. */
 #ifndef MHB_FLOQUET_FLOQUET_H
 #define MHB_FLOQUET_FLOQUET_H
@@ -67,11 +68,14 @@ void mhb_floquet_move(mhb_floquet *floquet, const mhb_receptance *receptance);
  * blade on the ground. */
 int mhb_floquet_cells(const mhb_floquet *floquet);
 
+/* States that are integrated where contacts slip; 0: none, max_states is too small. */
+int mhb_floquet_states(const mhb_floquet *floquet);
+
 /* Multipliers of a solution. No allocation.
  *   MHB_UNSTABLE   largest > 1 + max(1e-3, change)
  *   MHB_MARGINAL   largest above 1 within that margin
  *   MHB_UNDECIDED  the contact law failed at the solution, 16 times the sub-steps do not decide, or
- *                  max_states is too small for one mode a blade */
+ *                  a mode within three times the excitation has no dynamics */
 void mhb_floquet_evaluate(mhb_floquet *floquet, const mhb_solution *solution,
                           mhb_multipliers *multipliers);
 

@@ -167,3 +167,33 @@ void mhb_extent_weight(const mhb_extent *extent, int n, int k, double complex *w
   const double complex apart = cexp(I * k * extent->t) - cexp(I * k * extent->s);
   for (int i = 0; i < n; i++) weight[i] = extent->direction[i] * apart;
 }
+
+static double square(double complex a) {
+  return creal(a) * creal(a) + cimag(a) * cimag(a);
+}
+
+double mhb_semi_major_axis(int n, const double complex *a, int stride) {
+  double         sum     = 0;
+  double complex squared = 0;
+  for (int i = 0; i < n; i++) {
+    const double complex z = a[i * stride];
+    sum += square(z);
+    squared += z * z;
+  }
+  return sqrt((sum + cabs(squared)) / 2);
+}
+
+double mhb_semi_major_weight(const double complex a[3], double complex weight[3]) {
+  const double         A      = mhb_semi_major_axis(3, a, 1);
+  const double complex Q      = a[0] * a[0] + a[1] * a[1] + a[2] * a[2];
+  const double         length = cabs(Q);
+  const double complex turn   = length > 0 ? conj(Q) / length : 0;
+  for (int i = 0; i < 3; i++) weight[i] = A > 0 ? 0.5 * (conj(a[i]) + turn * a[i]) / A : 0;
+  return A;
+}
+
+double mhb_rss_weight(const double complex a[3], double complex weight[3]) {
+  const double A = sqrt(square(a[0]) + square(a[1]) + square(a[2]));
+  for (int i = 0; i < 3; i++) weight[i] = A > 0 ? conj(a[i]) / A : 0;
+  return A;
+}

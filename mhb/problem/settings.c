@@ -19,7 +19,10 @@ const char *mhb_track_word(mhb_track track) {
 }
 
 const char *mhb_output_quantity_word(mhb_output_quantity quantity) {
-  return quantity == MHB_OUTPUT_PEAK_TO_PEAK ? "peak_to_peak" : "harmonic";
+  static const char *const word[] = {[MHB_OUTPUT_HARMONIC]     = "harmonic",
+                                     [MHB_OUTPUT_PEAK_TO_PEAK] = "peak_to_peak",
+                                     [MHB_OUTPUT_RSS]          = "rss"};
+  return word[quantity];
 }
 
 bool mhb_track_by_multiplier(const char *word) {

@@ -13,8 +13,9 @@ typedef enum { MHB_STABILITY_AUTO, MHB_STABILITY_ALWAYS, MHB_STABILITY_NEVER } m
 /* Motion that takes over where the wave is unstable: at few points; at all of them; never. */
 typedef enum { MHB_LASTING_AUTO, MHB_LASTING_ALWAYS, MHB_LASTING_NEVER } mhb_lasting_when;
 
-/* Size of an output whose peaks are located: of one harmonic, or its peak to peak. */
-typedef enum { MHB_OUTPUT_HARMONIC, MHB_OUTPUT_PEAK_TO_PEAK } mhb_output_quantity;
+/* Size of an output whose peaks are located: largest displacement of one harmonic, its root of the
+ * sum of squares, or the peak to peak of all (mhb/numerics/extent.h). In the order of the key. */
+typedef enum { MHB_OUTPUT_HARMONIC, MHB_OUTPUT_PEAK_TO_PEAK, MHB_OUTPUT_RSS } mhb_output_quantity;
 
 /* Special points that are followed along a parameter. */
 typedef enum {
@@ -164,7 +165,7 @@ typedef struct {
 /* As the case and the response file have it. */
 const char *mhb_track_word(mhb_track track);
 
-/* "harmonic" or "peak_to_peak", as in mhb.output_quantity. */
+/* "harmonic", "peak_to_peak" or "rss", as in mhb.output_quantity. */
 const char *mhb_output_quantity_word(mhb_output_quantity quantity);
 
 /* Whether such points are those of a multiplier on the unit circle; NULL: no. */

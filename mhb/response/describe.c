@@ -41,7 +41,7 @@ shb_status mhb_response_describe(mhb_response *response, const modal_model *mode
   response->ring            = settings->ring ? settings->ring->blades : 0;
   response->subharmonics    = settings->subharmonics;
   response->output_harmonic = settings->output_harmonic;
-  response->peak_to_peak    = settings->output_quantity == MHB_OUTPUT_PEAK_TO_PEAK;
+  response->quantity        = settings->output_quantity;
   response->engine_order    = settings->engine_order;
   response->blades          = settings->blades;
   response->run_up          = settings->run_up != NULL;

@@ -34,7 +34,7 @@ mhb_response *mhb_response_like(const mhb_response *response) {
   like->n_multipliers     = response->n_multipliers;
   like->ring              = response->ring;
   like->output_harmonic   = response->output_harmonic;
-  like->peak_to_peak      = response->peak_to_peak;
+  like->quantity          = response->quantity;
   like->n_interfaces      = response->n_interfaces;
   like->tracks_multiplier = response->tracks_multiplier;
   return like;
@@ -96,11 +96,12 @@ double mhb_response_amplitude(const mhb_response *r, const mhb_branch *b, int po
   const size_t          rows  = (size_t)(probe ? r->n_probes : r->n_pairs);
   const size_t          row = (size_t)point * rows + (size_t)(probe ? place : place - r->n_probes);
   const double complex *x   = (probe ? b->probe : b->motion) + row * 3 * K;
-  const size_t          driven = (size_t)mhb_response_harmonic(r, b);
-  double                square = 0;
-  if (r->peak_to_peak) return mhb_extent_of(3, b->n_harmonics, x).length;
-  for (size_t axis = 0; axis < 3; axis++) square += pow(cabs(x[axis * K + driven]), 2);
-  return sqrt(square);
+  const double complex *driven = x + mhb_response_harmonic(r, b);
+  double complex        unused[3];
+  if (r->quantity == MHB_OUTPUT_PEAK_TO_PEAK) return mhb_extent_of(3, b->n_harmonics, x).length;
+  if (r->quantity == MHB_OUTPUT_RSS)
+    return mhb_rss_weight((double complex[3]){driven[0], driven[K], driven[2 * K]}, unused);
+  return mhb_semi_major_axis(3, driven, (int)K);
 }
 
 double mhb_response_output(const mhb_response *r, const mhb_branch *b, int point) {

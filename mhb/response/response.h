@@ -25,8 +25,8 @@ bool mhb_response_is_linear(const mhb_response *response, const mhb_branch *bran
 /* The harmonic of a branch whose amplitude outputs have, its last one at most: the excitation's
  * first but with mhb.output_harmonic. */
 int mhb_response_harmonic(const mhb_response *response, const mhb_branch *branch);
-/* Amplitude of that harmonic, m; its square is the sum over the three components. The peak to peak
- * instead where outputs of the response have that (mhb.output_quantity).
+/* Amplitude of that harmonic, m: its semi-major axis (mhb/numerics/extent.h). Its rss or the peak
+ * to peak instead where outputs of the response have that (mhb.output_quantity).
  *   place  in  a probe, or the number of probes plus a pair, whose motion it is */
 double mhb_response_amplitude(const mhb_response *response, const mhb_branch *branch, int point,
                               int place);

@@ -73,9 +73,8 @@ static shb_status write_tracking(hid_t file, const mhb_response *response) {
   SHB_TRY(h5_write_attribute_text(file, "/", "output", response->output));
   if (response->output_harmonic > 1)
     SHB_TRY(h5_write_attribute_int(file, "/", "output_harmonic", response->output_harmonic));
-  if (response->peak_to_peak)
-    SHB_TRY(h5_write_attribute_text(file, "/", "output_quantity",
-                                    mhb_output_quantity_word(MHB_OUTPUT_PEAK_TO_PEAK)));
+  SHB_TRY(h5_write_attribute_text(file, "/", "output_quantity",
+                                  mhb_output_quantity_word(response->quantity)));
   if (o->kind == MHB_OPTIMUM_NONE) return SHB_OK;
   const h5_shape one  = {.rank = 0};
   const char    *unit = mhb_parameter_unit(response->parameter);
@@ -91,6 +90,14 @@ static shb_status write_tracking(hid_t file, const mhb_response *response) {
   return h5_write_attribute_text(file, "/optimum", "kind", optimum_name[o->kind]);
 }
 
+/* The quantity of a file. Until version 0.2 tracked files without one had the rss. */
+static mhb_output_quantity quantity_of(const char *word, bool tracked) {
+  int q = MHB_OUTPUT_RSS;
+  if (!word) return tracked ? MHB_OUTPUT_RSS : MHB_OUTPUT_HARMONIC;
+  while (q > 0 && strcmp(word, mhb_output_quantity_word((mhb_output_quantity)q)) != 0) q--;
+  return (mhb_output_quantity)q;
+}
+
 /* Files without mhb.track have none of it. */
 static shb_status read_tracking(hid_t file, const char *path, mhb_response *response) {
   mhb_optimum *o    = &response->optimum;
@@ -100,8 +107,7 @@ static shb_status read_tracking(hid_t file, const char *path, mhb_response *resp
   SHB_TRY(h5_read_attribute_text(file, "/", "output", &response->output));
   SHB_TRY(h5_read_attribute_int(file, "/", "output_harmonic", 1, &response->output_harmonic));
   SHB_TRY(h5_read_attribute_text(file, "/", "output_quantity", &quantity));
-  response->peak_to_peak =
-      quantity && strcmp(quantity, mhb_output_quantity_word(MHB_OUTPUT_PEAK_TO_PEAK)) == 0;
+  response->quantity = quantity_of(quantity, response->track != NULL);
   free(quantity);
   if (!response->track || !h5_exists(file, "/optimum")) return SHB_OK;
   SHB_TRY(h5_read_attribute_text(file, "/optimum", "kind", &kind));

@@ -260,7 +260,7 @@ typedef struct {
   char   *track, *output;    /* with mhb.track: what is followed, of which output; else NULL */
   bool    tracks_multiplier; /* these are flips or Neimark-Sacker points */
   int     output_harmonic;   /* of the excitation: of the amplitude of outputs; 0, 1: the first */
-  bool    peak_to_peak;      /* the amplitude of outputs is that, in place of one harmonic's */
+  mhb_output_quantity       quantity; /* of the amplitude of outputs */
   mhb_optimum               optimum;
   mhb_tracking_cost         cost;    /* of mhb.track */
   mhb_samples              *samples; /* of a mistuned ring; NULL: none were drawn */

@@ -7,10 +7,6 @@
 #include "mhb/continuation/outputs.h"
 #include "mhb/numerics/extent.h"
 
-static double squared(double complex a) {
-  return creal(a) * creal(a) + cimag(a) * cimag(a);
-}
-
 /* Harmonics first to last enter the amplitude. */
 typedef struct {
   int first, last;
@@ -30,14 +26,7 @@ static double peak_to_peak(int m, const double complex *a, double complex *w) {
 
 /* The amplitude of a[3], and w: dA = Re sum w_i da_i. */
 static double of_harmonic(mhb_size size, const double complex a[3], double complex w[3]) {
-  double         sum = squared(a[0]) + squared(a[1]) + squared(a[2]);
-  double complex Q   = a[0] * a[0] + a[1] * a[1] + a[2] * a[2];
-  if (size == MHB_SIZE_ROOT_SUM) Q = 0;
-  double         length = cabs(Q), most = size == MHB_SIZE_ROOT_SUM ? sum : 0.5 * (sum + length);
-  double         A = sqrt(most), part = size == MHB_SIZE_ROOT_SUM ? 1 : 0.5;
-  double complex turn = length > 0 ? conj(Q) / length : 0;
-  for (int i = 0; i < 3; i++) w[i] = A > 0 ? part * (conj(a[i]) + turn * a[i]) / A : 0;
-  return A;
+  return size == MHB_SIZE_RSS ? mhb_rss_weight(a, w) : mhb_semi_major_weight(a, w);
 }
 
 /* The same of the amplitude asked for; other harmonics than those of the span are not read. */

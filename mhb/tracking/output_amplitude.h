@@ -1,19 +1,17 @@
 /* The amplitude of an output at a solution of the balance, and its gradient.
  *
- *   A = (sum over the three components of |a_k|^2)^(1/2)
+ *   A = the semi-major axis of the ellipse Re a_k e^{jt}
  *
  * a_k is the harmonic of the output (mhb_output_harmonic), of a probe or of the relative motion of
- * a contact pair. Or A is the peak to peak of all harmonics (mhb/numerics/extent.h). A probe
- * answers the load and the contact forces p(x). Its gradient by x passes through dp/dx. */
+ * a contact pair. Or A is the rss of a_k, or the peak to peak of all harmonics
+ * (mhb/numerics/extent.h). A probe answers the load and the contact forces p(x). Its gradient by x passes through dp/dx. */
 #ifndef MHB_TRACKING_OUTPUT_AMPLITUDE_H
 #define MHB_TRACKING_OUTPUT_AMPLITUDE_H
 
 #include "mhb/balance/balance.h"
 
-/* The size of the ellipse a: by the formula above, or its longest half axis,
- * A^2 = (sum |a_i|^2 + |sum a_i^2|)/2. They are equal where all components move in phase. Or the
- * peak to peak of the whole motion. */
-typedef enum { MHB_SIZE_ROOT_SUM, MHB_SIZE_HALF_AXIS, MHB_SIZE_PEAK_TO_PEAK } mhb_size;
+/* Which of them. */
+typedef enum { MHB_SIZE_HALF_AXIS, MHB_SIZE_RSS, MHB_SIZE_PEAK_TO_PEAK } mhb_size;
 
 /* Gradient of the amplitude at fixed operating point (by x) and at fixed x (by omega). */
 typedef struct {

@@ -96,7 +96,7 @@ enum {
 /* The operating point's parameter of a derivative; not of the damping. */
 mhb_parameter mhb_peak_parameter(int derivative);
 
-/* Which amplitude has the peak. The root of the sum after creation. */
+/* Which amplitude has the peak. The semi-major axis after creation. */
 void mhb_peak_system_measure(mhb_curve_system *system, mhb_size size);
 
 /* dA/dq by all parameters at a linearised point of the response curve: A_q - l r_q.

@@ -95,6 +95,10 @@ static const char *output_name(const tracking_run *run) {
   return place < run->model->n_probes ? run->model->probe_name[place] : "contact";
 }
 
+static const mhb_size sizes[] = {[MHB_OUTPUT_HARMONIC]     = MHB_SIZE_HALF_AXIS,
+                                 [MHB_OUTPUT_RSS]          = MHB_SIZE_RSS,
+                                 [MHB_OUTPUT_PEAK_TO_PEAK] = MHB_SIZE_PEAK_TO_PEAK};
+
 static mhb_tracking tracking_of(const mhb_settings *settings, int output) {
   static const mhb_tracked_point kind[MHB_N_TRACKS] = {
       [MHB_TRACK_NOTHING]         = MHB_TRACK_PEAK,
@@ -110,8 +114,7 @@ static mhb_tracking tracking_of(const mhb_settings *settings, int output) {
       .high       = settings->range[1],
       .frequency  = {SHB_TWO_PI * settings->frequency[0], SHB_TWO_PI * settings->frequency[1]},
       .max_points = settings->max_points,
-      .size       = settings->output_quantity == MHB_OUTPUT_PEAK_TO_PEAK ? MHB_SIZE_PEAK_TO_PEAK
-                                                                         : MHB_SIZE_ROOT_SUM};
+      .size       = sizes[settings->output_quantity]};
 }
 
 /* Values of the parameter at which sweeps give seeds: geometric where the range allows it. */

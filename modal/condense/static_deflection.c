@@ -75,12 +75,12 @@ shb_status modal_deflection_solve(const fem_body *body, fem_system *system,
   SHB_CHECK(out->at.displacement, SHB_INTERRUPTED, "interrupted");
   sample(body, to, patches, out);
   SHB_TRY(find_statics(body, system->comm, rank, out));
-  double greatest[2] = {0, 0}; /* Pa; strain */
-  for (int e = 0; rank == 0 && e < body->mesh->n_elements; e++) {
-    double E    = fem_material_at(body->material, body->mesh, e)->E;
-    greatest[0] = fmax(greatest[0], out->stress[e]);
-    greatest[1] = fmax(greatest[1], out->stress[e] / E);
-  }
+  double greatest[2] = {0, 0}; /* Pa, at the nodes as on the page; strain */
+  for (int i = 0; rank == 0 && i < body->mesh->n_nodes; i++)
+    greatest[0] = fmax(greatest[0], out->statics.von_mises[i]);
+  for (int e = 0; rank == 0 && e < body->mesh->n_elements; e++)
+    greatest[1] =
+        fmax(greatest[1], out->stress[e] / fem_material_at(body->material, body->mesh, e)->E);
   MPI_Bcast(greatest, 2, MPI_DOUBLE, 0, system->comm);
   out->greatest_stress = greatest[0];
   SHB_CHECK(greatest[1] < LARGEST_STRAIN, SHB_ERR_INPUT,

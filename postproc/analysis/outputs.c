@@ -10,14 +10,13 @@
 enum { AXES = 3 };
 
 double post_semi_major_axis(int n, const double complex *a, int stride) {
-  double         sum    = 0;
-  double complex square = 0;
-  for (int i = 0; i < n; i++) {
-    double complex z = a[i * stride];
-    sum += creal(z) * creal(z) + cimag(z) * cimag(z);
-    square += z * z;
-  }
-  return sqrt((sum + cabs(square)) / 2);
+  return mhb_semi_major_axis(n, a, stride);
+}
+
+double post_rss(int n, const double complex *a, int stride) {
+  double sum = 0;
+  for (int i = 0; i < n; i++) sum += pow(cabs(a[i * stride]), 2);
+  return sqrt(sum);
 }
 
 double post_peak_to_peak(int n, int m, const double complex *a) {
@@ -41,7 +40,10 @@ int post_first_harmonic(const mhb_branch *branch) {
 }
 
 post_quantity post_quantity_primary(const mhb_response *response) {
-  return response->peak_to_peak ? POST_QUANTITY_PEAK_TO_PEAK : POST_QUANTITY_FIRST_HARMONIC;
+  static const post_quantity of[] = {[MHB_OUTPUT_HARMONIC]     = POST_QUANTITY_FIRST_HARMONIC,
+                                     [MHB_OUTPUT_PEAK_TO_PEAK] = POST_QUANTITY_PEAK_TO_PEAK,
+                                     [MHB_OUTPUT_RSS]          = POST_QUANTITY_RSS};
+  return of[response->quantity];
 }
 
 void post_quantity_name(const mhb_response *response, post_quantity quantity, char out[32]) {
@@ -51,6 +53,7 @@ void post_quantity_name(const mhb_response *response, post_quantity quantity, ch
     return;
   }
   if (response->output_harmonic > 1) snprintf(out, 32, "harmonic %d", response->output_harmonic);
+  if (quantity == POST_QUANTITY_RSS) strncat(out, ", rss", 31 - strlen(out));
 }
 
 /* Harmonics of an output at a point: [n][m + 1]. */
@@ -99,7 +102,9 @@ static double amplitude_of(const mhb_response *response, const mhb_branch *branc
   int                   n, m = branch->n_harmonics;
   const double complex *a = harmonics_of(response, branch, point, output, &n);
   if (quantity == POST_QUANTITY_PEAK_TO_PEAK) return post_peak_to_peak(n, m, a);
-  return k > m ? 0 : post_semi_major_axis(n, a + k, m + 1);
+  if (k > m) return 0;
+  return quantity == POST_QUANTITY_RSS ? post_rss(n, a + k, m + 1)
+                                       : post_semi_major_axis(n, a + k, m + 1);
 }
 
 /* The amplitude, or its mean over the blades. */

@@ -9,7 +9,11 @@
 /* Of a ring of different blades also: the blade that swings highest at a point, and the mean over
  * the blades. Their place is the first probe of a blade, or its first contact without probes. */
 typedef enum { POST_PLACE_PROBE, POST_PLACE_CONTACT, POST_PLACE_WORST, POST_PLACE_MEAN } post_place;
-typedef enum { POST_QUANTITY_FIRST_HARMONIC, POST_QUANTITY_PEAK_TO_PEAK } post_quantity;
+typedef enum {
+  POST_QUANTITY_FIRST_HARMONIC, /* its semi-major axis */
+  POST_QUANTITY_PEAK_TO_PEAK,
+  POST_QUANTITY_RSS /* of the first harmonic: the root of the sum of squared components */
+} post_quantity;
 
 enum { POST_WHOLE = -1 }; /* axis: the displacement vector */
 
@@ -26,6 +30,9 @@ typedef struct {
  *   a  in  [n], stride apart; n <= 3 */
 double post_semi_major_axis(int n, const double complex *a, int stride);
 
+/* Root of the sum of |a_i|^2: rss. */
+double post_rss(int n, const double complex *a, int stride);
+
 /* Largest distance between two instants of x(t) = Re sum_{k=0..m} a_k e^{jkt}; for n = 1 max - min.
  *
  *   a  in  [n][m + 1]; n <= 3 */
@@ -39,7 +46,7 @@ int post_first_harmonic(const mhb_branch *branch);
 /* The quantity that a report begins with: what mhb.track maximises, else the first harmonic. */
 post_quantity post_quantity_primary(const mhb_response *response);
 /* Name of a quantity, the harmonic counted in the excitation: "first harmonic", "harmonic 3", "peak
- * to peak". */
+ * to peak", "first harmonic, rss". */
 void post_quantity_name(const mhb_response *response, post_quantity quantity, char out[32]);
 
 /* Amplitude of harmonic k of an output at a point of a branch, m; 0 above its harmonics. */

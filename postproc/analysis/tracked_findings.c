@@ -24,7 +24,9 @@ static void put_amplitude(const mhb_response *r, post_buffer *out) {
   const double amplitude = r->optimum.amplitude;
   char         number[POST_NUMBER];
   post_put(out, "%s%s", post_measure(number, amplitude, post_unit_length(amplitude), 4),
-           r->peak_to_peak ? " peak to peak" : "");
+           r->quantity == MHB_OUTPUT_PEAK_TO_PEAK ? " peak to peak"
+           : r->quantity == MHB_OUTPUT_RSS        ? " (rss)"
+                                                  : "");
 }
 
 void post_tracked_figure(const post_analysis *analysis, post_buffer *out) {

@@ -41,7 +41,8 @@
       log: inDecades(list),
       many: range[1] > range[0],
       label: short + (head.unit ? ", " + head.unit : ""),
-      text: (v, digits = 4) => number(v / head.scale, digits, false) +
+      text: (v, digits = 4) => head.name === "stable" && !Number.isFinite(v) ? "not judged" :
+          number(v / head.scale, digits, false) +
           (head.unit && Number.isFinite(v) ? (head.unit === "°" ? "" : NBSP) + head.unit : "")
     };
   }

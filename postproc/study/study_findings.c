@@ -306,10 +306,10 @@ static void put_stability(const design_study *s, int best, post_buffer *out) {
   int output = design_study_output(s, "stable");
   if (best < 0 || output < 0 || s->uncertainty.n_samples > 0) return;
   double stable = s->design[best].value[output];
-  if (!isfinite(stable) || stable > 0) return;
+  if (stable > 0) return;
   open_item(true, out);
   post_put(out, "Design %d %s at its peak.", best + 1,
-           stable < 0 ? "was not judged for stability" : "is not stable");
+           isnan(stable) ? "was not judged for stability" : "is not stable");
   close_item(out);
 }
 

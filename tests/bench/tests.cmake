@@ -20,7 +20,9 @@ endforeach()
 foreach(noun face_integration ring)
   shb_bench(${noun} NIGHTLY LIBRARIES tests_models)
 endforeach()
-shb_bench(study NIGHTLY LIBRARIES shb_cases_study tests_models)
+foreach(noun study study_agreement)
+  shb_bench(${noun} NIGHTLY LIBRARIES shb_cases_study tests_models)
+endforeach()
 # it counts their calls
 shb_bench(mistuning NIGHTLY LIBRARIES tests_models
   LINK LINKER:--wrap=mhb_ring_system_factor LINKER:--wrap=mhb_arclength_set_tangent)

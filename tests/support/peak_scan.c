@@ -34,7 +34,7 @@ mhb_response *peak_scan_sweep(const peak_scan *scan, double value) {
   const mhb_settings s = mhb_tracked_settings(scan->settings, value);
   assert_ok(main_curve(scan->model, &s, s.harmonics, NULL, &r));
   r->output_harmonic = s.output_harmonic;
-  r->peak_to_peak    = s.output_quantity == MHB_OUTPUT_PEAK_TO_PEAK;
+  r->quantity        = s.output_quantity;
   return r;
 }
 

@@ -59,17 +59,17 @@ static void check_gradient(int harmonic, mhb_size size) {
 
 static void the_gradient_is_that_of_differences(void **state) {
   (void)state;
-  check_gradient(0, MHB_SIZE_ROOT_SUM);
+  check_gradient(0, MHB_SIZE_HALF_AXIS);
 }
 
 static void so_is_that_of_another_harmonic(void **state) {
   (void)state;
-  check_gradient(3, MHB_SIZE_ROOT_SUM);
+  check_gradient(3, MHB_SIZE_HALF_AXIS);
 }
 
-static void so_are_those_of_the_half_axis_and_the_peak_to_peak(void **state) {
+static void so_are_those_of_the_rss_and_the_peak_to_peak(void **state) {
   (void)state;
-  check_gradient(0, MHB_SIZE_HALF_AXIS);
+  check_gradient(0, MHB_SIZE_RSS);
   check_gradient(0, MHB_SIZE_PEAK_TO_PEAK);
 }
 

@@ -445,7 +445,7 @@ static void deflection_is_in_the_file(void **state) {
   }
   for (size_t e = 0; e < n_stress; e++) most = fmax(most, stress[e]);
   assert_ok(h5_read_attribute_double(file, "/static", "greatest_stress", 0, &greatest));
-  assert_true(greatest == most && most > 1e7);
+  assert_true(greatest > 0.5 * most && most > 1e7);
   assert_ok(h5_close(file));
   free(u), free(contact), free(at_probe), free(closing), free(normal), free(stress);
   mesh_fe_free(&mesh);
@@ -484,7 +484,7 @@ static void statics_are_in_the_file(void **state) {
   assert_true(load[2] > 1e5); /* the blade points along z */
   for (size_t i = 0; i < n_mises; i++) most = fmax(most, mises[i]);
   assert_ok(h5_read_attribute_double(file, "/static", "greatest_stress", 0, &greatest));
-  assert_true(most > 0.5 * greatest && most < 2 * greatest);
+  assert_true(most == greatest); /* the one greatest static stress */
   assert_ok(h5_close(file));
   free(node), free(force), free(whole), free(load), free(stress), free(mises);
   unlink(out);
