@@ -116,7 +116,7 @@ double post_error(const mhb_branch *branch, int point);
 double post_spatial_error(const mhb_branch *branch, int point);
 
 /* Share of the period in a state (0 stuck, 1 slipping, 2 open), mean over the pairs; energy of all
- * pairs, J per cycle. */
+ * pairs that slip, J per cycle: of others the file has only round-off. */
 double post_state(const mhb_response *response, const mhb_branch *branch, int point, int state);
 double post_dissipation(const mhb_response *response, const mhb_branch *branch, int point);
 

@@ -22,7 +22,8 @@ endforeach()
 
 shb_test(postproc/comparison run_comparison tests_responses)
 shb_test(postproc/report safe_diagram tests_responses tests_models)
-shb_test(postproc/report contact_points tests_responses tests_motions)
+shb_test(postproc/report contact_points tests_responses)
+shb_test(postproc/report point_numbers tests_responses tests_models)
 shb_test(postproc/report blade_view tests_responses tests_box)
 
 # The pages in a browser, where there is one.
