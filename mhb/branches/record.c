@@ -32,6 +32,23 @@ static bool is_at_limit(const mhb_balance *b, int a) {
   return info->share[MHB_STICK] == 1 && info->undetermined && (p[b->nb] != 0 || p[2 * b->nb] != 0);
 }
 
+/* Some pair sticks throughout although it can slip. */
+static bool has_undetermined_friction(const mhb_balance *b) {
+  for (int a = 0; a < b->n_pairs; a++) {
+    const mhb_law *law = &b->law[a];
+    if (law->mu > 0 && (law->ku[0] > 0 || law->ku[2] > 0) && b->eval->info[a].undetermined)
+      return true;
+  }
+  return false;
+}
+
+static int mark_of(const mhb_balance *b, const mhb_curve_point *point) {
+  const double tolerance = b->settings->motion_tolerance;
+  int          mark      = has_undetermined_friction(b) ? MHB_TRACTION_UNDETERMINED : 0;
+  if (!isfinite(point->truncation)) return mark | MHB_ERROR_NOT_JUDGED;
+  return tolerance > 0 && point->truncation > tolerance ? mark | MHB_ABOVE_TOLERANCE : mark;
+}
+
 static void record_states(mhb_branch *branch, int point, const mhb_balance *b) {
   double worst = 0;
   for (int a = 0; a < b->n_pairs; a++) {
@@ -79,6 +96,7 @@ shb_status mhb_record(mhb_response *response, int index, mhb_balance *b,
   if (branch->error_spatial) branch->error_spatial[at] = -1;
   if (branch->truncation_kind) branch->truncation_kind[at] = point->truncation_kind;
   branch->error_modal[at] = point->modal;
+  branch->mark[at]        = mark_of(b, point);
   if (branch->ring_kind) record_ring(response, branch, at, b);
   return SHB_OK;
 }

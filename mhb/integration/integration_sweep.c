@@ -292,6 +292,18 @@ static void record_preloads(const sweep *s, int n, mhb_branch *b, int at, double
     b->interface_n0[at * n + i] = mhb_interface_operating_point(&c, s->settings, i).n0;
 }
 
+/* Some pair stuck throughout although it can slip: its mean friction is that of the start. */
+static bool has_undetermined_friction(const sweep *s, const mhb_response *response,
+                                      const sweep_point *c) {
+  const mhb_operating_point lead = mhb_operating_point_of(s->settings);
+  for (int a = 0; a < response->n_pairs; a++) {
+    const int                 i   = response->interface ? response->interface[a] : 0;
+    const mhb_operating_point own = mhb_interface_operating_point(&lead, s->settings, i);
+    if (own.mu > 0 && (own.ku[0] > 0 || own.ku[2] > 0) && c->state[3 * a] == 1) return true;
+  }
+  return false;
+}
+
 static shb_status record_point(const sweep *s, mhb_response *response, const sweep_point *c) {
   int    at, K = response->n_harmonics + 1;
   size_t n3 = 3 * (size_t)response->n_pairs * (size_t)K,
@@ -309,9 +321,10 @@ static shb_status record_point(const sweep *s, mhb_response *response, const swe
   b->error_truncation[at] = 0;
   b->error_sampling[at]   = c->error;
   b->error_modal[at]      = -1;
-  b->multiple[at]         = c->multiple;
-  b->periods[at]          = c->periods;
-  b->distance[at]         = c->distance;
+  b->mark[at]     = has_undetermined_friction(s, response, c) ? MHB_TRACTION_UNDETERMINED : 0;
+  b->multiple[at] = c->multiple;
+  b->periods[at]  = c->periods;
+  b->distance[at] = c->distance;
   memcpy(b->motion + (size_t)at * n3, c->motion, sizeof *c->motion * n3);
   memcpy(b->force + (size_t)at * n3, c->force, sizeof *c->force * n3);
   if (q) memcpy(b->probe + (size_t)at * q, c->probe, sizeof *c->probe * q);

@@ -313,8 +313,7 @@ static shb_status read_field(hid_t group, const mhb_response *response, mhb_bran
   double complex *complex_ = NULL;
   int            *whole    = NULL;
   if (mhb_field_is_frequency(response, f)) return copy_frequency(branch);
-  if (mhb_field_owner(f) == MHB_BRANCH_NONLINEAR &&
-      !h5_exists(group, f->name)) { /* a file of an earlier version: not known */
+  if (mhb_field_is_later(f) && !h5_exists(group, f->name)) {
     void *none = calloc(h5_count(shape) + 1, mhb_field_bytes(f->kind));
     SHB_CHECK(none, SHB_ERR_IO, "no memory for %d response points", branch->n_points);
     mhb_field_set(branch, f, none);
@@ -430,6 +429,7 @@ static shb_status check_points(const char *path, int index, const mhb_branch *br
               index, i, branch->frequency[i]);
   SHB_TRY(check_codes(path, index, "stable", n, branch->stable, -1, 1, "1, 0 or -1"));
   SHB_TRY(check_codes(path, index, "special", n, branch->special, 0, MHB_N_SPECIALS - 1, "0 to 5"));
+  SHB_TRY(check_codes(path, index, "mark", n, branch->mark, 0, MHB_ALL_MARKS, "0 to 7"));
   SHB_TRY(check_codes(path, index, "judged", n, branch->judged, 0, MHB_N_JUDGED - 1, "0 to 5"));
   SHB_TRY(check_codes(path, index, "lasting/kind", n, branch->lasting_kind, 0,
                       MHB_LASTING_KINDS - 1, "0 to 5"));

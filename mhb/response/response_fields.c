@@ -34,6 +34,10 @@ const mhb_field mhb_fields[] = {
      "estimated error of the contact force's harmonics, relative to the motion"},
     {"error/modal", "", MHB_DOUBLE, AT(error_modal), "-",
      "estimated error from the modes left out, relative to the vibration"},
+    {"mark", "", MHB_INT, AT(mark), "-",
+     "what the point is not worth, a sum: 1 error/truncation is above the tolerance asked for; 2 a "
+     "contact sticks all the time: nothing determines its mean friction; 4 the error is not "
+     "judged"},
     /* N_TRACKED: of tracked flips and Neimark-Sacker points */
     {"multiplier", "", MHB_COMPLEX, AT(multiplier), "-",
      "the Floquet multiplier on the unit circle, of a period of the fundamental; its angle is the "
@@ -150,6 +154,10 @@ mhb_branch_kind mhb_field_owner(const mhb_field *f) {
          : from_end <= N_INTEGRATION + N_LATER             ? MHB_BRANCH_NONLINEAR
          : from_end <= N_INTEGRATION + N_LATER + N_TRACKED ? MHB_BRANCH_TRACKED
                                                            : MHB_N_BRANCH_KINDS;
+}
+
+bool mhb_field_is_later(const mhb_field *f) {
+  return mhb_field_owner(f) == MHB_BRANCH_NONLINEAR || f->offset == AT(mark);
 }
 
 bool mhb_field_kept(const mhb_response *response, const mhb_branch *branch, const mhb_field *f) {

@@ -22,7 +22,7 @@ typedef struct {
   const char *long_name;
 } mhb_field;
 
-enum { MHB_N_FIELDS = 42 };
+enum { MHB_N_FIELDS = 43 };
 extern const mhb_field mhb_fields[MHB_N_FIELDS]; /* the first is the frequency */
 
 /* Bytes of a number. */
@@ -37,6 +37,9 @@ size_t mhb_field_row(const mhb_response *response, const mhb_branch *branch, con
 
 /* Kind of branch that alone has the field; MHB_N_BRANCH_KINDS: all have it. */
 mhb_branch_kind mhb_field_owner(const mhb_field *f);
+
+/* Files of earlier versions may lack the field: it is not known then. */
+bool mhb_field_is_later(const mhb_field *f);
 
 /* The branch has the field, in memory and in the file: its kind does, and its width is not 0. */
 bool mhb_field_kept(const mhb_response *response, const mhb_branch *branch, const mhb_field *f);

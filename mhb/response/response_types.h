@@ -43,6 +43,14 @@ enum {
   MHB_N_SPECIALS
 };
 
+/* mark of mhb_branch, a sum: what a point is not worth. */
+enum {
+  MHB_ABOVE_TOLERANCE       = 1, /* error_truncation is above the tolerance: it is no result */
+  MHB_TRACTION_UNDETERMINED = 2, /* a contact sticks throughout: so is its mean friction */
+  MHB_ERROR_NOT_JUDGED      = 4,
+  MHB_ALL_MARKS             = 7
+};
+
 /* judged of mhb_branch: the evidence for stable. */
 enum {
   MHB_NOT_JUDGED,       /* none: stable is -1 */
@@ -194,6 +202,7 @@ typedef struct {
   double *seconds;                         /* [point] */
   double *error_newton, *error_truncation; /* [point] relative to the norm of the motion */
   double *error_sampling, *error_modal;    /* the same */
+  int    *mark;                            /* [point] MHB_ABOVE_TOLERANCE + ..., 0: none */
   double complex *multiplier; /* [point] the one on the unit circle; tracks_multiplier only */
   /* nonlinear branches only */
   int            *judged;      /* [point] MHB_NOT_JUDGED ... */

@@ -334,8 +334,11 @@ static shb_status follow_with(tracking_run *run, const mhb_sweep_peak *peak, dou
   branch->reason   = strdup(reason);
   branch->searched = branch->complete = true;
   *good                               = *found;
-  for (int i = 0; i < branch->n_points && judge; i++)
-    *good = *good && branch->error_truncation[i] <= run->asked->motion_tolerance;
+  for (int i = 0; i < branch->n_points && judge; i++) {
+    if (branch->error_truncation[i] <= run->asked->motion_tolerance) continue;
+    branch->mark[i] |= MHB_ABOVE_TOLERANCE;
+    *good = false;
+  }
   return SHB_OK;
 }
 

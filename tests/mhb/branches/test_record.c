@@ -80,6 +80,34 @@ static void a_point_arrives_with_all_its_figures(void **state) {
   tear_down(&f);
 }
 
+/* The tolerance of the settings, and pairs that stick with friction, mark a point. */
+static void a_point_is_marked_for_what_it_is_not_worth(void **state) {
+  (void)state;
+  static const struct {
+    double tolerance, truncation, mu;
+    int    sticks, mark;
+  } rows[] = {{0, 2e-3, 0.4, 0, 0},
+              {1e-3, 9e-4, 0.4, 0, 0},
+              {1e-3, 2e-3, 0.4, 0, MHB_ABOVE_TOLERANCE},
+              {1e-3, 2e-3, 0.4, 1, MHB_ABOVE_TOLERANCE | MHB_TRACTION_UNDETERMINED},
+              {1e-3, 9e-4, 0.4, 1, MHB_TRACTION_UNDETERMINED},
+              {1e-3, 9e-4, 0, 1, 0},
+              {1e-3, NAN, 0.4, 0, MHB_ERROR_NOT_JUDGED}};
+  for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
+    fixture f;
+    set_up(&f, MHB_IN_FREQUENCY, 1.3, H);
+    f.settings.motion_tolerance = rows[i].tolerance;
+    f.point.truncation          = rows[i].truncation;
+    for (int a = 0; a < PAIRS; a++) {
+      f.balance->law[a].mu                  = rows[i].mu;
+      f.balance->eval->info[a].undetermined = rows[i].sticks && a == 1;
+    }
+    assert_ok(mhb_record(f.response, 0, f.balance, &f.point, MHB_ORDINARY, 0));
+    assert_int_equal(f.response->branch[0].mark[0], rows[i].mark);
+    tear_down(&f);
+  }
+}
+
 static void another_parameter_has_its_own_value(void **state) {
   (void)state;
   fixture f;
@@ -161,6 +189,7 @@ static void a_point_is_recorded_with_its_own_evaluation(void **state) {
 
 int main(void) {
   const struct CMUnitTest tests[] = {cmocka_unit_test(a_point_arrives_with_all_its_figures),
+                                     cmocka_unit_test(a_point_is_marked_for_what_it_is_not_worth),
                                      cmocka_unit_test(another_parameter_has_its_own_value),
                                      cmocka_unit_test(signals_are_those_of_the_balance),
                                      cmocka_unit_test(motions_come_back),

@@ -58,6 +58,7 @@ static void fill_point(mhb_response *response, int branch) {
   b->error_truncation[point] = 1e-5 * point;
   b->error_sampling[point]   = 1e-9 * point;
   b->error_modal[point]      = 1e-4 * point;
+  b->mark[point]             = (point + branch) % (MHB_ALL_MARKS + 1);
 }
 
 static double *list(int n, double step) {
@@ -148,6 +149,7 @@ static void assert_same_branch(const mhb_response *response, const mhb_branch *a
   assert_same(a, b, error_truncation, n);
   assert_same(a, b, error_sampling, n);
   assert_same(a, b, error_modal, n);
+  assert_same(a, b, mark, n);
 }
 
 static void round_trip(int n_probes, int points) {
@@ -330,13 +332,14 @@ static void test_placed(void **state) {
 /* A file of a version without multipliers is read, and can be written and continued. */
 static void test_earlier_version(void **state) {
   (void)state;
-  static const char *const missing[] = {"/branch_0/judged", "/branch_0/loss",
-                                        "/branch_0/multipliers", "/multiplier"};
+  static const char *const missing[] = {"/branch_0/judged",      "/branch_0/loss",
+                                        "/branch_0/multipliers", "/branch_0/mark",
+                                        "/branch_2/mark",        "/multiplier"};
   mhb_response            *wrote     = sample(PROBES, 5), *read;
   assert_ok(mhb_response_write(wrote, scratch("earlier.h5"), &from));
   hid_t file = H5Fopen(scratch("earlier.h5"), H5F_ACC_RDWR, H5P_DEFAULT);
   assert_true(file >= 0);
-  for (int i = 0; i < 4; i++) assert_true(H5Ldelete(file, missing[i], H5P_DEFAULT) >= 0);
+  for (int i = 0; i < 6; i++) assert_true(H5Ldelete(file, missing[i], H5P_DEFAULT) >= 0);
   H5Fclose(file);
   assert_ok(mhb_response_read(scratch("earlier.h5"), &read));
   assert_int_equal(read->n_multipliers, 0);
@@ -344,6 +347,7 @@ static void test_earlier_version(void **state) {
   for (int i = 0; i < 5; i++) {
     assert_int_equal(read->branch[0].judged[i], MHB_NOT_JUDGED);
     assert_int_equal(read->branch[0].loss[i], MHB_NO_LOSS);
+    assert_true(read->branch[0].mark[i] == 0 && read->branch[2].mark[i] == 0);
     assert_int_equal(read->branch[0].stable[i], wrote->branch[0].stable[i]);
   }
   int point;
@@ -361,7 +365,7 @@ static void test_described(void **state) {
   (void)state;
   mhb_response *response = sample(PROBES, 5);
   assert_ok(mhb_response_write(response, scratch("described.h5"), &from));
-  assert_int_equal(assert_described(scratch("described.h5")), 3 * 15 + 3 + 5 + 9 + 10);
+  assert_int_equal(assert_described(scratch("described.h5")), 3 * 16 + 3 + 5 + 9 + 10);
   hid_t file;
   char *text;
   assert_ok(h5_open(scratch("described.h5"), &file));
@@ -434,6 +438,7 @@ static void test_faults(void **state) {
       {"/branch_2/stable", {1, {5}}, 2, "/branch_2/stable: value 0 (from 0) is 2; 1, 0 or -1"},
       {"/branch_2/stable", {1, {5}}, .5, "/branch_2/stable holds 0.5 where whole numbers"},
       {"/branch_2/special", {1, {5}}, 6, "/branch_2/special: value 0 (from 0) is 6; 0 to 5"},
+      {"/branch_2/mark", {1, {5}}, 8, "/branch_2/mark: value 0 (from 0) is 8; 0 to 7"},
       {"/branch_0/judged", {1, {5}}, 6, "/branch_0/judged: value 0 (from 0) is 6; 0 to 5"},
       {"/branch_0/loss", {1, {5}}, -1, "/branch_0/loss: value 0 (from 0) is -1; 0 to 3"},
       {"/branch_0/multipliers", {2, {5, 3}}, 1, "where [5, 4] is wanted"},
