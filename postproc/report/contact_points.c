@@ -352,7 +352,7 @@ static shb_status add_loop(const post_analysis *analysis, const mhb_branch *b, i
   post_put(&s->loops, "%s[%d", s->loops.length ? "," : "", l->corners);
   for (int c = 0; c < CURVES; c++) post_put(&s->loops, ",%.7g", scale[c]);
   post_put(&s->loops, ",%.7g,%.7g,%.7g,%.7g,%.7g]", law->mu * scale[4], state[0], state[1],
-           state[2], b->dissipation[at]);
+           state[2], state[1] > 0 ? b->dissipation[at] : 0);
   return add_samples(l, scale, s);
 }
 

@@ -38,6 +38,11 @@ if(SHROUDHB_CHROMIUM AND SHROUDHB_PYTHON)
       ${CMAKE_CURRENT_SOURCE_DIR}/postproc/report/test_page_script.py
       $<TARGET_FILE:test_postproc_report_contact_points>
       $<TARGET_FILE:test_postproc_report_blade_view> ${SHROUDHB_CHROMIUM})
+  add_test(NAME postproc.report.page_numbers
+    COMMAND ${SHROUDHB_PYTHON} -B
+      ${CMAKE_CURRENT_SOURCE_DIR}/postproc/report/test_point_numbers.py
+      $<TARGET_FILE:test_postproc_report_point_numbers> ${SHROUDHB_CHROMIUM})
+  set_tests_properties(postproc.report.page_numbers PROPERTIES SKIP_RETURN_CODE 77)
 endif()
 
 # The program itself: exit codes and the one line of an error.
