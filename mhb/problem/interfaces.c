@@ -96,3 +96,15 @@ shb_status mhb_interfaces_match(const modal_model *model, const mhb_settings *s,
     interface[a] = named(s, model->interface_name[model->interface[a]]);
   return SHB_OK;
 }
+
+void mhb_pair_shares(int n_pairs, int n, const int *interface, const double *area, int contacts,
+                     double *share) {
+  for (int i = 0; i < n; i++) {
+    double total = 0;
+    for (int a = 0; a < n_pairs; a++)
+      if (!interface || interface[a] == i) total += area ? area[a] : 1;
+    total /= contacts;
+    for (int a = 0; a < n_pairs; a++)
+      if (!interface || interface[a] == i) share[a] = (area ? area[a] : 1) / total;
+  }
+}

@@ -27,4 +27,12 @@ double mhb_interface_rate(const mhb_operating_point *point, const mhb_settings *
 shb_status mhb_interfaces_match(const modal_model *model, const mhb_settings *settings,
                                 int *interface);
 
+/* Share of each pair in the totals of its interface: by area, equal ones without areas.
+ *   interface  in   [n_pairs] below n, or NULL: all pairs have one
+ *   area       in   [n_pairs] m2, or NULL
+ *   contacts   in   equal groups of pairs, each a whole contact, as one a blade of a ring
+ *   share      out  [n_pairs] their sum over an interface is `contacts` */
+void mhb_pair_shares(int n_pairs, int n, const int *interface, const double *area, int contacts,
+                     double *share);
+
 #endif

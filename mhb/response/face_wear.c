@@ -6,7 +6,7 @@
 
 #include "mesh/base/constants.h"
 #include "mhb/numerics/fourier.h"
-#include "mhb/problem/parameter.h"
+#include "mhb/response/pair_law.h"
 
 enum { SAMPLES = 512 };
 
@@ -95,28 +95,17 @@ static shb_status allocate(mhb_face_wear *w, int n, int pairs) {
   return SHB_OK;
 }
 
-static mhb_operating_point point_of(const mhb_settings *s, const mhb_branch *b, int point) {
-  mhb_operating_point at = mhb_operating_point_of(s);
-  at.omega               = SHB_TWO_PI * b->frequency[point];
-  at.n0                  = b->n0[point];
-  if (s->parameter != MHB_IN_FREQUENCY)
-    mhb_parameter_set(&at, s->parameter, mhb_parameter_value(s->parameter, b->value[point]));
-  return at;
-}
-
 /* Row `row` of the wear: a point of the branch. */
-static shb_status fill_row(const modal_model *model, const mhb_settings *s,
+static shb_status fill_row(const modal_model *model, const mhb_settings *s, const mhb_response *r,
                            mhb_contact_evaluator *contact, mhb_branch *b, int row) {
-  const size_t        n = (size_t)model->n_pairs, K = (size_t)b->n_harmonics + 1;
-  const int           point = b->wear.point[row], nb = mhb_real_size(b->n_harmonics);
-  mhb_operating_point at    = point_of(s, b, point);
-  double              total = 0, work, x[3 * nb];
-  for (size_t a = 0; a < n; a++) total += model->area[a];
+  const size_t n = (size_t)model->n_pairs, K = (size_t)b->n_harmonics + 1;
+  const int    point = b->wear.point[row];
+  double       share[n], work, x[3 * mhb_real_size(b->n_harmonics)];
+  mhb_recorded_shares(r, model->area, share);
   for (size_t a = 0; a < n; a++) {
     const size_t  from = (size_t)point * n + a, to = (size_t)row * n + a;
-    const mhb_law law = mhb_operating_point_law(&at, s->preload, model->area[a] / total);
-    for (size_t d = 0; d < 3; d++)
-      mhb_to_real(b->n_harmonics, b->motion + (3 * from + d) * K, x + d * (size_t)nb);
+    const mhb_law law = mhb_recorded_law(s, r, b, point, (int)a, share[a]);
+    mhb_recorded_pair_motion(r, b, point, (int)a, x);
     b->wear.pressure[to]    = (creal(b->force[3 * from * K]) + law.mean_offset) / model->area[a];
     b->wear.dissipation[to] = b->dissipation[from] / model->area[a];
     memcpy(b->wear.state + 3 * to, b->state + 3 * from, 3 * sizeof *b->wear.state);
@@ -125,7 +114,8 @@ static shb_status fill_row(const modal_model *model, const mhb_settings *s,
   return SHB_OK;
 }
 
-static shb_status keep(const modal_model *model, const mhb_settings *s, mhb_branch *b) {
+static shb_status keep(const modal_model *model, const mhb_settings *s, const mhb_response *r,
+                       mhb_branch *b) {
   mhb_contact_evaluator *contact = NULL;
   int                    n = 0, row = 0;
   for (int i = 0; i < b->n_points; i++) n += b->special[i] == MHB_PEAK;
@@ -137,7 +127,7 @@ static shb_status keep(const modal_model *model, const mhb_settings *s, mhb_bran
   for (int i = 0; i < b->n_points && status == SHB_OK; i++)
     if (b->special[i] == MHB_PEAK) {
       b->wear.point[row] = i;
-      status             = fill_row(model, s, contact, b, row++);
+      status             = fill_row(model, s, r, contact, b, row++);
     }
   mhb_contact_evaluator_destroy(contact);
   return status;
@@ -148,7 +138,7 @@ shb_status mhb_face_wear_keep(const modal_model *model, const mhb_settings *s,
   if (s->run_up || s->ring || !model->area || model->n_interfaces > 1) return SHB_OK;
   for (int i = 0; i < response->n_branches; i++)
     if (response->branch[i].kind == MHB_BRANCH_NONLINEAR)
-      SHB_TRY(keep(model, s, &response->branch[i]));
+      SHB_TRY(keep(model, s, response, &response->branch[i]));
   return SHB_OK;
 }
 

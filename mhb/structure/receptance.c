@@ -64,17 +64,6 @@ static shb_status set_axes(mhb_receptance *r, const mhb_settings *s, int interfa
   return check_angle("phi", given.name, given.has_phi, given.phi, phi, degree);
 }
 
-/* Of the pairs between two blades. */
-static void set_shares(mhb_receptance *r, int interface, int contacts) {
-  const modal_model *model = r->model;
-  double             total = 0;
-  for (int a = 0; a < model->n_pairs; a++)
-    if (r->interface[a] == interface) total += model->area ? model->area[a] : 1;
-  total /= contacts;
-  for (int a = 0; a < model->n_pairs; a++)
-    if (r->interface[a] == interface) r->share[a] = (model->area ? model->area[a] : 1) / total;
-}
-
 static int allocate(mhb_receptance *r) {
   size_t     n = (size_t)r->n, m = (size_t)r->n_modes, K = (size_t)r->n_harmonics + 1;
   shb_arena *a          = &r->arena;
@@ -212,10 +201,9 @@ static shb_status set_blade(mhb_receptance *r, const mhb_settings *settings,
   const double step  = settings->to_ground ? 0 : phase_step(settings);
   const int contacts = r->ring ? r->ring->blades : settings->contacts > 1 ? settings->contacts : 1;
   SHB_TRY(mhb_interfaces_match(r->model, settings, r->interface));
-  for (int i = 0; i < mhb_interfaces(settings); i++) {
-    set_shares(r, i, contacts);
-    SHB_TRY(set_axes(r, settings, i));
-  }
+  mhb_pair_shares(r->model->n_pairs, mhb_interfaces(settings), r->interface, r->model->area,
+                  contacts, r->share);
+  for (int i = 0; i < mhb_interfaces(settings); i++) SHB_TRY(set_axes(r, settings, i));
   for (int k = 0; k <= r->n_harmonics; k++) {
     r->updated_at[k] = r->load_at[k] = NAN;
     r->phase[k]                      = cexp(-I * fmod(k * step, SHB_TWO_PI));

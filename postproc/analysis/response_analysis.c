@@ -5,6 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "mhb/contact/law.h"
 #include "postproc/draw/number_format.h"
 
 double post_spatial_error(const mhb_branch *branch, int point) {
@@ -31,8 +32,10 @@ double post_state(const mhb_response *response, const mhb_branch *branch, int po
 
 double post_dissipation(const mhb_response *response, const mhb_branch *branch, int point) {
   double sum = 0;
-  for (int p = 0; p < response->n_pairs; p++)
-    sum += branch->dissipation[(size_t)point * (size_t)response->n_pairs + (size_t)p];
+  for (int p = 0; p < response->n_pairs; p++) {
+    const size_t at = (size_t)point * (size_t)response->n_pairs + (size_t)p;
+    if (branch->state[3 * at + MHB_SLIDE] > 0) sum += branch->dissipation[at];
+  }
   return sum;
 }
 

@@ -115,9 +115,9 @@ double post_error(const mhb_branch *branch, int point);
 /* Spatial error of a point; NAN where it was not judged. */
 double post_spatial_error(const mhb_branch *branch, int point);
 
-/* Share of the period in a state (0 stuck, 1 slipping, 2 open), mean over the pairs; energy of all
- * pairs, J per cycle. */
+/* Share of the period in a state (0 stuck, 1 slipping, 2 open), mean over the pairs. */
 double post_state(const mhb_response *response, const mhb_branch *branch, int point, int state);
+/* Energy of all pairs that slip, J per cycle; of others the file has only round-off. */
 double post_dissipation(const mhb_response *response, const mhb_branch *branch, int point);
 
 /* True if the curves are drawn over another parameter, at one frequency. */

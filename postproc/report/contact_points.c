@@ -1,17 +1,49 @@
 #include "postproc/report/contact_points.h"
 
 #include <math.h>
+#include <stdint.h>
 #include <stdlib.h>
 #include <string.h>
 
-#include "mhb/problem/interfaces.h"
+#include "mesh/base/constants.h"
+#include "mhb/contact/time_history.h"
+#include "mhb/numerics/fourier.h"
+#include "mhb/response/pair_law.h"
 
-/* Floats of all points together: 0.8 MB of the page. */
-enum { BUDGET = 150000, LAW = 6 };
+enum {
+  BUDGET     = 50000, /* samples of all points together: 0.9 MB of the page */
+  LEAST      = 240,   /* steps of a period before thinning */
+  A_HARMONIC = 24,    /* the same, of the highest harmonic that matters */
+  CURVES     = 5,     /* u, w, fu, fw, load */
+  ROWS       = CURVES + 2,
+  FULL       = 32767
+};
 
 static const double LEAST_HARMONIC = 1e-5; /* of the largest coefficient of its axis */
+static const double FLAT           = 2e-3; /* of what a signal spans: half a pixel of a chart */
+static const double SMALL = 1e-3; /* of the friction along one axis: what the other is drawn to */
+static const double FORCE_TOLERANCE = 1e-3; /* of the largest force: less than a line is wide */
 
-/* ---------------------------------------------------------------- contacts and points */
+/* One period of a contact; scratch of a branch. */
+typedef struct {
+  int                    m, room, n; /* harmonics; samples that have room, samples */
+  mhb_contact_evaluator *contact;
+  mhb_contact_info      *info;
+  mhb_contact_sample    *sample; /* [2 room] samples and middles between them, in turn */
+  double                *motion; /* [3][2m+1] */
+  double                *curve;  /* [room][CURVES] */
+  int                   *corner; /* [room] samples that are kept */
+  int                    corners;
+} loop;
+
+/* What is written of a branch. */
+typedef struct {
+  post_buffer at, loops;
+  int16_t    *data;
+  size_t      n, capacity;
+} sheet;
+
+/* ---------------------------------------------------------------- contacts */
 
 static double dissipated(const mhb_response *r, int pair) {
   double sum = 0;
@@ -46,107 +78,232 @@ static void choose_pairs(const mhb_response *r, post_contact_plan *plan) {
   qsort(plan->pair, (size_t)plan->n, sizeof *plan->pair, ascending);
 }
 
-static const double complex *motion_of(const mhb_response *r, const mhb_branch *branch, int point,
-                                       int pair, int axis) {
-  size_t row = ((size_t)point * (size_t)r->n_pairs + (size_t)pair) * 3 + (size_t)axis;
-  return branch->motion + row * (size_t)(branch->n_harmonics + 1);
+/* ---------------------------------------------------------------- one period */
+
+static void loop_free(loop *l) {
+  mhb_contact_evaluator_destroy(l->contact);
+  free(l->info);
+  free(l->sample);
+  free(l->motion);
+  free(l->curve);
+  free(l->corner);
 }
 
-/* Highest harmonic that matters at a point. */
-static int highest(const mhb_response *r, const post_contact_plan *plan, const mhb_branch *branch,
-                   int point) {
+static shb_status loop_create(int m, double tolerance, loop *l) {
+  const int steps = A_HARMONIC * m > LEAST ? A_HARMONIC * m : LEAST;
+  *l              = (loop){.m = m, .room = steps + 1 + MHB_MAX_TRANSITIONS};
+  size_t room     = (size_t)l->room;
+  l->info         = calloc(1, sizeof *l->info);
+  l->sample       = calloc(2 * room, sizeof *l->sample);
+  l->motion       = calloc(3 * (size_t)mhb_real_size(m), sizeof *l->motion);
+  l->curve        = calloc(room * CURVES, sizeof *l->curve);
+  l->corner       = calloc(room, sizeof *l->corner);
+  shb_status status =
+      l->info && l->sample && l->motion && l->curve && l->corner
+          ? mhb_contact_evaluator_create(m, m, tolerance, &l->contact)
+          : shb_fail(SHB_ERR_IO, __FILE__, __LINE__, "not enough memory for the report");
+  if (status != SHB_OK) loop_free(l);
+  return status;
+}
+
+/* Highest harmonic that matters. */
+static int highest(const loop *l) {
   int top = 1;
-  for (int i = 0; i < 3 * plan->n; i++) {
-    const double complex *x    = motion_of(r, branch, point, plan->pair[i / 3], i % 3);
-    double                most = 0;
-    for (int k = 1; k <= branch->n_harmonics; k++) most = fmax(most, cabs(x[k]));
-    for (int k = branch->n_harmonics; k > top; k--)
-      if (cabs(x[k]) > LEAST_HARMONIC * most) top = k;
+  for (int axis = 0; axis < 3; axis++) {
+    const double *x    = l->motion + axis * mhb_real_size(l->m);
+    double        most = 0;
+    for (int k = 1; k <= l->m; k++) most = fmax(most, hypot(x[2 * k - 1], x[2 * k]));
+    for (int k = l->m; k > top; k--)
+      if (hypot(x[2 * k - 1], x[2 * k]) > LEAST_HARMONIC * most) top = k;
   }
-  return top > branch->n_harmonics ? branch->n_harmonics : top;
+  return top;
 }
 
-static int floats(const post_contact_plan *plan, int harmonics) {
-  return plan->n * (LAW + 3 * (2 * harmonics + 1));
+static int by_phase(const void *a, const void *b) {
+  double x = ((const mhb_contact_sample *)a)->phase, y = ((const mhb_contact_sample *)b)->phase;
+  return (x > y) - (x < y);
 }
 
-post_contact_plan post_contact_points(const post_analysis *analysis) {
-  const mhb_response *r    = analysis->response;
-  post_contact_plan   plan = {.stride = 1};
-  double              all  = 0;
-  if (!analysis->settings || r->n_pairs < 1) return plan;
-  choose_pairs(r, &plan);
-  for (int b = 0; b < r->n_branches; b++)
-    for (int p = 0; r->branch[b].kind == MHB_BRANCH_NONLINEAR && p < r->branch[b].n_points; p++)
-      all += floats(&plan, highest(r, &plan, &r->branch[b], p));
-  plan.stride = 1 + (int)(all / BUDGET);
-  return plan;
+/* Samples at equal steps and at the transitions, and the middles between them: at a transition
+ * round-off would decide the state. */
+static void place(loop *l, const mhb_law *law) {
+  mhb_contact_sample *s = l->sample;
+  mhb_contact_time_history(l->contact, law, l->motion, 1, s, l->info); /* for its transitions */
+  const int top = highest(l), steps = A_HARMONIC * top > LEAST ? A_HARMONIC * top : LEAST;
+  int       n = 0;
+  for (int i = 0; i <= steps; i++) s[n++].phase = (double)i / steps;
+  for (int i = 0; i < l->info->n_transitions; i++) s[n++].phase = l->info->transition[i].phase;
+  qsort(s, (size_t)n, sizeof *s, by_phase);
+  l->n = 1;
+  for (int i = 1; i < n; i++)
+    if (s[i].phase > s[l->n - 1].phase) s[l->n++].phase = s[i].phase;
+  for (int i = l->n - 1; i > 0; i--) s[2 * i].phase = s[i].phase;
+  for (int i = 1; i < l->n; i++) s[2 * i - 1].phase = .5 * (s[2 * i - 2].phase + s[2 * i].phase);
 }
 
-/* ---------------------------------------------------------------- law */
+/* State from sample i - 1 to i. */
+static mhb_state state_before(const loop *l, int i) {
+  return l->sample[i > 0 ? 2 * i - 1 : 1].state;
+}
 
-/* Place of the response's interface in the settings. */
-static int interface_of(const post_analysis *analysis, int pair) {
+/* Coefficient k of a force (load, fu, fw), by Simpson's rule: forces are smooth between samples. */
+static double complex harmonic(const loop *l, int axis, int k) {
+  double complex sum = 0;
+  for (int i = 1; i < 2 * l->n - 1; i += 2)
+    for (int j = i - 1; j <= i + 1; j++) {
+      const mhb_contact_sample *s      = &l->sample[j];
+      const double              length = l->sample[i + 1].phase - l->sample[i - 1].phase;
+      sum += (j == i ? 4 : 1) * length / 6 * (axis ? s->f[axis - 1] : s->n) *
+             cexp(-I * SHB_TWO_PI * k * s->phase);
+    }
+  return k ? 2 * sum : sum;
+}
+
+/* Where a contact sticks throughout, its mean friction is that of the balance. */
+static void take_mean(const double complex *const force[3], loop *l) {
+  if (!l->info->undetermined) return;
+  for (int k = 0; k < 2; k++) {
+    const double off = creal(force[1 + k][0] - harmonic(l, 1 + k, 0));
+    for (int i = 0; i < 2 * l->n - 1; i++) l->sample[i].f[k] += off;
+  }
+}
+
+static void fill(loop *l) {
+  const int nb = mhb_real_size(l->m);
+  double    basis[nb];
+  for (int i = 0; i < l->n; i++) {
+    const mhb_contact_sample *s = &l->sample[2 * i];
+    double                   *x = l->curve + (size_t)i * CURVES;
+    mhb_basis(l->m, SHB_TWO_PI * s->phase, basis, NULL);
+    for (int a = 0; a < 2; a++) {
+      x[a] = 0;
+      for (int j = 0; j < nb; j++) x[a] += l->motion[(1 + a) * nb + j] * basis[j];
+      x[2 + a] = s->f[a];
+    }
+    x[4] = s->n;
+  }
+}
+
+/* Do means and first harmonics agree with the forces of the file? */
+static bool is_of_file(const loop *l, const double complex *const force[3], const mhb_law *law,
+                       int first) {
+  double most = 0, off = 0;
+  for (int i = 0; i < 3; i++)
+    for (int k = 0; k <= first; k += first) {
+      double complex stored = force[i][k] + (i == 0 && k == 0 ? law->mean_offset : 0);
+      most                  = fmax(most, cabs(stored));
+      off                   = fmax(off, cabs(harmonic(l, i, k) - stored));
+    }
+  return off <= FORCE_TOLERANCE * most;
+}
+
+static double span(const loop *l, int c, double *size) {
+  double lo = INFINITY, hi = -INFINITY;
+  for (int i = 0; i < l->n; i++) {
+    lo = fmin(lo, l->curve[i * CURVES + c]);
+    hi = fmax(hi, l->curve[i * CURVES + c]);
+  }
+  *size = fmax(fabs(lo), fabs(hi));
+  return hi - lo;
+}
+
+/* Is the curve straight from sample i to j? */
+static bool is_straight(const loop *l, const double flat[CURVES], int i, int j) {
+  const double  t = l->sample[2 * i].phase, length = l->sample[2 * j].phase - t;
+  const double *a = l->curve + (size_t)i * CURVES, *b = l->curve + (size_t)j * CURVES;
+  for (int k = i + 1; k < j; k++) {
+    const double *x = l->curve + (size_t)k * CURVES, part = (l->sample[2 * k].phase - t) / length;
+    for (int c = 0; c < CURVES; c++)
+      if (fabs(x[c] - a[c] - part * (b[c] - a[c])) > flat[c]) return false;
+  }
+  return true;
+}
+
+/* Keep the corners of a polygon, among them every change of state. */
+static void thin(loop *l, const double flat[CURVES]) {
+  l->corners   = 1;
+  l->corner[0] = 0;
+  for (int j = 2; j < l->n; j++) {
+    const int i = l->corner[l->corners - 1];
+    if (state_before(l, j) != state_before(l, j - 1) || !is_straight(l, flat, i, j))
+      l->corner[l->corners++] = j - 1;
+  }
+  l->corner[l->corners++] = l->n - 1;
+}
+
+/* The period of a pair at a point; no corners where it is not that of the file. */
+static mhb_law follow(const post_analysis *analysis, const mhb_branch *b, int point, int pair,
+                      double share, loop *l) {
+  const mhb_response   *r  = analysis->response;
+  const size_t          K  = (size_t)b->n_harmonics + 1;
+  const double complex *at = b->force + ((size_t)point * (size_t)r->n_pairs + (size_t)pair) * 3 * K;
+  const double complex *force[3] = {at, at + K, at + 2 * K};
+  const mhb_law         law      = mhb_recorded_law(analysis->settings, r, b, point, pair, share);
+  double                flat[CURVES], size[CURVES];
+  mhb_recorded_pair_motion(r, b, point, pair, l->motion);
+  place(l, &law);
+  mhb_contact_time_history(l->contact, &law, l->motion, 2 * l->n - 1, l->sample, l->info);
+  take_mean(force, l);
+  fill(l);
+  for (int c = 0; c < CURVES; c++) flat[c] = FLAT * span(l, c, &size[c]);
+  const double friction = fmax(flat[2], flat[3]);
+  for (int c = 2; c < 4; c++) flat[c] = fmax(flat[c], SMALL * friction);
+  flat[4]    = FLAT * size[4]; /* drawn from 0 on */
+  l->corners = 0;
+  if (is_of_file(l, force, &law, post_first_harmonic(b))) thin(l, flat);
+  return law;
+}
+
+/* ---------------------------------------------------------------- plan */
+
+static int highest_point(const post_analysis *analysis, int b) {
+  const double *a    = analysis->curve[b].amplitude;
+  int           best = 0;
+  for (int i = 1; i < analysis->response->branch[b].n_points; i++)
+    if (a[i] > a[best]) best = i;
+  return best;
+}
+
+/* Samples of all loops, by those at the highest point of every curve. */
+static shb_status estimate(const post_analysis *analysis, const post_contact_plan *plan,
+                           double *samples) {
   const mhb_response *r = analysis->response;
-  const mhb_settings *s = analysis->settings;
-  if (r->n_interfaces < 2 || !r->interface) return s->lead;
-  for (int i = 0; i < s->n_interfaces; i++)
-    if (strcmp(s->interface[i].name, r->interface_name[r->interface[pair]]) == 0) return i;
-  return s->lead;
+  *samples              = 0;
+  for (int b = 0; b < r->n_branches; b++) {
+    const mhb_branch *branch = &r->branch[b];
+    loop              l;
+    if (branch->kind != MHB_BRANCH_NONLINEAR || branch->n_points == 0) continue;
+    SHB_TRY(loop_create(branch->n_harmonics, analysis->settings->tolerance, &l));
+    for (int i = 0; i < plan->n; i++) {
+      const int pair = plan->pair[i];
+      follow(analysis, branch, highest_point(analysis, b), pair, plan->share[pair], &l);
+      *samples += (double)l.corners * branch->n_points;
+    }
+    loop_free(&l);
+  }
+  return SHB_OK;
 }
 
-/* Share of a pair in its interface: by area, if the modal file has areas. */
-static double share_of(const post_analysis *analysis, int pair) {
-  const mhb_response *r     = analysis->response;
-  const double       *area  = analysis->area;
-  double              total = 0;
-  for (int a = 0; a < r->n_pairs; a++)
-    if (!r->interface || r->interface[a] == r->interface[pair]) total += area ? area[a] : 1;
-  return (area ? area[pair] : 1) / total;
+shb_status post_contact_points(const post_analysis *analysis, post_contact_plan *plan) {
+  const mhb_response *r = analysis->response;
+  double              samples;
+  *plan = (post_contact_plan){.stride = 1};
+  if (!analysis->settings || r->n_pairs < 1) return SHB_OK;
+  plan->share = malloc((size_t)r->n_pairs * sizeof *plan->share);
+  SHB_CHECK(plan->share, SHB_ERR_IO, "not enough memory for the report");
+  mhb_recorded_shares(r, analysis->area, plan->share);
+  choose_pairs(r, plan);
+  SHB_TRY(estimate(analysis, plan, &samples));
+  plan->stride = 1 + (int)(samples / BUDGET);
+  return SHB_OK;
 }
 
-static mhb_law law_of(const post_analysis *analysis, const mhb_branch *branch, int point,
-                      int pair) {
-  const mhb_response *r     = analysis->response;
-  const mhb_settings *s     = analysis->settings;
-  mhb_operating_point at    = mhb_operating_point_of(s);
-  const mhb_parameter moves = r->parameter;
-  at.n0                     = branch->n0[point];
-  if (moves != MHB_IN_FREQUENCY) mhb_parameter_set(&at, moves, branch->value[point]);
-  mhb_operating_point own = mhb_interface_operating_point(&at, s, interface_of(analysis, pair));
-  if (r->n_interfaces > 1 && r->interface)
-    own.n0 =
-        branch->interface_n0[(size_t)point * (size_t)r->n_interfaces + (size_t)r->interface[pair]];
-  return mhb_operating_point_law(&own, s->preload, share_of(analysis, pair));
+void post_contact_plan_free(post_contact_plan *plan) {
+  free(plan->share);
+  *plan = (post_contact_plan){0};
 }
 
 /* ---------------------------------------------------------------- writing */
-
-static float *put_point(const post_analysis *analysis, const post_contact_plan *plan,
-                        const mhb_branch *branch, int point, int harmonics, float *to) {
-  for (int i = 0; i < plan->n; i++) {
-    const mhb_law law      = law_of(analysis, branch, point, plan->pair[i]);
-    const double  all[LAW] = {law.mu, law.n0, law.kv, law.ku[0], law.ku[1], law.ku[2]};
-    for (int j = 0; j < LAW; j++) *to++ = (float)all[j];
-    for (int axis = 0; axis < 3; axis++) {
-      const double complex *x = motion_of(analysis->response, branch, point, plan->pair[i], axis);
-      *to++                   = (float)creal(x[0]);
-      for (int k = 1; k <= harmonics; k++) {
-        *to++ = (float)creal(x[k]);
-        *to++ = (float)-cimag(x[k]);
-      }
-    }
-  }
-  return to;
-}
-
-static bool is_taken(const mhb_branch *branch, const post_analysis *analysis, int b, int point,
-                     int i, int stride) {
-  if (i % stride == 0 || branch->special[point]) return true;
-  for (int p = 0; p < analysis->curve[b].n_peaks; p++)
-    if (analysis->curve[b].peak[p].point == point) return true;
-  return false;
-}
 
 void post_put_contact_names(const post_analysis *analysis, const post_contact_plan *plan,
                             post_buffer *out) {
@@ -160,27 +317,86 @@ void post_put_contact_names(const post_analysis *analysis, const post_contact_pl
   post_put(out, "]");
 }
 
-void post_put_contact_points(const post_analysis *analysis, const post_contact_plan *plan, int b,
-                             int n, const int *kept, post_buffer *out) {
-  const mhb_branch *branch = &analysis->response->branch[b];
-  if (plan->n == 0 || n == 0 || branch->kind != MHB_BRANCH_NONLINEAR) return;
-  float *data = malloc((size_t)n * (size_t)floats(plan, branch->n_harmonics) * sizeof *data);
-  int   *top  = calloc((size_t)n, sizeof *top);
-  float *end  = data;
-  if (!data || !top) out->failed = true;
-  post_put(out, ",\"contact\":{\"at\":[");
-  for (int i = 0, any = 0; data && top && i < n; i++) {
-    if (!is_taken(branch, analysis, b, kept[i], i, plan->stride)) continue;
-    top[i] = highest(analysis->response, plan, branch, kept[i]);
-    end    = put_point(analysis, plan, branch, kept[i], top[i], end);
-    post_put(out, "%s%d", any++ ? "," : "", i);
+static int16_t part_of(double value, double scale) {
+  return scale > 0 ? (int16_t)lround(FULL * value / scale) : 0;
+}
+
+/* Append the samples of a loop. */
+static shb_status add_samples(const loop *l, const double scale[CURVES], sheet *s) {
+  const size_t n = (size_t)l->corners;
+  if (s->n + ROWS * n + 1 > s->capacity) { /* 1: to whole floats */
+    const size_t capacity = 2 * s->capacity + ROWS * n + 1;
+    int16_t     *data     = realloc(s->data, capacity * sizeof *data);
+    SHB_CHECK(data, SHB_ERR_IO, "not enough memory for the report");
+    s->data     = data;
+    s->capacity = capacity;
   }
-  post_put(out, "],\"k\":[");
-  for (int i = 0, any = 0; data && top && i < n; i++)
-    if (top[i] > 0) post_put(out, "%s%d", any++ ? "," : "", top[i]);
-  post_put(out, "],\"data\":\"");
-  if (data) post_put_base64(out, (size_t)(end - data), data);
-  post_put(out, "\"}");
-  free(data);
-  free(top);
+  int16_t *to = s->data + s->n;
+  for (size_t i = 0; i < n; i++) {
+    const int at           = l->corner[i];
+    to[i]                  = part_of(l->sample[2 * at].phase, 1);
+    to[(ROWS - 1) * n + i] = (int16_t)state_before(l, at);
+    for (size_t c = 0; c < CURVES; c++)
+      to[(c + 1) * n + i] = part_of(l->curve[(size_t)at * CURVES + c], scale[c]);
+  }
+  s->n += ROWS * n;
+  return SHB_OK;
+}
+
+static shb_status add_loop(const post_analysis *analysis, const mhb_branch *b, int point, int pair,
+                           const mhb_law *law, const loop *l, sheet *s) {
+  const size_t  at    = (size_t)point * (size_t)analysis->response->n_pairs + (size_t)pair;
+  const double *state = b->state + 3 * at;
+  double        scale[CURVES];
+  for (int c = 0; c < CURVES; c++) span(l, c, &scale[c]);
+  post_put(&s->loops, "%s[%d", s->loops.length ? "," : "", l->corners);
+  for (int c = 0; c < CURVES; c++) post_put(&s->loops, ",%.7g", scale[c]);
+  post_put(&s->loops, ",%.7g,%.7g,%.7g,%.7g,%.7g]", law->mu * scale[4], state[0], state[1],
+           state[2], state[1] > 0 ? b->dissipation[at] : 0);
+  return add_samples(l, scale, s);
+}
+
+static bool is_taken(const mhb_branch *branch, const post_analysis *analysis, int b, int point,
+                     int i, int stride) {
+  if (i % stride == 0 || branch->special[point]) return true;
+  for (int p = 0; p < analysis->curve[b].n_peaks; p++)
+    if (analysis->curve[b].peak[p].point == point) return true;
+  return false;
+}
+
+static shb_status add_points(const post_analysis *analysis, const post_contact_plan *plan, int b,
+                             int n, const int *kept, loop *l, sheet *s) {
+  const mhb_branch *branch = &analysis->response->branch[b];
+  for (int i = 0; i < n; i++) {
+    if (!is_taken(branch, analysis, b, kept[i], i, plan->stride)) continue;
+    post_put(&s->at, "%s%d", s->at.length ? "," : "", i);
+    for (int c = 0; c < plan->n; c++) {
+      const int     pair = plan->pair[c];
+      const mhb_law law  = follow(analysis, branch, kept[i], pair, plan->share[pair], l);
+      SHB_TRY(add_loop(analysis, branch, kept[i], pair, &law, l, s));
+    }
+  }
+  return SHB_OK;
+}
+
+shb_status post_put_contact_points(const post_analysis *analysis, const post_contact_plan *plan,
+                                   int b, int n, const int *kept, post_buffer *out) {
+  const mhb_branch *branch = &analysis->response->branch[b];
+  loop              l;
+  sheet             s = {0};
+  if (plan->n == 0 || n == 0 || branch->kind != MHB_BRANCH_NONLINEAR) return SHB_OK;
+  SHB_TRY(loop_create(branch->n_harmonics, analysis->settings->tolerance, &l));
+  shb_status status = add_points(analysis, plan, b, n, kept, &l, &s);
+  loop_free(&l);
+  out->failed |= s.at.failed || s.loops.failed;
+  if (status == SHB_OK && !out->failed) {
+    post_put(out, ",\"contact\":{\"at\":[%s],\"loops\":[%s],\"data\":\"", s.at.text, s.loops.text);
+    if (s.n % 2) s.data[s.n] = 0;
+    post_put_base64(out, (s.n + 1) / 2, (const float *)(const void *)s.data);
+    post_put(out, "\"}");
+  }
+  post_buffer_free(&s.at);
+  post_buffer_free(&s.loops);
+  free(s.data);
+  return status;
 }

@@ -7,9 +7,8 @@
 
 extern const char post_page_css[];
 extern const char post_plot_js[]; /* numbers, axes and panels; comes before a page's own script */
-extern const char post_contact_js[]; /* the contact law over a period */
-extern const char post_blade_js[];   /* the blade in motion */
-extern const char post_page_js[];    /* the report of a case */
+extern const char post_blade_js[]; /* the blade in motion */
+extern const char post_page_js[];  /* the report of a case */
 
 /* Start a page: its head as far as the open style element, with post_page_css in it. The title is
  * "NAME · subject". The content security policy forbids every load from elsewhere. */

@@ -13,15 +13,6 @@
     b.f = b.row(ROW.f);
     delete b.data;
   }
-  /* work that is only rounding error is none */
-  const rounding = 1e-9 *
-      D.branches.reduce((most, b) => Math.max(most, b.n ? Math.max(...b.row(ROW.energy)) : 0), 0);
-  for (const b of D.branches) {
-    const e = b.row(ROW.energy);
-    e.forEach((v, i) => {
-      if (Math.abs(v) < Math.max(rounding, 1e-16)) e[i] = 0;
-    });
-  }
   const outputs = D.outputs, hidden = new Set();
   const unique = list => [...new Set(list)];
   const state = {
@@ -146,6 +137,8 @@
                                                     1;
 
   /* ---------------------------------------------------------------- read-out */
+  const sharesOf = shares =>
+      shares.map(s => (100 * s).toFixed(s > 0 && s < 0.0995 ? 1 : 0)).join(" · ") + NBSP + "%";
   function readout(b, i) {
     const g = groupOf(b), a = b.row(state.output.row)[i], stable = b.row(ROW.stable)[i],
           error = b.row(ROW.error)[i];
@@ -161,8 +154,7 @@
         rows.push(
             [
               "stuck · slipping · open",
-              shares.map(s => (100 * s).toFixed(s > 0 && s < 0.0995 ? 1 : 0)).join(" · ") + NBSP +
-                  "%"
+              sharesOf(shares)
             ],
             ["dissipated", number(energy / e[1], 3) + NBSP + e[0]]);
       rows.push(b.dots ? ["motion", stable === 1 ? "periodic" : "not periodic"] : [
@@ -245,17 +237,6 @@
 
   /* ---------------------------------------------------------------- tracking */
   const T = {group: 0, n0: 1, a: 2, f: 3, edge: 4, stick: 5, slip: 6, gap: 7, energy: 8};
-  function bestOf(track) {
-    let best = -1;
-    for (const edges of sweep ?
-             [false, true] :
-             [true]) /* a peak at an edge of the frequency range only if all are */
-      if (best < 0)
-        track.forEach((t, i) => {
-          if ((edges || !t[T.edge]) && (best < 0 || t[T.a] < track[best][T.a])) best = i;
-        });
-    return best;
-  }
   function drawTracking() {
     const o = state.output, track = o.track;
     if (!$("tracking") || track.length < 2) return;
@@ -283,7 +264,7 @@
         axis(
             around(places[0], places[1], X.log && places[1] > 8 * places[0]), X.scale,
             "its " + xLabel));
-    const best = bestOf(track);
+    const best = o.best;
     for (const [p, value, limit] of [[above, T.a, 2], [below, T.f, 1]]) {
       for (const l of p === above || sweep ? o.limits : []) {
         const kind = D.groups[l[0]].kind, open = kind === "open";
@@ -431,12 +412,28 @@
     });
     return best;
   }
+  /* One period of the chosen contact at stored point j, as the program computed it. */
+  function unpack(b, j) {
+    const FULL = 32767, SIGNALS = 7, place = j * D.contacts.length + state.pair;
+    if (!b.samples) {
+      b.samples = new Int16Array(Plot.bytes(b.contact.data).buffer);
+      let at = 0;
+      b.start = b.contact.loops.map(l => (at += SIGNALS * l[0]) - SIGNALS * l[0]);
+    }
+    const [n, u, w, fu, fw, load, limit, stick, slip, open, work] = b.contact.loops[place];
+    const row = i => b.samples.subarray(b.start[place] + i * n, b.start[place] + (i + 1) * n);
+    const signal = (i, scale) => Float64Array.from(row(i), v => v * scale / FULL);
+    return {
+      n, work, shares: [stick, slip, open], most: load, bound: limit, time: signal(0, b.order),
+      u: signal(1, u), w: signal(2, w), fu: signal(3, fu), fw: signal(4, fw),
+      load: signal(5, load), limit: signal(5, limit), state: row(6),
+      index: b.contact.at[j], order: b.order
+    };
+  }
   function period() {
     const b = D.branches[state.branch];
     if (!b || !b.contact || !b.contact.at.length) return null;
-    if (!b.unpacked) b.unpacked = Contact.unpack(b.contact, D.contacts.length);
-    const j = storedAt(b.contact, state.point);
-    return {...b.unpacked.period(j, state.pair), index: b.contact.at[j], order: b.order};
+    return unpack(b, storedAt(b.contact, state.point));
   }
   function states(p, xs, ys, s) {
     STATES.forEach((name, k) => p.line("line " + name, xs, ys, i => s[i] === k));
@@ -457,7 +454,7 @@
       hi - lo > least ? around(lo, hi, false) : {lo: lo - least, hi: hi + least, log: false};
   function drawLoop(id, x, f, q, name, force) {
     const span = extent(x), u = unit(LENGTH, Math.max(Math.abs(span[0]), Math.abs(span[1])));
-    const width = widthOf(id), most = Math.max(...q.load) * q.law.mu || 1;
+    const width = widthOf(id), most = q.bound || 1;
     const p = new Panel(
         id, {left: 60, top: 34, width: width - 80, height: 290},
         axis(moderate(span, 1e-3 * u[1]), u[1], `relative motion ${name}, ${u[0]}`),
@@ -468,7 +465,7 @@
   }
   function drawPath(q, force) {
     const width = widthOf("path"), box = {left: 60, top: 34, width: width - 80, height: 290};
-    const radii = extent(q.load).map(n => n * q.law.mu), most = 1.08 * (radii[1] || force[1]),
+    const radii = extent(q.limit), most = 1.08 * (radii[1] || force[1]),
           wide = most * box.width / box.height;
     const p = new Panel(
         "path", box, axis({lo: -wide, hi: wide, log: false}, force[1], "friction along u, " + force[0]),
@@ -482,16 +479,15 @@
     show("path", 380, [p]);
   }
   function drawPeriod(q, force) {
-    const width = widthOf("period"), time = q.u.map((_, i) => i / q.n * q.order);
-    const size = q.fu.map((f, i) => Math.hypot(f, q.fw[i])), limit = q.load.map(n => n * q.law.mu),
-          most = Math.max(...q.load);
+    const width = widthOf("period"), {time, limit, most} = q;
+    const size = q.fu.map((f, i) => Math.hypot(f, q.fw[i]));
     const x = {lo: 0, hi: q.order, log: false}, u = forceUnit(most), box = {left: 60, width: width - 80};
     const above = new Panel(
         "period-n", {...box, top: 34, height: 95}, axis(x, 1, null),
         axis({lo: 0, hi: 1.08 * most || 1, log: false}, u[1], "normal load, " + u[0]));
     const below = new Panel(
         "period-f", {...box, top: 172, height: 118}, axis(x, 1, null),
-        axis({lo: 0, hi: 1.08 * Math.max(...limit) || 1, log: false}, force[1],
+        axis({lo: 0, hi: 1.08 * q.bound || 1, log: false}, force[1],
              `friction and its limit μn (dashed), ${force[0]}`));
     const bar = new Panel(
         "period-s", {...box, top: 298, height: 22},
@@ -499,8 +495,8 @@
     above.line("line load", time, q.load);
     below.line("line bound", time, limit);
     states(below, time, size, q.state);
-    for (let i = 1, from = 0; i <= q.n; i++)
-      if (i === q.n || q.state[i + 1] !== q.state[i]) {
+    for (let i = 1, from = 0; i < q.n; i++)
+      if (i === q.n - 1 || q.state[i + 1] !== q.state[i]) {
         bar.bar("state " + STATES[q.state[i]], time[from], time[i], 0, 1);
         from = i;
       }
@@ -542,20 +538,45 @@
         ". Click the curves above to choose another.";
     drawSpectrum();
     if (!$("loop-u")) return;
-    const q = period();
+    drawContact(b);
+  }
+  const LOOPS = ["loop-u", "loop-w", "path", "period"];
+  /* The numbers of the contact at the point. */
+  function contactText(q) {
+    const range = (values, most) => {
+      const u = forceUnit(most);
+      return `${extent(values).map(v => number(v / u[1], 3)).join(" to ")}${NBSP}${u[0]}`;
+    };
+    const e = unit(ENERGY, q.work);
+    return `${D.contacts[state.pair]}: normal load ${range(q.load, q.most)}, friction limit ${
+        range(q.limit, q.bound)}; stuck · slipping · open ${sharesOf(q.shares)}; dissipated ${
+        number(q.work / e[1], 3)}${NBSP}${e[0]}.`;
+  }
+  /* The chosen contact at the point: its loops, its load, its numbers. */
+  function drawContact(b) {
+    const q = period(), text = [];
     $("pair-label").hidden = D.contacts.length < 2;
     if (!q) return;
-    const force = forceUnit(Math.max(...q.load) * q.law.mu), e = unit(ENERGY, Math.abs(q.work[0] + q.work[1]));
     if (q.index !== state.point)
-      $("point-where").textContent += ` Contact drawn at the nearest point kept in this page, ${
-          xText(b.f[q.index])}.`;
+      text.push(`Drawn at the nearest point that this page has the contact of, ${
+          xText(b.f[q.index])}: all would make it too large.`);
+    if (D.contacts.length < D.pairs)
+      text.push(`The page has the ${D.contacts.length} of ${
+          D.pairs} contacts that dissipate most.`);
+    if (q.n) text.unshift(contactText(q));
+    else
+      text.unshift("The contact law of the case does not give the forces that the file has here, " +
+          "so nothing is drawn. Was the file made from other settings?");
+    $("contact-where").textContent = text.join(" ");
+    if (!q.n) {
+      for (const id of LOOPS) show(id, 380, []);
+      return;
+    }
+    const force = forceUnit(q.bound);
     drawLoop("loop-u", q.u, q.fu, q, "u", force);
     drawLoop("loop-w", q.w, q.fw, q, "w", force);
     drawPath(q, force);
     drawPeriod(q, force);
-    $("point").dataset.work = q.work[0] + q.work[1];
-    $("point").dataset.stored = b.row(ROW.energy)[q.index];
-    $("point").dataset.share = q.share.join();
   }
 
   /* ---------------------------------------------------------------- controls */

@@ -153,7 +153,7 @@ static shb_status put_track(const post_analysis *analysis, double *const *values
     post_put(out, i ? "," : "");
     put_track_point(analysis, &t.point[i], analysis->curve[t.point[i].branch].group, out);
   }
-  post_put(out, "],\"limits\":[");
+  post_put(out, "],\"best\":%d,\"limits\":[", t.best);
   bool first = true;
   if (t.open.branch >= 0)
     put_triple(out, &first, analysis->curve[t.open.branch].group, t.open.at, t.open.amplitude);
@@ -355,8 +355,8 @@ static void put_lasting(const post_analysis *analysis, int b, post_buffer *out) 
   post_put(out, "]");
 }
 
-static void put_branches(const post_analysis *analysis, int rows, const sheet *sheets,
-                         const post_contact_plan *contacts, post_buffer *out) {
+static shb_status put_branches(const post_analysis *analysis, int rows, const sheet *sheets,
+                               const post_contact_plan *contacts, post_buffer *out) {
   for (int b = 0; b < analysis->response->n_branches; b++) {
     const mhb_branch *branch = &analysis->response->branch[b];
     char              note[64];
@@ -369,11 +369,26 @@ static void put_branches(const post_analysis *analysis, int rows, const sheet *s
     post_put(out, ",\"order\":%d,\"note\":", branch->order);
     post_put_json(out, note);
     put_lasting(analysis, b, out);
-    post_put_contact_points(analysis, contacts, b, sheets[b].n, sheets[b].kept, out);
+    SHB_TRY(post_put_contact_points(analysis, contacts, b, sheets[b].n, sheets[b].kept, out));
     post_put(out, ",\"data\":\"");
     post_put_base64(out, (size_t)rows * (size_t)sheets[b].n, sheets[b].data);
     post_put(out, "\"}");
   }
+  return SHB_OK;
+}
+
+/* The curves with their contacts. */
+static shb_status put_curves(const post_analysis *analysis, int rows, const sheet *sheets,
+                             post_buffer *out) {
+  post_contact_plan contacts;
+  shb_status        status = post_contact_points(analysis, &contacts);
+  post_put(out, ",\"pairs\":%d,\"contacts\":", analysis->response->n_pairs);
+  post_put_contact_names(analysis, &contacts, out);
+  post_put(out, ",\"branches\":[");
+  if (status == SHB_OK) status = put_branches(analysis, rows, sheets, &contacts, out);
+  post_put(out, "]}");
+  post_contact_plan_free(&contacts);
+  return status;
 }
 
 static void put_groups(const post_analysis *analysis, post_buffer *out) {
@@ -401,10 +416,9 @@ static void put_abscissa(const post_abscissa *x, post_buffer *out) {
 
 static shb_status put_all(const post_analysis *analysis, int chosen, sheet *sheets,
                           post_buffer *out, int *left_out) {
-  int               stride   = 1 + LEAST_ROWS * analysis->n_points / (BUDGET + 1);
-  plan              p        = make_plan(analysis->response, analysis->n_points / stride);
-  post_contact_plan contacts = post_contact_points(analysis);
-  *left_out                  = p.left_out;
+  int  stride = 1 + LEAST_ROWS * analysis->n_points / (BUDGET + 1);
+  plan p      = make_plan(analysis->response, analysis->n_points / stride);
+  *left_out   = p.left_out;
   for (int b = 0; b < analysis->response->n_branches; b++)
     SHB_TRY(make_sheet(analysis, b, p.rows, stride, &sheets[b]));
   post_put(out, "{\"rows\":%d,\"chosen\":%d,\"log\":%s,\"abscissa\":", p.rows, chosen,
@@ -418,12 +432,8 @@ static shb_status put_all(const post_analysis *analysis, int chosen, sheet *shee
   SHB_TRY(put_columns(analysis, &p, false, sheets, out));
   post_put(out, "],\"spectra\":[");
   SHB_TRY(put_columns(analysis, &p, true, sheets, out));
-  post_put(out, "],\"contacts\":");
-  post_put_contact_names(analysis, &contacts, out);
-  post_put(out, ",\"branches\":[");
-  put_branches(analysis, p.rows, sheets, &contacts, out);
-  post_put(out, "]}");
-  return SHB_OK;
+  post_put(out, "]");
+  return put_curves(analysis, p.rows, sheets, out);
 }
 
 shb_status post_page_data(const post_analysis *analysis, int chosen, post_buffer *out,

@@ -2,8 +2,9 @@
  *
  *   groups    [{name, kind, n0, rank}]
  *   branches  [{group, n, complete, reason, data}]
- *   outputs   [{place, axis, quantity, row, track, resonances, peaks, folds}]
+ *   outputs   [{place, axis, quantity, row, track, best, limits, resonances, peaks, folds}]
  *   spectra   [{place, row, n}]
+ *   pairs, contacts   number of contacts, names of those that are written (contact_points.h)
  *   rows, chosen, log; in a run-up rpm, speed over frequency
  *   abscissa  {parameter (as in a case file), name, unit, scale (shown is value in SI / scale),
  *             log, range [lo, hi]}
@@ -13,6 +14,7 @@
  *          outputs and spectra (harmonics 0 .. n - 1).
  *   track  for each preload [group, n0, amplitude, abscissa, edge, stuck, slipping, open,
  *          dissipation]
+ *   best   index of the lowest of these, -1: none
  *   peaks, folds  [group, abscissa, amplitude]
  *   resonances    where there are several, each [[n0, abscissa, amplitude], ...] */
 #ifndef POSTPROC_REPORT_PAGE_DATA_H

@@ -24,6 +24,7 @@ typedef struct {
   post_campbell      *campbell;
   int                 n_campbells;
   post_safe           safe;
+  double             *area; /* [n_pairs] m2, of each contact, or NULL */
   post_buffer         html, csv, svg, diagram;
 } work;
 
@@ -50,13 +51,25 @@ static shb_status add_integration(const post_job *job, work *w) {
   SHB_FAIL(status, "%s: %s", job->integration, why);
 }
 
+/* Areas of the contacts; those of one blade are those of every blade of a ring. */
+static shb_status add_areas(work *w) {
+  const int pairs = w->response->n_pairs, own = w->model.n_pairs;
+  const int blades = w->response->ring > 0 ? w->response->ring : 1;
+  if (!w->model.area || own < 1 || pairs != blades * own) return SHB_OK;
+  w->area = malloc((size_t)pairs * sizeof *w->area);
+  SHB_CHECK(w->area, SHB_ERR_IO, "not enough memory for the report");
+  for (int a = 0; a < pairs; a++) w->area[a] = w->model.area[a % own];
+  w->analysis->area = w->area;
+  return SHB_OK;
+}
+
 /* Areas of the contacts and the mesh, of the model that the response was made from. */
 static shb_status add_model(const post_job *job, work *w) {
   w->analysis->settings = job->settings;
   w->analysis->stress   = job->stress;
   if (!job->modal) return SHB_OK;
   SHB_TRY(modal_model_read(job->modal, &w->model));
-  if (w->model.n_pairs == w->response->n_pairs) w->analysis->area = w->model.area;
+  SHB_TRY(add_areas(w));
   if (!job->html) return SHB_OK;
   SHB_TRY(post_blade_field_read_motion(job->modal, &w->field));
   if (w->field.n_waves == 0) return SHB_OK;
@@ -231,6 +244,7 @@ shb_status post_publish(const post_job *job, shb_progress *progress, char **summ
   for (int i = 0; i < w.n_campbells; i++) free(w.campbell[i].stuck);
   free(w.campbell);
   post_safe_free(&w.safe);
+  free(w.area);
   modal_speeds_free(&w.speeds);
   modal_sector_speeds_free(&w.sector);
   modal_model_free(&w.model);

@@ -182,7 +182,7 @@ static void put_point(const post_analysis *analysis, post_buffer *out) {
            "<div class=\"tools\"><label id=\"pair-label\">Contact<select id=\"pair\"></select>"
            "</label></div>\n");
   if (contact) {
-    post_put(out, "<div class=\"pair\">\n");
+    post_put(out, "<p id=\"contact-where\" class=\"note\"></p>\n<div class=\"pair\">\n");
     put_scripted("loop-u", "Hysteresis loop along u",
                  "Friction along the sliding axis u over the relative motion along it.", out);
     put_scripted("loop-w", "Hysteresis loop along w",
@@ -194,11 +194,16 @@ static void put_point(const post_analysis *analysis, post_buffer *out) {
     put_scripted("period", "Load and friction over the period",
                  "Normal load, friction and its limit over one period, and the contact state.",
                  out);
+    post_put(
+        out,
+        "</div>\n<ul class=\"legend\"><li class=\"stick\"><i></i><span>stuck</span></li>"
+        "<li class=\"slip\"><i></i><span>slipping</span></li>"
+        "<li class=\"gap\"><i></i><span>open</span></li><li>The motion in the file, followed by "
+        "the contact law of the balance.</li></ul>\n");
+  } else if (analysis->response->n_pairs > 0) {
     post_put(out,
-             "</div>\n<ul class=\"legend\"><li class=\"stick\"><i></i><span>stuck</span></li>"
-             "<li class=\"slip\"><i></i><span>slipping</span></li>"
-             "<li class=\"gap\"><i></i><span>open</span></li><li>Computed in this page from the "
-             "motion at the point and the contact law.</li></ul>\n");
+             "<p class=\"note\">Loops at the contact are left out: the settings that the response "
+             "was made from are not those of the case. Run <code>shroudhb mhb</code> again.</p>\n");
   }
   put_scripted("spectrum", "Harmonics at the point",
                "Amplitude of each harmonic of the motion at the chosen point.", out);
@@ -357,7 +362,6 @@ shb_status post_report(const post_analysis *analysis, const post_origin *source,
            ".csv\">the table of every point</a>, beside this page. Works without "
            "network.</footer>\n<script>\n");
   post_put_bytes(out, post_plot_js, strlen(post_plot_js));
-  post_put_bytes(out, post_contact_js, strlen(post_contact_js));
   if (moving) post_put_bytes(out, post_blade_js, strlen(post_blade_js));
   post_put_bytes(out, post_page_js, strlen(post_page_js));
   post_put(out, "</script>\n</body>\n</html>\n");

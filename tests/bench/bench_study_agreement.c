@@ -23,7 +23,7 @@
 #include "mhb/branches/forced_response.h"
 #include "modal/model/model.h"
 #include "postproc/analysis/outputs.h"
-#include "tests/bench/z_notch_settings.h"
+#include "tests/support/z_notch_settings.h"
 #include "tests/support/random_model.h"
 
 enum { OUTPUTS = 2 };

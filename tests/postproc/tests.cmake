@@ -2,8 +2,8 @@ shb_test(postproc/draw UNIT colour number_format text_buffer plot LIBRARIES shb_
 shb_test(postproc/analysis UNIT outputs abscissa curves curve_distance convergence response_analysis
   campbell file_origin findings resonances stability_findings LIBRARIES tests_responses)
 shb_test(postproc/report UNIT csv ring_charts publish page_data tables picture safe_diagram
-  contact_points INTEGRATION report blade_view
-  LIBRARIES tests_responses tests_models tests_motions tests_box)
+  contact_points point_numbers INTEGRATION report blade_view
+  LIBRARIES tests_responses tests_models tests_box)
 # The program itself: exit codes and the one line of an error.
 shb_test(postproc/report UNIT command LIBRARIES tests_responses tests_studies)
 add_dependencies(test_postproc_report shroudhb-post)
@@ -21,5 +21,7 @@ if(SHROUDHB_CHROMIUM)
   shb_python_test(postproc.study.page_script INTEGRATION postproc/study/test_page_script.py
     $<TARGET_FILE:test_postproc_study> ${SHROUDHB_CHROMIUM})
   shb_python_test(postproc.report.page_script INTEGRATION postproc/report/test_page_script.py
+    $<TARGET_FILE:test_postproc_report> ${SHROUDHB_CHROMIUM})
+  shb_python_test(postproc.report.page_numbers INTEGRATION postproc/report/test_point_numbers.py
     $<TARGET_FILE:test_postproc_report> ${SHROUDHB_CHROMIUM})
 endif()

@@ -1,12 +1,12 @@
-/* The motion and the law that the page's script gets. With "keep": pages for test_page_script.py.
- */
+/* The contacts that the page's script gets. With "keep": pages for test_page_script.py. */
 #include "postproc/report/contact_points.h"
 
-#include "postproc/report/page.h"
+#include "mhb/contact/contact.h"
+#include "mhb/numerics/fourier.h"
+#include "mhb/response/pair_law.h"
 #include "postproc/report/report.h"
 #include "tests/support/check.h"
 #include "tests/support/fixture.h"
-#include "tests/support/motion_suite.h"
 
 static mhb_settings settings_of(const fixture_options *o) {
   mhb_settings s = {.engine_order = 5,
@@ -14,6 +14,7 @@ static mhb_settings settings_of(const fixture_options *o) {
                     .mu           = 0.3,
                     .kv           = 8e5,
                     .ku           = {4e5, 1e4, 5e5},
+                    .tolerance    = 1e-8,
                     .n_preloads   = o->n_preloads,
                     .parameter    = o->parameter,
                     .scale        = 1};
@@ -21,66 +22,152 @@ static mhb_settings settings_of(const fixture_options *o) {
   return s;
 }
 
+/* Forces, states and work of the motion in the response. */
+static void obey(const mhb_settings *s, mhb_response *r) {
+  double share[32], x[3 * 32], p[3 * 32];
+  mhb_recorded_shares(r, NULL, share);
+  for (int b = 0; b < r->n_branches; b++) {
+    mhb_branch            *branch = &r->branch[b];
+    const int              m = branch->n_harmonics, K = m + 1;
+    mhb_contact_info      *info = calloc(1, sizeof *info);
+    mhb_contact_evaluator *law;
+    assert_ok(mhb_contact_evaluator_create(m, m, s->tolerance, &law));
+    for (int i = 0; i < branch->n_points * r->n_pairs; i++) {
+      const int     point = i / r->n_pairs, pair = i % r->n_pairs;
+      const mhb_law own = mhb_recorded_law(s, r, branch, point, pair, share[pair]);
+      mhb_recorded_pair_motion(r, branch, point, pair, x);
+      mhb_contact_force(law, &own, x, p, NULL, info);
+      for (int j = 0; j < 3 * K; j++) {
+        const double *a              = p + j / K * mhb_real_size(m);
+        const int     k              = j % K;
+        branch->force[i * 3 * K + j] = k ? CMPLX(a[2 * k - 1], a[2 * k]) : a[0];
+      }
+      memcpy(branch->state + 3 * i, info->share, sizeof info->share);
+      branch->dissipation[i] = info->dissipation;
+    }
+    mhb_contact_evaluator_destroy(law);
+    free(info);
+  }
+}
+
 /* ---------------------------------------------------------------- what is written */
 
-static void every_point_has_its_law(void **state) {
-  (void)state;
-  fixture_options o = fixture_usual();
-  o.n_pairs         = 2;
-  mhb_settings   s  = settings_of(&o);
-  mhb_response  *r  = fixture_response(&o);
-  post_analysis *a;
-  post_buffer    out = {0}, names = {0};
-  double         area[2] = {1e-4, 3e-4};
+static int first_curve(const mhb_response *r) {
+  int first = 0;
+  while (r->branch[first].kind != MHB_BRANCH_NONLINEAR) first++;
+  return first;
+}
+
+/* The text of three points of the first curve. */
+static char *three_points(const mhb_settings *s, const mhb_response *r, const double *area) {
+  const int         kept[] = {0, 7, 9};
+  post_analysis    *a;
+  post_contact_plan plan;
+  post_buffer       out = {0}, names = {0};
   assert_ok(post_analysis_create(r, &a));
-  assert_int_equal(post_contact_points(a).n, 0); /* no settings: the law is not known */
-  a->settings            = &s;
-  a->area                = area;
-  post_contact_plan plan = post_contact_points(a);
+  a->settings = s;
+  a->area     = area;
+  assert_ok(post_contact_points(a, &plan));
   assert_int_equal(plan.n, 2);
   assert_int_equal(plan.stride, 1);
   post_put_contact_names(a, &plan, &names);
   assert_string_equal(names.text, "[\"contact 1\",\"contact 2\"]");
-  int kept[] = {0, 7, 9};
-  int first  = 0;
-  while (r->branch[first].kind != MHB_BRANCH_NONLINEAR) first++;
-  post_put_contact_points(a, &plan, first, 3, kept, &out);
-  assert_has(out.text, "\"at\":[0,1,2],\"k\":[3,3,3],\"data\":\"");
-  /* 2 contacts of 6 numbers of the law and 3 axes of 7 coefficients, 4 bytes each, in base64 */
-  const char *data = strstr(out.text, "\"data\":\"") + 8;
-  assert_int_equal(strcspn(data, "\""), (3 * 2 * (6 + 21) * 4 + 2) / 3 * 4);
-  post_buffer_free(&out);
   for (int b = 0; b < r->n_branches; b++)
-    if (r->branch[b].kind == MHB_BRANCH_OPEN) post_put_contact_points(a, &plan, b, 3, kept, &out);
+    if (r->branch[b].kind == MHB_BRANCH_OPEN)
+      assert_ok(post_put_contact_points(a, &plan, b, 3, kept, &out));
   assert_null(out.text); /* a linear limit has no loop */
+  assert_ok(post_put_contact_points(a, &plan, first_curve(r), 3, kept, &out));
+  post_contact_plan_free(&plan);
   post_buffer_free(&names);
+  post_analysis_destroy(a);
+  return out.text;
+}
+
+static void every_point_has_its_period(void **state) {
+  (void)state;
+  fixture_options o = fixture_usual();
+  o.n_pairs         = 2;
+  o.n_points        = 40;
+  mhb_settings  s   = settings_of(&o);
+  mhb_response *r   = fixture_response(&o);
+  int           n, samples = 0, loops = 0;
+  obey(&s, r);
+  char *text = three_points(&s, r, NULL), *at = strstr(text, "\"loops\":[[") + 9;
+  assert_has(text, "\"at\":[0,1,2],\"loops\":[[");
+  for (; loops < 6; loops++, at = strchr(at, ']') + 1) {
+    n = atoi(strchr(at, '[') + 1);
+    assert_in_range(n, 5, 200);
+    samples += n;
+  }
+  assert_int_equal(*at, ']');
+  /* 7 rows of two bytes, to whole floats, in base64 */
+  const char *data = strstr(text, "\"data\":\"") + 8;
+  assert_int_equal(strcspn(data, "\""), ((7 * samples + 1) / 2 * 4 + 2) / 3 * 4);
+  free(text);
+  mhb_response_destroy(r);
+}
+
+/* Other settings, or areas, than those of the response. */
+static void a_law_that_is_not_the_files_draws_nothing(void **state) {
+  (void)state;
+  static const char none[]  = "\"loops\":[[0,";
+  fixture_options   o       = fixture_usual();
+  const double      area[2] = {1e-4, 3e-4};
+  o.n_pairs                 = 2;
+  o.n_points                = 40;
+  mhb_settings  s           = settings_of(&o);
+  mhb_response *r           = fixture_response(&o);
+  obey(&s, r);
+  char *text = three_points(&s, r, area);
+  assert_has(text, none);
+  free(text);
+  s.mu *= 1.05;
+  text = three_points(&s, r, NULL);
+  assert_has(text, none);
+  free(text);
+  mhb_response_destroy(r);
+}
+
+static void without_settings_there_is_no_loop(void **state) {
+  (void)state;
+  fixture_options   o = fixture_usual();
+  mhb_response     *r = fixture_response(&o);
+  post_analysis    *a;
+  post_contact_plan plan;
+  assert_ok(post_analysis_create(r, &a));
+  assert_ok(post_contact_points(a, &plan));
+  assert_int_equal(plan.n, 0);
+  post_contact_plan_free(&plan);
   post_analysis_destroy(a);
   mhb_response_destroy(r);
 }
 
 static void large_responses_are_thinned(void **state) {
   (void)state;
-  fixture_options o = fixture_usual();
-  o.n_pairs         = 22;
-  o.n_points        = 1500;
-  o.n_harmonics     = 9;
-  mhb_settings   s  = settings_of(&o);
-  mhb_response  *r  = fixture_response(&o);
-  post_analysis *a;
-  post_buffer    out  = {0};
-  int           *kept = calloc(1500, sizeof *kept);
+  fixture_options o   = fixture_usual();
+  o.n_pairs           = 22;
+  o.n_points          = 300;
+  o.n_harmonics       = 9;
+  mhb_settings      s = settings_of(&o);
+  mhb_response     *r = fixture_response(&o);
+  post_analysis    *a;
+  post_contact_plan plan;
+  post_buffer       out  = {0};
+  int              *kept = calloc(300, sizeof *kept);
+  obey(&s, r);
   assert_ok(post_analysis_create(r, &a));
-  a->settings            = &s;
-  post_contact_plan plan = post_contact_points(a);
+  a->settings = &s;
+  assert_ok(post_contact_points(a, &plan));
   assert_int_equal(plan.n, POST_SHOWN_CONTACTS);
   assert_true(plan.stride > 5);
-  for (int i = 0; i < 1500; i++) kept[i] = i;
+  for (int i = 0; i < 300; i++) kept[i] = i;
   for (int b = 0; b < r->n_branches; b++)
-    post_put_contact_points(a, &plan, b, r->branch[b].n_points, kept, &out);
+    assert_ok(post_put_contact_points(a, &plan, b, r->branch[b].n_points, kept, &out));
   print_message("stride %d, %.2f MB\n", plan.stride, 1e-6 * (double)out.length);
-  assert_true(out.length < 1200000);
+  assert_true(out.length < 1600000);
   free(kept);
   post_buffer_free(&out);
+  post_contact_plan_free(&plan);
   post_analysis_destroy(a);
   mhb_response_destroy(r);
 }
@@ -94,45 +181,6 @@ static void write_text(const char *path, const post_buffer *text) {
   assert_int_equal(fclose(file), 0);
 }
 
-static void put_motion(const suite_motion *m, mhb_contact_evaluator *contact, post_buffer *out) {
-  float            data[3 * SUITE_WIDTH];
-  double           force[3 * (2 * 64 + 1)];
-  mhb_contact_info info;
-  for (int i = 0; i < 3 * SUITE_WIDTH; i++) { /* the page has sin, the law in C -sin */
-    int j   = i % SUITE_WIDTH;
-    data[i] = (float)(j > 0 && j % 2 == 0 ? -1 : 1) * (float)m->motion[i / SUITE_WIDTH][j];
-  }
-  mhb_contact_force(contact, &m->law, &m->motion[0][0], force, NULL, &info);
-  post_put(out, "{\"name\":");
-  post_put_json(out, m->name);
-  post_put(out,
-           ",\"law\":{\"mu\":%.9g,\"n0\":%.9g,\"kv\":%.9g,\"kuu\":%.9g,\"kuw\":%.9g,\"kww\":%.9g},"
-           "\"work\":%.9g,\"share\":[%.9g,%.9g,%.9g],\"top\":%d,\"data\":\"",
-           m->law.mu, m->law.n0, m->law.kv, m->law.ku[0], m->law.ku[1], m->law.ku[2],
-           info.dissipation, info.share[0], info.share[1], info.share[2], SUITE_HARMONICS);
-  post_put_base64(out, 3 * SUITE_WIDTH, data);
-  post_put(out, "\"}");
-}
-
-/* The motions of the suite, with work and shares by the law in C. */
-static void write_law(void) {
-  post_buffer            out = {0};
-  mhb_contact_evaluator *contact;
-  assert_ok(mhb_contact_evaluator_create(SUITE_HARMONICS, 64, 1e-8, &contact));
-  post_put(&out, "<!DOCTYPE html><html><head><title></title></head><body><script>\n");
-  post_put_bytes(&out, post_contact_js, strlen(post_contact_js));
-  post_put(&out, "const motions=[");
-  for (int i = 0; i < suite_size(); i++) {
-    suite_motion m = suite_at(i);
-    post_put(&out, i ? "," : "");
-    put_motion(&m, contact, &out);
-  }
-  post_put(&out, "];</script></body></html>");
-  write_text("law.html", &out);
-  mhb_contact_evaluator_destroy(contact);
-  post_buffer_free(&out);
-}
-
 static void write_page(const char *name, const fixture_options *o) {
   char           none[] = "";
   post_origin    source = {none, none, none, none, none, none, none, 1};
@@ -142,6 +190,7 @@ static void write_page(const char *name, const fixture_options *o) {
   char           path[64];
   post_analysis *a;
   r->run_up = strcmp(name, "free") == 0;
+  if (r->n_pairs > 0) obey(&s, r);
   assert_ok(post_analysis_create(r, &a));
   a->settings = &s;
   assert_ok(post_report(a, &source, name, NULL, &out));
@@ -155,7 +204,6 @@ static void write_page(const char *name, const fixture_options *o) {
 static void keep_pages(void) {
   double          n0[36];
   fixture_options o = fixture_usual();
-  write_law();
   write_page("usual", &o);
   o.n_pairs  = 5;
   o.n_probes = 0;
@@ -176,7 +224,9 @@ static void keep_pages(void) {
 
 int main(int argc, char **argv) {
   const struct CMUnitTest tests[] = {
-      cmocka_unit_test(every_point_has_its_law),
+      cmocka_unit_test(every_point_has_its_period),
+      cmocka_unit_test(a_law_that_is_not_the_files_draws_nothing),
+      cmocka_unit_test(without_settings_there_is_no_loop),
       cmocka_unit_test(large_responses_are_thinned),
   };
   if (argc > 1 && strcmp(argv[1], "keep") == 0) {

@@ -1,9 +1,9 @@
 #!/usr/bin/env python3
-"""The script of the report page in a browser: the contact law, every control, no error.
+"""The script of the report page in a browser: every control, no error.
 
     test_page_script.py MAKER CHROMIUM
 
-MAKER NOUN keep writes law.html and page_KIND.html into the folder (test_contact_points.c,
+MAKER NOUN keep writes page_KIND.html into the folder (test_contact_points.c,
 test_blade_view.c).
 """
 import json
@@ -13,25 +13,6 @@ import sys
 import tempfile
 from html import unescape
 from pathlib import Path
-
-# Work and shares of every motion of the suite by the script's law.
-LAW = """
-<script>
-(() => {
-  const all = motions.map(m => {
-    const bytes = Uint8Array.from(atob(m.data), c => c.charCodeAt(0));
-    const q = Contact.period(m.law, m.top, new Float32Array(bytes.buffer), 0);
-    const size = Math.max(...q.load) * m.law.mu *
-        Math.max(...[q.u, q.w].map(x => Math.max(...x) - Math.min(...x)));
-    return {
-      name: m.name,
-      work: Math.abs(q.work[0] + q.work[1] - m.work) / (size || 1),
-      share: Math.max(...q.share.map((s, i) => Math.abs(s - m.share[i])))
-    };
-  });
-  document.title = "seen " + JSON.stringify(all);
-})();
-</script></body>"""
 
 # Acts on a page as a reader does, then leaves what it saw in the document.
 ACTIONS = (Path(__file__).parent / 'page_actions.js').read_text()
@@ -54,16 +35,6 @@ def visit(chromium, folder, name, page, script):
                if 'CONSOLE' in line and 'due to ReadPixels' not in line]
     match = re.search(r'<title>seen (.*?)</title>', run.stdout, re.S)
     return console, json.loads(unescape(match.group(1))) if match else None
-
-
-def law_faults(chromium, folder):
-    """The script's law against that in C."""
-    console, seen = visit(chromium, folder, 'law', (folder / 'law.html').read_text(), LAW)
-    if not seen:
-        return console + ['the law did not end']
-    for m in sorted(seen, key=lambda m: -m['work'])[:3]:
-        print(f'  {m["name"]}: work {m["work"]:.1e} of the largest, shares {m["share"]:.1e}')
-    return console + [f'{m["name"]}: {m["work"]:.1e}' for m in seen if m['work'] > 5e-3]
 
 
 # The motion of sectors on the page against that of `shroudhb field --ring`.
@@ -122,11 +93,8 @@ def main():
         folder = Path(name)
         for noun in ('contact_points', 'blade_view'):
             subprocess.run([Path(maker).resolve(), noun, 'keep'], cwd=folder, check=True)
-        wrong = law_faults(chromium, folder)
-        print(f'law: {"; ".join(wrong) or "good"}')
-        still = motion_faults(chromium, folder)
-        print(f'motion: {"; ".join(still) or "good"}')
-        wrong += still
+        wrong = motion_faults(chromium, folder)
+        print(f'motion: {"; ".join(wrong) or "good"}')
         for kind in KINDS:
             found = faults(kind, chromium, folder)
             print(f'{kind}: {"; ".join(found) or "good"}')
