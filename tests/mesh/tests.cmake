@@ -2,11 +2,13 @@ shb_test(mesh/base UNIT arena memory axes crash_guard phases progress publish ro
   LIBRARIES shb_mesh_base)
 shb_test(mesh/table UNIT csv LIBRARIES shb_mesh_table)
 shb_test(mesh/core UNIT face_match group_checks group_rules jacobian triangle face_pairing
-  file_format fe_mesh regions cyclic_sides LIBRARIES tests_fem ${GMSH_LIBRARY})
+  file_format cyclic_sides LIBRARIES tests_fem)
+shb_test(mesh/core UNIT fe_mesh regions PROGRAM test_mesh_core_gmsh
+  LIBRARIES tests_box ${GMSH_LIBRARY})
 shb_test(mesh/io UNIT source_files inp_read msh_check msh_read write INTEGRATION source
   LIBRARIES tests_box ${GMSH_LIBRARY})
 shb_test(mesh/gmsh UNIT reading LIBRARIES tests_box)
-target_include_directories(test_mesh_core PRIVATE ${GMSH_INCLUDE})
+target_include_directories(test_mesh_core_gmsh PRIVATE ${GMSH_INCLUDE})
 target_include_directories(test_mesh_io PRIVATE ${GMSH_INCLUDE})
 shb_test(mesh/blade UNIT airfoil section_smoothing INTEGRATION disc hex_sweep shroud_angle
   SLOW blade

@@ -12,7 +12,10 @@ shb_test(mhb/structure UNIT cyclic_flexibility gyroscopic nodal_diameters recept
   speed_model LIBRARIES tests_models)
 shb_test(mhb/low_rank UNIT woodbury gmres LIBRARIES tests_models)
 shb_test(mhb/response UNIT publisher response_samples face_wear
-  INTEGRATION response modal_motion direct_stress LIBRARIES tests_fem tests_models shb_modal)
+  INTEGRATION response modal_motion LIBRARIES tests_models)
+# programs without PETSc start faster
+shb_test(mhb/response INTEGRATION direct_stress PROGRAM test_mhb_response_modal
+  LIBRARIES tests_fem tests_models shb_modal)
 shb_test(mhb/balance UNIT balance stick_stiffness newton ring_system subharmonics doubled_ring
   modal_error spatial_error stuck_solver disc_contacts
   INTEGRATION truncation_error coriolis condensation
@@ -33,9 +36,11 @@ shb_test(mhb/continuation UNIT arclength_scalar balance_curve closed_curve corre
 shb_test(mhb/amplification UNIT whitehead INTEGRATION ring_response LIBRARIES tests_models)
 shb_test(mhb/branches UNIT branch_completion chain linear_limits main_branch peak_search
   period_doubling record tracer
-  INTEGRATION stiff_disc disc_run_up branch_stability forced_response harmonic_selection
+  INTEGRATION branch_stability forced_response harmonic_selection
   lasting_motion mistuned_sweep run_up secondary_branches ring_search unfinished_curve
-  SLOW verdicts LIBRARIES tests_fem tests_box tests_models shb_modal shb_mesh_blade)
+  SLOW verdicts LIBRARIES tests_models)
+shb_test(mhb/branches INTEGRATION stiff_disc disc_run_up PROGRAM test_mhb_branches_modal
+  LIBRARIES tests_fem tests_box tests_models shb_modal shb_mesh_blade)
 # it measures its own memory, and PETSc's libraries would be part of it
 shb_test(mhb/branches INTEGRATION sweep_memory PROGRAM test_mhb_branches_memory
   LIBRARIES tests_models)
