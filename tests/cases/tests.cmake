@@ -55,12 +55,22 @@ shb_test(cases/plan statistics shb_cases_plan PkgConfig::GSL m)
 shb_test(cases/plan sobol_indices shb_cases_plan m)
 shb_test(cases/plan design_statistics shb_cases_plan m)
 shb_test(cases/peaks design_run shb_cases_peaks tests_models)
-foreach(noun design_table output_names refusals study_keys study_plan uncertain_keys)
+foreach(noun design_table digest output_names refusals study_keys study_optimise study_plan
+    study_schema study_spec uncertain_keys)
   shb_test(cases/designs ${noun} shb_cases_designs)
 endforeach()
-foreach(noun dakota_files design_message nearest_design)
+foreach(noun dakota_files design_message nearest_design optimisation)
   shb_test(cases/study ${noun} shb_cases_study)
 endforeach()
+# What only the program over MPI has.
+shb_test(cases/study crew shb_cases_study MPI::MPI_C)
+target_sources(test_cases_study_crew PRIVATE ${PROJECT_SOURCE_DIR}/cases/study/crew.c)
+shb_test(cases/study study_summary shb_cases_study tests_studies)
+target_sources(test_cases_study_study_summary PRIVATE
+  ${PROJECT_SOURCE_DIR}/cases/study/study_summary.c)
+shb_test(cases/study study_run shb_cases_study MPI::MPI_C)
+target_sources(test_cases_study_study_run PRIVATE ${PROJECT_SOURCE_DIR}/cases/study/crew.c
+  ${PROJECT_SOURCE_DIR}/cases/study/study_run.c ${PROJECT_SOURCE_DIR}/cases/study/study_summary.c)
 shb_test(cases/study line_minimum shb_cases_study)
 shb_test(cases/study optimiser shb_cases_study)
 
