@@ -157,7 +157,7 @@ void case_print_reference(FILE *out) {
       "A number may carry a unit: `6000 rpm`, `35 deg`, `2 MN/m`, `7.85 g/cm3`, `0.2 %`.\n"
       "A bare number is in the SI unit of its key, which is rad/s for the speed and rad for "
       "angles.\n"
-      "The units are m, g, t, s, N, Pa, bar, Hz, rad, deg, °, rev, rpm and %.\n"
+      "The units are m, g, t, s, N, Pa, J, bar, Hz, rad, deg, °, rev, rpm and %.\n"
       "Prefixes are n, u (or µ), m, c, k, M and G where they are customary.\n"
       "`shroudhb check CASE.yaml` finds all errors of a file at once and runs nothing.\n";
   case_keys keys = case_key_table();
