@@ -1,5 +1,6 @@
 #include "mhb/branches/lasting_motion.h"
 
+#include <limits.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -23,21 +24,41 @@ static const double SAME_PLACE = 1e-3;
 /* Operations a period of 256 steps that auto allows: some 10 ms. */
 static const double MOST_WORK = 2e8;
 
+/* Operations that auto allows all starts of a point: a thousand such periods. */
+static const double MOST_POINT_WORK = 2e11;
+
+/* A neighbour's motion is larger than a point's own: by more than percentiles differ. */
+static const double LARGER = 1.03;
+
+/* A point that is settled. */
+typedef struct {
+  int            point;
+  mhb_lasting    found;
+  mhb_ring_state state; /* of the largest motion */
+  mhb_ring_state next;  /* that of this pass, if its omega is not 0 */
+  double         size;  /* m, of the largest motion after the last pass */
+  bool           fresh; /* that motion was found then */
+} settled;
+
 /* One branch. */
 typedef struct {
-  mhb_response *curves;
-  mhb_branch   *branch;
-  double       *size;      /* [point] m, output of the wave */
-  bool         *asked;     /* [point] modulated or not judged, and large enough for the sweep */
-  bool         *modulated; /* [point] */
-  int           n_asked, n_modulated, n_points; /* n_points: settled */
-  const char   *refused;                        /* NULL: computed */
-  bool          stopped, stiff;
+  mhb_response  *curves;
+  mhb_branch    *branch;
+  double        *size;      /* [point] m, output of the wave */
+  bool          *asked;     /* [point] modulated or not judged, and large enough for the sweep */
+  bool          *modulated; /* [point] */
+  int            n_asked, n_modulated, n_points; /* n_points: settled */
+  settled       *at;                             /* [n_points] by rising frequency */
+  mhb_slow_sweep sweep;
+  int            most_periods; /* of all starts of a point; 0: any */
+  double         lowest;       /* Hz, of the points that are computed */
+  const char    *refused;      /* NULL: computed */
+  bool           stopped, stiff;
 } work;
 
 typedef struct {
   work *of;
-  int   point;
+  int   which; /* of its settled points */
 } task;
 
 typedef struct {
@@ -105,6 +126,8 @@ static shb_status choose(const lasting *l, work *w) {
     w->asked[i]     = covered && w->size[i] >= PART_OF_PEAK * peak;
     w->n_modulated += w->modulated[i];
     w->n_asked += w->asked[i];
+    if ((w->modulated[i] || w->asked[i]) && (w->lowest == 0 || b->frequency[i] < w->lowest))
+      w->lowest = b->frequency[i];
   }
   if (w->n_modulated == 0) w->refused = "nothing to compute: no point is modulated";
   return SHB_OK;
@@ -117,7 +140,9 @@ static shb_status weigh(const lasting *l, work *w) {
   if (w->refused || l->settings->lasting == MHB_LASTING_ALWAYS) return SHB_OK;
   SHB_TRY(
       mhb_ring_model_create(l->model, l->settings, b->n0[0], SHB_TWO_PI * b->frequency[0], &model));
-  if (256 * model->order * mhb_ring_model_work(model) > MOST_WORK)
+  const double period = 256 * model->order * mhb_ring_model_work(model);
+  w->most_periods     = (int)fmin(MOST_POINT_WORK / period, INT_MAX);
+  if (period > MOST_WORK)
     w->refused = "not computed: the ring is too large; mhb.lasting: always computes it";
   mhb_ring_model_destroy(model);
   return SHB_OK;
@@ -128,6 +153,7 @@ static mhb_wave wave_at(const work *w, int point) {
   size_t            row = 3 * (size_t)w->curves->n_pairs * ((size_t)b->n_harmonics + 1);
   return (mhb_wave){.omega       = SHB_TWO_PI * b->frequency[point],
                     .n0          = b->n0[point],
+                    .lowest      = SHB_TWO_PI * w->lowest,
                     .n_harmonics = b->n_harmonics,
                     .force       = b->force + (size_t)point * row};
 }
@@ -224,52 +250,100 @@ static shb_status stored(lasting *l, const work *w, double hz) {
 
 /* The sweep of a branch, and the choice of its points. */
 static void sweep_branch(lasting *l, work *w, bool *settle) {
-  mhb_slow_sweep sweep  = {0};
-  shb_status     status = SHB_OK;
-  int            low    = end_of(w, -1);
+  shb_status status = SHB_OK;
+  int        low    = end_of(w, -1);
   if (low >= 0) {
     mhb_wave wave = wave_at(w, low);
     double   high = w->branch->frequency[end_of(w, 1)] * (1 + BEYOND);
     status        = mhb_slow_sweep_run(l->model, l->settings, &wave, high, l->host->go_on,
-                                       l->host->context, &sweep);
+                                       l->host->context, &w->sweep);
   }
   lock(l, true);
   w->stopped = !goes_on(l);
-  if (status == SHB_OK && !w->stopped) status = store_sweep(&sweep, w->branch);
+  if (status == SHB_OK && !w->stopped) status = store_sweep(&w->sweep, w->branch);
   if (status == SHB_OK && !w->stopped) {
-    choose_points(l, w, sweep.n > 0 ? sweep.largest : 0, settle);
+    choose_points(l, w, w->sweep.n > 0 ? w->sweep.largest : 0, settle);
     status = stored(l, w, low < 0 ? w->branch->frequency[0] : w->branch->frequency[low]);
   }
   note(l, status);
   lock(l, false);
-  mhb_slow_sweep_destroy(&sweep);
 }
 
 /* ---- points ---- */
 
+/* Under the lock. */
+static void store_point(work *w, const settled *s) {
+  mhb_branch        *b      = w->branch;
+  const mhb_lasting *found  = &s->found;
+  const int          i      = s->point;
+  w->stiff                  = w->stiff || found->kind == MHB_LASTING_UNKNOWN;
+  b->lasting_kind[i]        = found->kind;
+  b->lasting_mean[i]        = found->mean;
+  b->lasting_worst[i]       = found->worst;
+  b->lasting_error[i]       = found->error;
+  b->lasting_side[i]        = found->kind == MHB_LASTING_UNKNOWN ? 0 : found->diameter;
+  b->lasting_offset[i]      = found->offset;
+  b->lasting_periods[i]     = found->periods;
+  b->lasting_starts[i]      = found->starts;
+  b->lasting_reached[i]     = found->reached;
+  b->lasting_least[i]       = found->least;
+  b->lasting_least_worst[i] = found->least_worst;
+}
+
+/* Start from a state if its motion is larger. */
+static shb_status carry(const lasting *l, const work *w, settled *s, const mhb_ring_state *from,
+                        double size) {
+  const mhb_wave  wave = wave_at(w, s->point);
+  mhb_lasting_run how  = {l->host->go_on, l->host->context, 0, from, &s->next};
+  if (s->found.kind == MHB_LASTING_UNKNOWN || size <= LARGER * s->found.size) return SHB_OK;
+  return mhb_lasting_settle(l->model, l->settings, &wave, &how, &s->found);
+}
+
+/* From the window of the sweep that is nearest. */
+static shb_status carry_sweep(const lasting *l, const work *w, settled *s) {
+  const mhb_slow_sweep *sweep = &w->sweep;
+  const double          at    = w->branch->frequency[s->point];
+  int                   best  = 0;
+  for (int i = 1; i < sweep->n; i++)
+    if (fabs(sweep->frequency[i] - at) < fabs(sweep->frequency[best] - at)) best = i;
+  if (sweep->n == 0) return SHB_OK;
+  return carry(l, w, s, &sweep->state[best], sweep->worst[best]);
+}
+
+/* The state of this pass, if there is one, is that of the point. */
+static void take_state(settled *s) {
+  s->fresh = s->next.omega > 0;
+  if (!s->fresh) return;
+  shb_arena_free(&s->state.arena);
+  s->state = s->next;
+  s->next  = (mhb_ring_state){.omega = 0};
+}
+
 static void settle_point(lasting *l, const task *t) {
-  work       *w    = t->of;
-  mhb_branch *b    = w->branch;
-  mhb_wave    wave = wave_at(w, t->point);
-  mhb_lasting result;
-  shb_status  status =
-      mhb_lasting_settle(l->model, l->settings, &wave, l->host->go_on, l->host->context, &result);
+  work           *w      = t->of;
+  settled        *s      = &w->at[t->which];
+  const mhb_wave  wave   = wave_at(w, s->point);
+  mhb_lasting_run how    = {l->host->go_on, l->host->context, w->most_periods, NULL, &s->next};
+  shb_status      status = mhb_lasting_settle(l->model, l->settings, &wave, &how, &s->found);
+  if (status == SHB_OK) status = carry_sweep(l, w, s);
   lock(l, true);
   if (!goes_on(l)) w->stopped = true;
   if (status == SHB_OK && !w->stopped) {
-    int i                 = t->point;
-    w->stiff              = w->stiff || result.kind == MHB_LASTING_UNKNOWN;
-    b->lasting_kind[i]    = result.kind;
-    b->lasting_mean[i]    = result.mean;
-    b->lasting_worst[i]   = result.worst;
-    b->lasting_error[i]   = result.error;
-    b->lasting_side[i]    = result.kind == MHB_LASTING_UNKNOWN ? 0 : result.diameter;
-    b->lasting_offset[i]  = result.offset;
-    b->lasting_periods[i] = result.periods;
-    status                = stored(l, w, b->frequency[i]);
+    store_point(w, s);
+    status = stored(l, w, w->branch->frequency[s->point]);
   }
   note(l, status);
   lock(l, false);
+}
+
+static void sort_points(work *w) {
+  const double *f = w->branch->frequency;
+  for (int i = 1; i < w->n_points; i++) {
+    const int point = w->at[i].point;
+    int       to    = i;
+    for (; to > 0 && f[w->at[to - 1].point] > f[point]; to--) w->at[to].point = w->at[to - 1].point;
+    w->at[to].point = point;
+  }
 }
 
 static shb_status list_tasks(lasting *l, bool *const *settle) {
@@ -277,11 +351,55 @@ static shb_status list_tasks(lasting *l, bool *const *settle) {
   for (int i = 0; i < l->n; i++) n += l->work[i].n_points;
   l->tasks = calloc((size_t)n + 1, sizeof *l->tasks);
   SHB_CHECK(l->tasks, SHB_ERR_IO, "out of memory");
-  for (int i = 0; i < l->n; i++)
-    for (int k = 0; settle[i] && k < l->work[i].branch->n_points; k++)
-      if (settle[i][k]) l->tasks[l->n_tasks++] = (task){&l->work[i], k};
+  for (int i = 0; i < l->n; i++) {
+    work *w = &l->work[i];
+    int   k = 0;
+    if (!settle[i]) continue;
+    w->at = calloc((size_t)w->n_points + 1, sizeof *w->at);
+    SHB_CHECK(w->at, SHB_ERR_IO, "out of memory");
+    for (int p = 0; p < w->branch->n_points; p++)
+      if (settle[i][p]) w->at[k++].point = p;
+    sort_points(w);
+    for (k = 0; k < w->n_points; k++) l->tasks[l->n_tasks++] = (task){w, k};
+  }
   l->total += n;
   return SHB_OK;
+}
+
+/* ---- neighbours ---- */
+
+/* One point: from the neighbours whose larger motion is fresh. */
+static void visit_neighbours(lasting *l, const task *t) {
+  work      *w      = t->of;
+  settled   *s      = &w->at[t->which];
+  const int  n      = s->found.n_motions;
+  shb_status status = SHB_OK;
+  for (int side = -1; side <= 1 && status == SHB_OK; side += 2) {
+    const int other = t->which + side;
+    if (other < 0 || other >= w->n_points || !w->at[other].fresh) continue;
+    status = carry(l, w, s, &w->at[other].state, w->at[other].size);
+  }
+  lock(l, true);
+  if (!goes_on(l)) w->stopped = true;
+  if (status == SHB_OK && !w->stopped && s->found.n_motions > n) store_point(w, s);
+  note(l, status);
+  lock(l, false);
+}
+
+/* A pass over all points carries motions from each to the next; it ends when none is new. */
+static void carry_on(lasting *l) {
+  for (bool more = true; more && goes_on(l) && l->status == SHB_OK;) {
+    more = false;
+    for (int i = 0; i < l->n_tasks; i++) {
+      settled *s = &l->tasks[i].of->at[l->tasks[i].which];
+      take_state(s);
+      s->size = s->found.size;
+      more    = more || s->fresh;
+    }
+#pragma omp parallel for schedule(dynamic, 1) num_threads(l->host->threads)
+    for (int i = 0; i < l->n_tasks; i++)
+      if (more && goes_on(l)) visit_neighbours(l, &l->tasks[i]);
+  }
 }
 
 /* What was computed, or why not. A branch that was stopped has no text. */
@@ -325,12 +443,25 @@ static shb_status run(lasting *l, mhb_response *const *curves, bool **settle) {
 #pragma omp parallel for schedule(dynamic, 1) num_threads(l->host->threads)
   for (int i = 0; i < l->n_tasks; i++)
     if (goes_on(l)) settle_point(l, &l->tasks[i]);
+  carry_on(l);
   if (l->status != SHB_OK) return shb_fail(l->status, __FILE__, __LINE__, "%s", l->text);
   for (int i = 0; i < l->n; i++) {
     l->work[i].stopped = l->work[i].stopped || !goes_on(l);
     SHB_TRY(set_text(&l->work[i]));
   }
   return SHB_OK;
+}
+
+static void release(work *w) {
+  for (int i = 0; w->at && i < w->n_points; i++) {
+    shb_arena_free(&w->at[i].state.arena);
+    shb_arena_free(&w->at[i].next.arena);
+  }
+  mhb_slow_sweep_destroy(&w->sweep);
+  free(w->at);
+  free(w->size);
+  free(w->asked);
+  free(w->modulated);
 }
 
 shb_status mhb_lasting_motion(const modal_model *model, const mhb_settings *settings, int n,
@@ -343,9 +474,7 @@ shb_status mhb_lasting_motion(const modal_model *model, const mhb_settings *sett
   if (status == SHB_OK) status = run(&l, curves, settle);
   for (int i = 0; settle && l.work && i < n; i++) {
     free(settle[i]);
-    free(l.work[i].size);
-    free(l.work[i].asked);
-    free(l.work[i].modulated);
+    release(&l.work[i]);
   }
   free(l.work);
   free(l.tasks);

@@ -23,8 +23,8 @@ typedef struct {
  *   value    out  [blades][columns] deviations, to be freed by the caller
  *
  * Errors: SHB_ERR_IO the file cannot be read; SHB_ERR_INPUT another number of lines or columns, no
- * number, one in another unit, a deviation outside the bounds of mhb/mistuning/deviations. The
- * message names line and column. */
+ * number, another unit, a deviation out of bounds (mhb/mistuning/deviations). The message names
+ * line and column. */
 shb_status mhb_deviation_table_read(const mhb_deviation_table *table, int *columns, double **value);
 
 #endif

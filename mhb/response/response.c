@@ -250,6 +250,10 @@ shb_status mhb_response_lasting_curve(mhb_branch *branch, int n) {
   return SHB_OK;
 }
 
+double mhb_response_lasting_missed(int starts) {
+  return pow(5. / 6, starts);
+}
+
 shb_status mhb_response_copy_lasting(mhb_branch *to, const mhb_branch *from) {
   const mhb_lasting_curve *a = &from->lasting_curve, *b = &to->lasting_curve;
   const size_t             size = sizeof(double) * (size_t)a->n;

@@ -51,6 +51,9 @@ shb_status mhb_response_note_search(mhb_branch *branch, const mhb_search *search
 shb_status mhb_response_copy_lasting(mhb_branch *to, const mhb_branch *from);
 /* Room for n windows of a sweep; an earlier one is freed. SHB_ERR_IO: no memory. */
 shb_status mhb_response_lasting_curve(mhb_branch *branch, int n);
+
+/* Chance that all of lasting_starts miss a motion that one start in six reaches: (5/6)^starts. */
+double mhb_response_lasting_missed(int starts);
 /* Room for the modal amplitudes of n points; earlier ones are freed. SHB_ERR_IO: no memory. */
 shb_status mhb_response_modal(const mhb_response *response, mhb_branch *branch, int n,
                               int n_contact);

@@ -77,7 +77,17 @@ const mhb_field mhb_fields[] = {
     {"lasting/offset", "", MHB_DOUBLE, AT(lasting_offset), "-",
      "frequency of the strongest side wave over that of the excitation, less 1"},
     {"lasting/periods", "", MHB_INT, AT(lasting_periods), "-",
-     "periods of the fundamental that were integrated, both starts"},
+     "periods of the fundamental that were integrated, all starts"},
+    {"lasting/starts", "", MHB_INT, AT(lasting_starts), "-",
+     "disturbed starts that were told apart; all of them miss a motion that one in six reaches "
+     "with the chance (5/6)^starts; 0: not computed, or not known"},
+    {"lasting/reached", "", MHB_INT, AT(lasting_reached), "-",
+     "of these starts, those that reached the motion of lasting/mean; 0: the state of a neighbour "
+     "alone led to it"},
+    {"lasting/least", "", MHB_DOUBLE, AT(lasting_least), "-",
+     "where there are several motions: lasting/mean of the smallest; else 0"},
+    {"lasting/least_worst", "", MHB_DOUBLE, AT(lasting_least_worst), "-",
+     "where there are several motions: lasting/worst of the smallest; else 0"},
     {"lasting/kind", "", MHB_INT, AT(lasting_kind), "-",
      "0 not computed, 1 the wave, 2 mildly modulated, 3 modulated, 4 irregular, 5 several motions"},
     {"ring/energy", "b", MHB_DOUBLE, AT(ring_energy), "J", "mean kinetic energy of each blade"},
@@ -102,7 +112,7 @@ const mhb_field mhb_fields[] = {
      "lines of the contact motion where it does not repeat, largest first; 0: none"},
     {"spectrum/amplitude", "l", MHB_DOUBLE, AT(line_amplitude), "m", "amplitude of the line"},
 };
-enum { N_TRACKED = 1, N_LATER = 19, N_INTEGRATION = 5 };
+enum { N_TRACKED = 1, N_LATER = 23, N_INTEGRATION = 5 };
 _Static_assert(sizeof mhb_fields / sizeof *mhb_fields == MHB_N_FIELDS, "MHB_N_FIELDS counts them");
 
 size_t mhb_field_bytes(mhb_number kind) {

@@ -218,6 +218,9 @@ typedef struct {
   double *lasting_offset;                 /* [point] of the strongest side wave */
   int    *lasting_side, *lasting_periods; /* [point] its nodal diameter, -1: none; integrated */
   int    *lasting_kind;                   /* [point] MHB_LASTING_UNKNOWN ... */
+  int    *lasting_starts;                 /* [point] disturbed starts that were told apart */
+  int    *lasting_reached;                /* [point] of them, this motion */
+  double *lasting_least, *lasting_least_worst; /* [point] the smallest of several; else 0 */
   /* how the motion is spread over a ring of single blades; of such rings only */
   double *ring_energy;        /* [point][blade] J, mean kinetic energy */
   double *ring_wave;          /* [point][blade] share of the energy j diameters beside the load's */

@@ -1,164 +1,71 @@
 #include "mhb/ring/lasting.h"
 
+#include <limits.h>
 #include <string.h>
 
 #include "mesh/base/constants.h"
-#include "mhb/ring/ring_output.h"
-#include "mhb/ring/ring_statistics.h"
 #include "mhb/ring/side_waves.h"
 
 enum {
-  STARTS         = 2,
-  BLOCK          = 25, /* periods */
-  MOST_BLOCKS    = 40,
+  SLOTS          = 3,   /* the first two starts, and one after the other */
   SEVERAL_BLOCKS = 27,  /* settled starts that still differ are different motions */
   STEPS          = 256, /* a period of the excitation: 1e-3 of the mean */
-  MOST_STEPS     = 4096,
-  LINE_PERIODS   = 64 /* a line is known to 1e-3 of the frequency */
+  MOST_STEPS     = 4096
 };
 
-static const int    targets[]     = {12, 18, 27, MOST_BLOCKS};
-static const double START[STARTS] = {0.03, 0.1}; /* relative disturbances */
-static const double STABLE        = 0.8;         /* largest mhb_ring_model_stiffness */
-static const double ON_WAVE = 2e-3, ON_MOTION = 1e-2, NEAR_WAVE = 0.02, FALLS = 0.92,
-                    SAME_WAVE = 5e-3;
-static const double MILD_MEAN = 0.05, MILD_WORST = 1.05, FEW_LINES = 0.65;
-static const double SAME_MEAN = 0.01, SAME_WORST = 0.03, WORST_SHARE = 0.999;
+/* Blocks after which starts are compared. */
+static const int targets[] = {12, 18, SEVERAL_BLOCKS, MHB_START_BLOCKS};
+
+/* A further start is only compared with motions that are known: 8 blocks leave four that count. */
+static const int further[] = {8, 12, 18, SEVERAL_BLOCKS, MHB_START_BLOCKS};
+
+static const double LEAST_START = 0.03, MOST_START = 0.1; /* relative disturbances */
+static const double DIFFERENT = 2;                        /* mhb_motion_distance */
+static const double STABLE    = 0.8;                      /* largest mhb_ring_model_stiffness */
+static const double SAME_WAVE = 5e-3, MILD_MEAN = 0.05, MILD_WORST = 1.05, FEW_LINES = 0.65;
 
 /* ---- decision ---- */
 
-/* Blocks that count: the second half. */
-static mhb_block_mean second_half(const mhb_lasting_series *s) {
-  int n = s->blocks - s->blocks / 2;
-  return mhb_block_mean_of(s->mean + s->blocks - n, n);
+static double larger(double a, double b) {
+  return a > b ? a : b;
 }
 
-/* Whether a start is on a wave, or comes back to one. */
-static bool is_wave(const mhb_lasting_series *s) {
-  int    n = s->blocks, half = n / 2;
-  double last = s->spread[n - 1], middle = s->spread[half];
-  return last < (s->mistuned ? ON_MOTION : ON_WAVE) ||
-         (n >= 16 && last < NEAR_WAVE && last < middle * pow(FALLS, n - 1 - half));
+/* By the blade that swings furthest. */
+static bool is_larger(const mhb_motion *a, const mhb_motion *b) {
+  return mhb_motion_worst(a, a->wave) > mhb_motion_worst(b, b->wave);
 }
 
-mhb_lasting_verdict mhb_lasting_judge(mhb_lasting_series s[STARTS], bool last) {
-  mhb_lasting_verdict v = {.wave = is_wave(&s[0]) && is_wave(&s[1])};
-  mhb_block_mean      a = second_half(&s[0]), b = second_half(&s[1]);
-  if (v.wave) {
-    a = (mhb_block_mean){.mean = s[0].mean[s[0].blocks - 1]};
-    b = (mhb_block_mean){.mean = s[1].mean[s[1].blocks - 1]};
-  }
-  double worst[STARTS];
-  for (int i = 0; i < STARTS; i++)
-    worst[i] =
-        v.wave ? s[i].mean[s[i].blocks - 1] : mhb_percentile(s[i].peak, s[i].n_peaks, WORST_SHARE);
-  bool settled = mhb_block_mean_is_settled(&a) && mhb_block_mean_is_settled(&b);
-  bool same    = fabs(a.mean - b.mean) < fmax(SAME_MEAN * a.mean, 3 * hypot(a.error, b.error)) &&
-              fabs(worst[0] - worst[1]) < SAME_WORST * worst[0];
-  v.leader  = b.mean > a.mean;
-  v.error   = fmax(a.error, b.error);
-  v.mean    = 0.5 * (a.mean + b.mean);
-  v.worst   = 0.5 * (worst[0] + worst[1]);
-  v.several = settled && !same && (last || s[0].blocks >= SEVERAL_BLOCKS);
-  v.decided = (settled && same) || v.several || last;
-  if (v.several) {
-    v.mean  = v.leader ? b.mean : a.mean;
-    v.worst = worst[v.leader];
-  }
-  return v;
+/* Both starts as one motion. */
+static mhb_motion joined(const mhb_motion *a, const mhb_motion *b) {
+  return (mhb_motion){.wave        = a->wave && b->wave,
+                      .settled     = a->settled && b->settled,
+                      .starts      = a->starts + b->starts,
+                      .half        = {.mean  = 0.5 * (a->half.mean + b->half.mean),
+                                      .error = larger(a->half.error, b->half.error)},
+                      .last        = 0.5 * (a->last + b->last),
+                      .worst       = 0.5 * (a->worst + b->worst),
+                      .worst_error = larger(a->worst_error, b->worst_error)};
 }
 
-int mhb_lasting_kind_of(const mhb_lasting_verdict *v, double share) {
-  if (v->several || (v->wave && fabs(v->mean - 1) > SAME_WAVE)) return MHB_LASTING_SEVERAL;
-  if (v->wave) return MHB_LASTING_WAVE;
-  if (fabs(v->mean - 1) < MILD_MEAN && v->worst < MILD_WORST) return MHB_LASTING_MILD;
+int mhb_lasting_judge(const mhb_lasting_series series[2], bool last, mhb_motion motion[2],
+                      int *lead) {
+  for (int i = 0; i < 2; i++) motion[i] = mhb_motion_of(&series[i], last);
+  const mhb_motion *a = &motion[0], *b = &motion[1];
+  const bool        told = (a->wave && b->wave) || (a->settled && b->settled);
+  const double      away = mhb_motion_distance(a, b);
+  *lead                  = is_larger(b, a);
+  if (told && away > DIFFERENT && (last || series[0].blocks >= SEVERAL_BLOCKS)) return 2;
+  if (!(told && away < 1) && !last) return 0;
+  motion[0] = joined(a, b);
+  return 1;
+}
+
+int mhb_lasting_kind_of(int n, const mhb_motion *leader, double share) {
+  const double mean = mhb_motion_mean(leader, leader->wave);
+  if (n > 1 || (leader->wave && fabs(mean - 1) > SAME_WAVE)) return MHB_LASTING_SEVERAL;
+  if (leader->wave) return MHB_LASTING_WAVE;
+  if (fabs(mean - 1) < MILD_MEAN && leader->worst < MILD_WORST) return MHB_LASTING_MILD;
   return share < FEW_LINES ? MHB_LASTING_IRREGULAR : MHB_LASTING_MODULATED;
-}
-
-/* ---- one start ---- */
-
-typedef struct {
-  mhb_ring        ring;
-  mhb_ring_output output;
-  int             periods;
-  double          mean[MOST_BLOCKS], spread[MOST_BLOCKS];
-  double         *peak; /* [period][blades] over the wave's */
-  double *sample;       /* [LINE_PERIODS][MHB_SIDE_SAMPLES][3][blades], the last periods in turn */
-  double complex *pattern; /* [3][blades] undoes the lag of the wave, or the balance's motion */
-  double complex  sum[3];  /* of the block: first harmonics, [0] alone if mistuned; their squares */
-  double          square, peaks;
-  shb_arena       arena;
-} start;
-
-static shb_status create(mhb_ring_model *model, start *s) {
-  size_t blades = (size_t)model->blades;
-  *s            = (start){0};
-  s->peak       = shb_arena_take(&s->arena, MOST_BLOCKS * BLOCK * blades, sizeof(double));
-  s->sample     = shb_arena_take(&s->arena, (size_t)LINE_PERIODS * MHB_SIDE_SAMPLES * 3 * blades,
-                                 sizeof(double));
-  s->pattern    = shb_arena_take(&s->arena, 3 * blades, sizeof *s->pattern);
-  SHB_CHECK(!s->arena.failed, SHB_ERR_IO, "out of memory");
-  for (int i = 0; i < 3 * model->blades; i++)
-    s->pattern[i] = cexp(I * mhb_ring_model_lag(model, model->order, i % model->blades));
-  SHB_TRY(mhb_ring_create(model, &s->ring));
-  return mhb_ring_output_create(&s->ring, &s->output);
-}
-
-static void destroy(start *s) {
-  mhb_ring_output_destroy(&s->output);
-  mhb_ring_destroy(&s->ring);
-  shb_arena_free(&s->arena);
-}
-
-/* Keep samples of the last period of the fundamental, for the lines. */
-static void keep_samples(start *s) {
-  const mhb_ring_model *m     = s->ring.model;
-  int                   every = s->ring.n_samples / MHB_SIDE_SAMPLES;
-  double               *to =
-      s->sample + (size_t)(s->periods % LINE_PERIODS) * MHB_SIDE_SAMPLES * 3 * (size_t)m->blades;
-  for (int i = 0; i < MHB_SIDE_SAMPLES; i++)
-    for (int axis = 0; axis < 3; axis++, to += m->blades)
-      memcpy(to, s->ring.output + (size_t)(((i + 1) * every - 1) * 3 + axis) * (size_t)m->lanes,
-             sizeof(double) * (size_t)m->blades);
-}
-
-static void end_block(start *s) {
-  int    blades = s->ring.model->blades, n = blades * BLOCK, at = s->periods / BLOCK - 1;
-  double mean = 0;
-  for (int axis = 0; axis < 3; axis++) mean += pow(cabs(s->sum[axis] / n), 2);
-  s->mean[at]   = s->peaks / n;
-  s->spread[at] = mean > 0 ? sqrt(fmax(s->square / n - mean, 0) / mean) : 0;
-  memset(s->sum, 0, sizeof s->sum);
-  s->square = s->peaks = 0;
-}
-
-static void one_period(start *s, double scale) {
-  int     blades = s->ring.model->blades;
-  double *peak   = s->peak + (size_t)s->periods * (size_t)blades;
-  mhb_ring_period(&s->ring);
-  mhb_ring_peaks(&s->ring, &s->output);
-  mhb_ring_first_harmonics(&s->ring, &s->output);
-  keep_samples(s);
-  for (int b = 0; b < blades; b++) {
-    peak[b] = s->output.peak[b] / scale;
-    s->peaks += peak[b];
-    for (int axis = 0; axis < 3; axis++) {
-      double complex first = s->output.first[axis * blades + b];
-      s->sum[s->ring.model->ring ? 0 : axis] += first * s->pattern[axis * blades + b];
-      s->square += creal(first * conj(first));
-    }
-  }
-  s->periods++;
-  if (s->periods % BLOCK == 0) end_block(s);
-}
-
-/* Integrate to a number of blocks. false: stopped. */
-static bool advance(start *s, int blocks, double scale, mhb_go_on go_on, void *context) {
-  while (s->periods < blocks * BLOCK) {
-    one_period(s, scale);
-    if (go_on && !go_on(context)) return false;
-  }
-  return true;
 }
 
 /* ---- settling ---- */
@@ -172,8 +79,21 @@ shb_status mhb_ring_steps(mhb_ring_model *model, double omega, int least, int *s
   return SHB_OK;
 }
 
+/* All starts beside one wave. */
+typedef struct {
+  const mhb_wave        *wave;
+  const mhb_lasting_run *how;
+  mhb_ring_model        *model;
+  mhb_start              slot[SLOTS];
+  int                    lead, next;     /* slots of the largest motion, and of the next start */
+  double                 scale, highest; /* m, the wave's peak; of a blade over the mean of all */
+  double                *peaks;          /* space: of two starts */
+  bool                   stopped;
+  mhb_lasting           *result;
+} settling;
+
 /* Mean over the blades of the wave's own peak, in the same steps. */
-static double wave_peak(start *s, const mhb_wave *wave) {
+static double wave_peak(mhb_start *s, const mhb_wave *wave) {
   double sum = 0;
   mhb_ring_start(&s->ring, wave->n_harmonics, wave->force);
   mhb_ring_period(&s->ring);
@@ -184,7 +104,7 @@ static double wave_peak(start *s, const mhb_wave *wave) {
 
 /* Of a mistuned ring: the motion of the balance in place of the wave, for the spread. Returns the
  * highest amplitude of a blade over the mean of all; 1 of a wave. */
-static double set_pattern(start s[STARTS], const mhb_wave *wave) {
+static double set_pattern(mhb_start s[SLOTS], const mhb_wave *wave) {
   const mhb_ring_model *m    = s[0].ring.model;
   double                most = 0, sum = 0, square = 0;
   double complex        first[3 * m->blades];
@@ -198,15 +118,8 @@ static double set_pattern(start s[STARTS], const mhb_wave *wave) {
     square += own / m->blades;
   }
   for (int i = 0; i < 3 * m->blades && square > 0; i++)
-    s[0].pattern[i] = s[1].pattern[i] = conj(first[i]) / sqrt(square);
+    for (int k = 0; k < SLOTS; k++) s[k].pattern[i] = conj(first[i]) / sqrt(square);
   return sum > 0 ? most / sum : 1;
-}
-
-static mhb_lasting_series series_of(start *s, double *peaks) {
-  int blocks = s->periods / BLOCK, first = blocks / 2 * BLOCK, blades = s->ring.model->blades;
-  int n = (s->periods - first) * blades;
-  memcpy(peaks, s->peak + (size_t)first * (size_t)blades, sizeof *peaks * (size_t)n);
-  return (mhb_lasting_series){blocks, n, s->mean, s->spread, peaks, s->ring.model->ring != NULL};
 }
 
 /* Samples [period][sample][3][blades] of a mistuned ring: what repeats every period is replaced by
@@ -216,11 +129,11 @@ static void leave_wave(const mhb_ring_model *m, double *y) {
   double    square = 0, mean[n];
   for (int i = 0; i < n; i++) {
     mean[i] = 0;
-    for (int t = 0; t < LINE_PERIODS; t++) mean[i] += y[t * n + i] / LINE_PERIODS;
+    for (int t = 0; t < MHB_START_LINES; t++) mean[i] += y[t * n + i] / MHB_START_LINES;
     square += mean[i] * mean[i];
   }
   const double size = sqrt(2 * square * 3 / n);
-  for (int i = 0; i < n * LINE_PERIODS; i++) {
+  for (int i = 0; i < n * MHB_START_LINES; i++) {
     const int    b = i % m->blades, axis = i / m->blades % 3, at = i % n / (3 * m->blades);
     const double phase = SHB_TWO_PI * (at + 1) / MHB_SIDE_SAMPLES -
                          SHB_TWO_PI * m->settings.engine_order * b / m->blades;
@@ -228,13 +141,12 @@ static void leave_wave(const mhb_ring_model *m, double *y) {
   }
 }
 
-/* Strongest side wave of the leading start, and the kind. */
-static shb_status describe(const mhb_lasting_verdict *v, start *s, int engine_order,
-                           mhb_lasting *result) {
+/* Strongest side wave of a start, and the share of five lines in the power beside the wave. */
+static shb_status find_side_wave(const mhb_start *s, mhb_lasting *result, double *share) {
   const mhb_ring_model *m = s->ring.model;
   mhb_side_waves        found;
-  int                   periods = LINE_PERIODS, now = s->periods % LINE_PERIODS;
-  size_t        part = (size_t)MHB_SIDE_SAMPLES * 3 * (size_t)m->blades, size = part * LINE_PERIODS;
+  int                   periods = MHB_START_LINES, now = s->periods % MHB_START_LINES;
+  size_t part = (size_t)MHB_SIDE_SAMPLES * 3 * (size_t)m->blades, size = part * MHB_START_LINES;
   const double *x     = s->sample;
   shb_arena     arena = {0};
   double       *y     = shb_arena_take(&arena, size, sizeof *y); /* oldest first */
@@ -242,73 +154,207 @@ static shb_status describe(const mhb_lasting_verdict *v, start *s, int engine_or
   memcpy(y, x + (size_t)now * part, sizeof *y * (size - (size_t)now * part));
   memcpy(y + size - (size_t)now * part, x, sizeof *y * (size_t)now * part);
   if (m->ring) leave_wave(m, y);
-  shb_status status = mhb_side_waves_find(y, periods, m->blades, engine_order, &found);
+  shb_status status = mhb_side_waves_find(
+      y, periods, m->blades, m->settings.to_ground ? 0 : m->settings.engine_order, &found);
   shb_arena_free(&arena);
   SHB_TRY(status);
   result->diameter = found.wave[0].diameter;
   result->offset   = found.wave[0].offset;
-  result->kind     = mhb_lasting_kind_of(v, found.share);
+  *share           = found.share;
   return SHB_OK;
 }
 
-static shb_status run(start s[STARTS], const mhb_wave *wave, mhb_go_on go_on, void *context,
-                      mhb_lasting *result) {
-  const mhb_ring_model *m     = s[0].ring.model;
-  mhb_noise             noise = {.state = 20};
-  double                scale = wave_peak(&s[0], wave), worst = set_pattern(s, wave);
-  shb_arena             arena = {0};
-  size_t                most  = (size_t)(MOST_BLOCKS * BLOCK) * (size_t)m->blades;
-  double               *peaks = shb_arena_take(&arena, 2 * most, sizeof *peaks);
-  SHB_CHECK(peaks, SHB_ERR_IO, "out of memory");
-  bool                go = scale > 0;
-  mhb_lasting_verdict v  = {0};
-  for (int i = 0; i < STARTS; i++) {
-    mhb_ring_start(&s[i].ring, wave->n_harmonics, wave->force);
-    mhb_ring_disturb(&s[i].ring, &s[i].output, START[i], &noise);
+/* false: stopped. */
+static bool advance(settling *w, int slot, int blocks) {
+  const mhb_lasting_run *how = w->how;
+  const int              old = w->slot[slot].periods;
+  const bool go = mhb_start_advance(&w->slot[slot], blocks, w->scale, how->go_on, how->context);
+  w->result->periods += w->slot[slot].periods - old;
+  w->stopped = w->stopped || !go;
+  return go;
+}
+
+static void disturb(settling *w, int slot, double size, mhb_noise *noise) {
+  mhb_start *s = &w->slot[slot];
+  mhb_start_begin(s);
+  mhb_ring_start(&s->ring, w->wave->n_harmonics, w->wave->force);
+  mhb_ring_disturb(&s->ring, &s->output, size, noise);
+}
+
+/* The first two starts, side by side, say what is to be expected. */
+static void first_two(settling *w, mhb_noise *noise) {
+  mhb_lasting *r    = w->result;
+  const size_t most = MHB_START_BLOCKS * MHB_START_BLOCK * (size_t)w->model->blades;
+  disturb(w, 0, LEAST_START, noise);
+  disturb(w, 1, MOST_START, noise);
+  for (int t = 0; r->n_motions == 0; t++) {
+    mhb_lasting_series both[2];
+    for (size_t i = 0; i < 2; i++) {
+      if (!advance(w, (int)i, targets[t])) return;
+      both[i] = mhb_start_series(&w->slot[i], w->peaks + i * most);
+    }
+    r->n_motions = mhb_lasting_judge(both, targets[t] == MHB_START_BLOCKS, r->motion, &w->lead);
   }
-  for (int t = 0; go && !v.decided; t++) {
-    for (int i = 0; i < STARTS && go; i++) go = advance(&s[i], targets[t], scale, go_on, context);
-    if (!go) break;
-    mhb_lasting_series both[STARTS] = {series_of(&s[0], peaks), series_of(&s[1], peaks + most)};
-    v                               = mhb_lasting_judge(both, targets[t] == MOST_BLOCKS);
+  r->starts = 2;
+}
+
+/* Take a motion that no start has reached before; the slot may become that of the largest. */
+static void take_motion(settling *w, const mhb_motion *m) {
+  mhb_lasting *r    = w->result;
+  bool         lead = true;
+  if (r->n_motions == MHB_LASTING_MOTIONS) return;
+  for (int i = 0; i < r->n_motions; i++) lead = lead && is_larger(m, &r->motion[i]);
+  r->motion[r->n_motions++] = *m;
+  if (!lead) return;
+  const int overtaken = w->lead;
+  w->lead             = w->next;
+  w->next             = overtaken;
+}
+
+/* The motion that is nearest, and its distance. */
+static int nearest(const mhb_lasting *r, const mhb_motion *m, double *away) {
+  int best = 0;
+  *away    = INFINITY;
+  for (int i = 0; i < r->n_motions; i++) {
+    const double d = mhb_motion_distance(&r->motion[i], m);
+    if (d < *away) best = i;
+    *away = fmin(d, *away);
   }
+  return best;
+}
+
+/* A further start, in its slot, until it is told apart: it has reached a motion that is known, or
+ * another one. What does not settle is no start that counts, but leaves its error. */
+static void further_start(settling *w) {
+  mhb_lasting *r = w->result;
+  mhb_motion   m = {.starts = 1};
+  for (size_t t = 0; t < sizeof further / sizeof *further; t++) {
+    const bool last = further[t] == MHB_START_BLOCKS;
+    if (!advance(w, w->next, further[t])) return;
+    const mhb_lasting_series series = mhb_start_series(&w->slot[w->next], w->peaks);
+    m                               = mhb_motion_of(&series, last);
+    double     away;
+    const int  known = nearest(r, &m, &away);
+    const bool told  = m.wave || m.settled;
+    if (told && away > DIFFERENT && further[t] >= SEVERAL_BLOCKS) {
+      take_motion(w, &m);
+    } else if ((told && away < 1) || (last && away <= DIFFERENT)) {
+      r->motion[known].starts++;
+    } else {
+      continue;
+    }
+    r->starts++;
+    return;
+  }
+  r->error = larger(r->error, m.half.error);
+}
+
+static void further_starts(settling *w, mhb_noise *noise) {
+  const int most = w->how->most_periods > 0 ? w->how->most_periods : INT_MAX;
+  for (int i = 1; i < MHB_LASTING_STARTS - 1 && !w->stopped && w->result->periods < most; i++) {
+    disturb(w, w->next, LEAST_START + (MOST_START - LEAST_START) * i / (MHB_LASTING_STARTS - 1),
+            noise);
+    further_start(w);
+  }
+}
+
+/* The numbers of the result from the motions that were reached. */
+static const mhb_motion *report(const settling *w) {
+  mhb_lasting      *r    = w->result;
+  const mhb_motion *most = &r->motion[0], *least = most;
+  for (int i = 1; i < r->n_motions; i++) {
+    if (is_larger(&r->motion[i], most)) most = &r->motion[i];
+    if (is_larger(least, &r->motion[i])) least = &r->motion[i];
+  }
+  r->mean    = mhb_motion_mean(most, most->wave);
+  r->worst   = mhb_motion_worst(most, most->wave) / (most->wave ? 1 : w->highest);
+  r->error   = larger(r->error, mhb_motion_error(most, most->wave));
+  r->reached = most->starts;
+  r->size    = mhb_motion_worst(most, most->wave) * w->scale * (most->wave ? w->highest : 1);
+  if (r->n_motions == 1) return most;
+  r->kind        = MHB_LASTING_SEVERAL;
+  r->least       = mhb_motion_mean(least, least->wave);
+  r->least_worst = mhb_motion_worst(least, least->wave) / (least->wave ? 1 : w->highest);
+  return most;
+}
+
+/* The result with side wave and state of the largest motion. */
+static shb_status finish(settling *w) {
+  const mhb_motion *most  = report(w);
+  const mhb_start  *s     = &w->slot[w->lead];
+  double            share = 0;
+  SHB_TRY(find_side_wave(s, w->result, &share));
+  w->result->kind = mhb_lasting_kind_of(w->result->n_motions, most, share);
+  return w->how->state ? mhb_ring_save(&s->ring, w->how->state) : SHB_OK;
+}
+
+static shb_status settle(settling *w) {
+  mhb_noise noise = {.state = 20};
+  first_two(w, &noise);
+  if (!w->stopped) further_starts(w, &noise);
+  return w->stopped ? SHB_OK : finish(w);
+}
+
+/* One start from the state of a neighbour. It is no start of chance, so it does not count. */
+static shb_status carry(settling *w) {
+  mhb_lasting      *r      = w->result;
+  const mhb_lasting before = *r;
+  const int         slot   = w->next;
+  mhb_start        *s      = &w->slot[slot];
+  mhb_start_begin(s);
+  mhb_ring_load(&s->ring, w->how->from, s->output.space);
+  further_start(w);
+  if (r->n_motions == before.n_motions) {
+    *r = before;
+    return SHB_OK;
+  }
+  r->starts                          = before.starts;
+  r->motion[before.n_motions].starts = 0;
+  if (w->lead == slot) return finish(w);
+  report(w);
+  return SHB_OK;
+}
+
+static shb_status run(settling *w) {
+  const size_t most  = (size_t)(MHB_START_BLOCKS * MHB_START_BLOCK) * (size_t)w->model->blades;
+  shb_arena    arena = {0};
+  w->peaks           = shb_arena_take(&arena, 2 * most, sizeof *w->peaks);
+  SHB_CHECK(w->peaks, SHB_ERR_IO, "out of memory");
+  w->scale          = wave_peak(&w->slot[0], w->wave);
+  w->highest        = set_pattern(w->slot, w->wave);
+  shb_status status = SHB_OK;
+  if (w->scale > 0) status = w->how->from ? carry(w) : settle(w);
   shb_arena_free(&arena);
-  if (!v.decided) return SHB_OK;
-  if (!v.wave) v.worst /= worst;
-  result->mean    = v.mean;
-  result->worst   = v.worst;
-  result->error   = v.error;
-  result->periods = s[0].periods + s[1].periods;
-  return describe(&v, &s[v.leader], m->settings.to_ground ? 0 : m->settings.engine_order, result);
+  return status;
 }
 
 double mhb_lasting_bytes(int blades, int pairs, int modes, bool mistuned) {
   enum { OF_A_PAIR = 9 + 5, OF_OUTPUT = 1 + 6 + 3 + 6, FREE = 12 }; /* numbers a blade */
   const double most    = modes + 6. * pairs;                        /* with merged ones */
-  const double samples = LINE_PERIODS * MHB_SIDE_SAMPLES * 3, peaks = MOST_BLOCKS * BLOCK;
-  const double state = 4 * most + OF_A_PAIR * pairs + OF_OUTPUT + 3 * MHB_RING_SAMPLES;
-  const double lines = samples + 2 * samples + 2 * LINE_PERIODS; /* in order, spectrum, power */
+  const double samples = MHB_START_LINES * MHB_SIDE_SAMPLES * 3;
+  const double peaks   = MHB_START_BLOCKS * MHB_START_BLOCK;
+  const double state   = 4 * most + OF_A_PAIR * pairs + OF_OUTPUT + 3 * MHB_RING_SAMPLES;
+  const double lines = samples + 2 * samples + 2 * MHB_START_LINES; /* in order, spectrum, power */
   const double model = mistuned ? most * (1 + MHB_RING_LANE_SIZE + MHB_RING_MAP) : 0;
   return sizeof(double) * mhb_whole_lanes(blades) *
-         (STARTS * (peaks + samples + state) + fmax(2 * peaks, lines) + model + FREE * (pairs + 1));
+         (SLOTS * (peaks + samples + state) + fmax(2 * peaks, lines) + model + FREE * (pairs + 1));
 }
 
 shb_status mhb_lasting_settle(const modal_model *modal, const mhb_settings *settings,
-                              const mhb_wave *wave, mhb_go_on go_on, void *context,
+                              const mhb_wave *wave, const mhb_lasting_run *how,
                               mhb_lasting *result) {
-  mhb_ring_model *model;
-  start           s[STARTS] = {{.periods = 0}};
-  int             steps;
-  *result = (mhb_lasting){.diameter = -1};
-  SHB_TRY(mhb_ring_model_create(modal, settings, wave->n0, wave->omega, &model));
-  shb_status status = mhb_ring_steps(model, wave->omega, STEPS, &steps);
-  if (status == SHB_OK && steps > 0) {
-    status = create(model, &s[0]);
-    if (status == SHB_OK) status = create(model, &s[1]);
-    if (status == SHB_OK) status = run(s, wave, go_on, context, result);
-  }
-  destroy(&s[0]);
-  destroy(&s[1]);
-  mhb_ring_model_destroy(model);
+  static const mhb_lasting_run plain = {.go_on = NULL};
+  settling w = {.wave = wave, .how = how ? how : &plain, .next = 2, .result = result};
+  int      steps;
+  if (!w.how->from) *result = (mhb_lasting){.diameter = -1};
+  const double lowest = wave->lowest > 0 ? wave->lowest : wave->omega;
+  SHB_TRY(mhb_ring_model_create(modal, settings, wave->n0, lowest, &w.model));
+  shb_status status = mhb_ring_steps(w.model, wave->omega, STEPS, &steps);
+  for (int i = 0; i < SLOTS && status == SHB_OK && steps > 0; i++)
+    status = mhb_start_create(w.model, &w.slot[i]);
+  if (status == SHB_OK && steps > 0) status = run(&w);
+  if (w.stopped && !w.how->from) *result = (mhb_lasting){.diameter = -1};
+  for (int i = 0; i < SLOTS; i++) mhb_start_destroy(&w.slot[i]);
+  mhb_ring_model_destroy(w.model);
   return status;
 }

@@ -244,6 +244,34 @@ shb_status mhb_ring_move(mhb_ring *ring, double omega, double *space) {
   return SHB_OK;
 }
 
+shb_status mhb_ring_save(const mhb_ring *ring, mhb_ring_state *state) {
+  const mhb_ring_model *m = ring->model;
+  const size_t          n = (size_t)m->modes * (size_t)m->lanes, row = (size_t)m->pairs * ring->row;
+  shb_arena_free(&state->arena);
+  *state         = (mhb_ring_state){.omega = m->omega};
+  state->q       = shb_arena_take(&state->arena, n, sizeof(double));
+  state->v       = shb_arena_take(&state->arena, n, sizeof(double));
+  state->p       = shb_arena_take(&state->arena, 3 * row, sizeof(double));
+  state->contact = shb_arena_take(&state->arena, 5 * row, sizeof(double));
+  SHB_CHECK(!state->arena.failed, SHB_ERR_IO, "out of memory");
+  mhb_ring_get(ring, state->q, state->v);
+  add_free_modes(m, 1, state->q, state->v);
+  memcpy(state->p, ring->p, 3 * row * sizeof(double));
+  memcpy(state->contact, ring->contact, 5 * row * sizeof(double));
+  return SHB_OK;
+}
+
+void mhb_ring_load(mhb_ring *ring, const mhb_ring_state *state, double *space) {
+  const mhb_ring_model *m = ring->model;
+  const size_t          n = (size_t)m->modes * (size_t)m->lanes, row = (size_t)m->pairs * ring->row;
+  memcpy(space, state->q, n * sizeof(double));
+  memcpy(space + n, state->v, n * sizeof(double));
+  memcpy(ring->p, state->p, 3 * row * sizeof(double));
+  memcpy(ring->contact, state->contact, 5 * row * sizeof(double));
+  add_free_modes(m, -1, space, space + n);
+  mhb_ring_put(ring, space, space + n);
+}
+
 /* ---- the start ---- */
 
 /* Harmonic k of all modes in steady motion of the steps under force p[3 pairs]. */

@@ -20,6 +20,14 @@ typedef struct {
   shb_arena arena;
 } mhb_ring;
 
+/* A state at the end of a period, as mhb_ring_save leaves it. */
+typedef struct {
+  double    omega; /* rad/s of the excitation */
+  double   *q, *v; /* [mode][lanes] as of mhb_ring_get, with the motion without contact */
+  double   *p, *contact;
+  shb_arena arena; /* shb_arena_free ends it */
+} mhb_ring_state;
+
 /* A ring at rest. The model must outlive it. SHB_ERR_IO: no memory. */
 shb_status mhb_ring_create(mhb_ring_model *model, mhb_ring *ring);
 void       mhb_ring_destroy(mhb_ring *ring);
@@ -40,5 +48,10 @@ void mhb_ring_put(mhb_ring *ring, const double *q, const double *v);
 /* Continue at another frequency of the excitation, rad/s. Positions and velocities of the blades
  * are kept, with their motion without contact. space: [2][mode][lanes]. */
 shb_status mhb_ring_move(mhb_ring *ring, double omega, double *space);
+
+/* Keep a state, and continue from one, of a ring with the same modes. The frequency may be another
+ * one: the blades keep their positions and velocities. SHB_ERR_IO: no memory. */
+shb_status mhb_ring_save(const mhb_ring *ring, mhb_ring_state *state);
+void       mhb_ring_load(mhb_ring *ring, const mhb_ring_state *state, double *space);
 
 #endif

@@ -19,6 +19,7 @@ typedef struct {
   mhb_ring_output output;
   double          low, high;       /* Hz */
   int             n_steps, window; /* steps; steps a window */
+  int             stride, n;       /* steps between windows; windows */
   double         *peak;            /* [step][STEP][blades] m */
   shb_arena       arena;
 } march_state;
@@ -33,14 +34,24 @@ static void plan(const modal_model *modal, march_state *s) {
   s->n_steps     = (int)ceil(periods / STEP);
   double wide    = range > 0 ? fmax(WINDOW, WINDOW_WIDTH * periods / range) : periods;
   s->window      = (int)fmin(ceil(wide / STEP), s->n_steps);
+  s->stride      = s->window > 1 ? s->window / 2 : 1;
+  s->n           = (s->n_steps - s->window) / s->stride + 1;
 }
 
 static double frequency_of(const march_state *s, double step) {
   return s->low + (s->high - s->low) * step / s->n_steps;
 }
 
-/* false: stopped. */
-static shb_status march(march_state *s, mhb_go_on go_on, void *context, bool *finished) {
+/* The state in the middle of a window, if this step is one. */
+static shb_status keep_state(const march_state *s, int step, mhb_slow_sweep *out) {
+  const int from = step - s->window / 2;
+  if (from < 0 || from % s->stride != 0 || from / s->stride >= s->n) return SHB_OK;
+  return mhb_ring_save(&s->ring, &out->state[from / s->stride]);
+}
+
+/* finished <- false: stopped. */
+static shb_status march(march_state *s, mhb_go_on go_on, void *context, mhb_slow_sweep *out,
+                        bool *finished) {
   mhb_noise noise  = {.state = 5};
   size_t    blades = (size_t)s->model->blades;
   double   *peak   = s->peak;
@@ -54,6 +65,7 @@ static shb_status march(march_state *s, mhb_go_on go_on, void *context, bool *fi
       memcpy(peak, s->output.peak, blades * sizeof *peak);
       if (go_on && !go_on(context)) return SHB_OK;
     }
+    SHB_TRY(keep_state(s, step, out));
   }
   *finished = true;
   return SHB_OK;
@@ -80,20 +92,26 @@ static double read_window(const march_state *s, int first, double *space, double
 }
 
 static shb_status read_windows(const march_state *s, double *space, mhb_slow_sweep *out) {
-  int    stride = s->window > 1 ? s->window / 2 : 1, n = (s->n_steps - s->window) / stride + 1;
-  double top     = 0;
-  out->frequency = shb_arena_take(&out->arena, (size_t)n, sizeof(double));
-  out->mean      = shb_arena_take(&out->arena, (size_t)n, sizeof(double));
-  out->worst     = shb_arena_take(&out->arena, (size_t)n, sizeof(double));
-  SHB_CHECK(!out->arena.failed, SHB_ERR_IO, "out of memory");
-  for (int i = 0; i < n; i++) {
-    out->frequency[i] = frequency_of(s, i * stride + 0.5 * s->window);
-    double largest    = read_window(s, i * stride, space, &out->mean[i], &out->worst[i]);
+  double top = 0;
+  for (int i = 0; i < s->n; i++) {
+    out->frequency[i] = frequency_of(s, i * s->stride + 0.5 * s->window);
+    double largest    = read_window(s, i * s->stride, space, &out->mean[i], &out->worst[i]);
     if (largest <= top) continue;
     top          = largest;
     out->largest = out->frequency[i];
   }
-  out->n = n;
+  out->n = s->n;
+  return SHB_OK;
+}
+
+static shb_status allocate(const march_state *s, mhb_slow_sweep *out) {
+  const size_t n = (size_t)s->n;
+  out->frequency = shb_arena_take(&out->arena, n, sizeof(double));
+  out->mean      = shb_arena_take(&out->arena, n, sizeof(double));
+  out->worst     = shb_arena_take(&out->arena, n, sizeof(double));
+  out->state     = shb_arena_take(&out->arena, n, sizeof *out->state);
+  out->n_states  = out->state ? s->n : 0;
+  SHB_CHECK(!out->arena.failed, SHB_ERR_IO, "out of memory");
   return SHB_OK;
 }
 
@@ -106,11 +124,12 @@ static shb_status run(march_state *s, const modal_model *modal, const mhb_wave *
   SHB_TRY(mhb_ring_create(s->model, &s->ring));
   SHB_TRY(mhb_ring_output_create(&s->ring, &s->output));
   plan(modal, s);
+  SHB_TRY(allocate(s, out));
   size_t n = (size_t)s->n_steps * STEP * (size_t)s->model->blades;
   s->peak  = shb_arena_take(&s->arena, 2 * n, sizeof(double));
   SHB_CHECK(!s->arena.failed, SHB_ERR_IO, "out of memory");
   mhb_ring_start(&s->ring, wave->n_harmonics, wave->force);
-  SHB_TRY(march(s, go_on, context, &finished));
+  SHB_TRY(march(s, go_on, context, out, &finished));
   out->periods = s->n_steps * STEP;
   return finished ? read_windows(s, s->peak + n, out) : SHB_OK;
 }
@@ -118,9 +137,10 @@ static shb_status run(march_state *s, const modal_model *modal, const mhb_wave *
 shb_status mhb_slow_sweep_run(const modal_model *modal, const mhb_settings *settings,
                               const mhb_wave *wave, double high, mhb_go_on go_on, void *context,
                               mhb_slow_sweep *out) {
-  march_state s = {.low = wave->omega / SHB_TWO_PI, .high = high};
-  *out          = (mhb_slow_sweep){0};
-  SHB_TRY(mhb_ring_model_create(modal, settings, wave->n0, wave->omega, &s.model));
+  march_state s       = {.low = wave->omega / SHB_TWO_PI, .high = high};
+  *out                = (mhb_slow_sweep){0};
+  const double lowest = wave->lowest > 0 ? wave->lowest : wave->omega;
+  SHB_TRY(mhb_ring_model_create(modal, settings, wave->n0, lowest, &s.model));
   shb_status status = run(&s, modal, wave, go_on, context, out);
   mhb_ring_output_destroy(&s.output);
   mhb_ring_destroy(&s.ring);
@@ -131,6 +151,7 @@ shb_status mhb_slow_sweep_run(const modal_model *modal, const mhb_settings *sett
 }
 
 void mhb_slow_sweep_destroy(mhb_slow_sweep *sweep) {
+  for (int i = 0; i < sweep->n_states; i++) shb_arena_free(&sweep->state[i].arena);
   shb_arena_free(&sweep->arena);
   *sweep = (mhb_slow_sweep){0};
 }

@@ -12,10 +12,12 @@
 /* Running windows over the sweep: [n] Hz, m, m. mean: of a period's peak over blades and periods;
  * worst: its 99.9 percentile. */
 typedef struct {
-  int       n, periods;
-  double   *frequency, *mean, *worst;
-  double    largest; /* Hz: place of the largest mean over a window of a period's worst blade */
-  shb_arena arena;
+  int     n, periods;
+  double *frequency, *mean, *worst;
+  double  largest; /* Hz: place of the largest mean over a window of a period's worst blade */
+  int     n_states;
+  mhb_ring_state *state; /* [n_states] in the middle of each window */
+  shb_arena       arena;
 } mhb_slow_sweep;
 
 /* Sweep from the wave's frequency to `high` (Hz). n = 0: the contact is too stiff for the steps, or

@@ -1,9 +1,11 @@
 #include "postproc/analysis/stability_findings.h"
 
+#include <limits.h>
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
 
+#include "mhb/response/response.h"
 #include "postproc/draw/number_format.h"
 
 enum { MOST_NAMED = 8 }; /* preloads listed */
@@ -138,27 +140,52 @@ static void put_largest_swing(const post_analysis *analysis, const post_track_po
            post_abscissa_place(&analysis->abscissa, branch->lasting_curve.frequency[i], 4, at));
 }
 
+/* "; the smallest 0.148, 0.203", where there are several motions and both are known. */
+static void put_least(const mhb_branch *branch, int point, post_buffer *out) {
+  char mean[POST_NUMBER], worst[POST_NUMBER];
+  if (!(branch->lasting_least[point] > 0)) return;
+  post_put(out, "; the smallest %s, %s", post_plain(mean, branch->lasting_least[point], 3),
+           post_plain(worst, branch->lasting_least_worst[point], 3));
+}
+
+/* What the fewest starts of a peak leave to chance; 0: not known. */
+static void put_starts(int fewest, post_buffer *out) {
+  char chance[POST_NUMBER];
+  if (fewest <= 0) return;
+  post_put(out,
+           " At least %d disturbed starts were told apart at each: all of them miss a motion that "
+           "one in six reaches with a chance of %s\u00a0%%.",
+           fewest, post_plain(chance, 100 * mhb_response_lasting_missed(fewest), 2));
+}
+
 /* "10 N: irregular, mean 1.14 and worst blade 1.45 times the wave" for every preload whose peak is
  * not that of a stable wave. */
 static void put_lasting(const post_analysis *analysis, post_buffer *out) {
   const post_tracking *t = &analysis->tracking;
-  int                  n = 0;
+  int                  n = 0, fewest = INT_MAX;
   for (int i = 0; i < t->n; i++) {
     const post_track_point *p = &t->point[i];
-    if (!is_known(analysis, p) || ++n > MOST_NAMED) continue;
+    if (!is_known(analysis, p)) continue;
     const mhb_branch *branch = &analysis->response->branch[p->branch];
-    char              n0[POST_NUMBER], mean[POST_NUMBER], worst[POST_NUMBER];
-    post_put(out, "%s%s\u00a0N %s (%s, %s)",
+    const int         starts = branch->lasting_starts[p->point];
+    fewest                   = starts < fewest ? starts : fewest;
+    if (++n > MOST_NAMED) continue;
+    char n0[POST_NUMBER], mean[POST_NUMBER], worst[POST_NUMBER];
+    post_put(out, "%s%s\u00a0N %s (%s, %s",
              n > 1 ? ", " : "<li><b>What lasts at the peaks</b>: ", post_plain(n0, p->n0, 5),
              kind_name(branch->lasting_kind[p->point]),
              post_plain(mean, branch->lasting_mean[p->point], 3),
              post_plain(worst, branch->lasting_worst[p->point], 3));
+    put_least(branch, p->point, out);
+    post_put(out, ")");
   }
+  if (n == 0) return;
   if (n > MOST_NAMED) post_put(out, ", and %d more", n - MOST_NAMED);
-  if (n > 0)
-    post_put(out,
-             ". In brackets: mean over blades and time, and the worst blade (99.9 %%), over the "
-             "amplitude of the wave. The whole ring was integrated in time.</li>\n");
+  post_put(out,
+           ". In brackets: mean over blades and time, and the worst blade (99.9 %%), over the "
+           "amplitude of the wave. The whole ring was integrated in time.");
+  put_starts(fewest, out);
+  post_put(out, "</li>\n");
 }
 
 /* Where the wave is modulated and nothing was integrated: why. */
@@ -206,6 +233,7 @@ void post_lasting_figure(const post_analysis *analysis, const post_track_point *
              post_plain(worst, branch->lasting_worst[p->point], 3),
              post_plain(mean, branch->lasting_mean[p->point], 3),
              kind_name(branch->lasting_kind[p->point]));
+    put_least(branch, p->point, out);
     put_largest_swing(analysis, p, out);
     post_put(out, "</span></dd></div>\n");
   } else if (verdict != POST_VERDICT_STABLE) {

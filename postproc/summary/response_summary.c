@@ -37,6 +37,15 @@ static void put_lasting(const work *w, const mhb_branch *b, int point) {
   post_json_text(w->json, "kind", name);
   post_json_number(w->json, "mean", b->lasting_mean[point]);
   post_json_number(w->json, "worst", b->lasting_worst[point]);
+  if (b->lasting_starts[point] > 0) {
+    post_json_integer(w->json, "starts", b->lasting_starts[point]);
+    post_json_integer(w->json, "reached", b->lasting_reached[point]);
+    post_json_number(w->json, "missed", mhb_response_lasting_missed(b->lasting_starts[point]));
+  }
+  if (b->lasting_least[point] > 0) {
+    post_json_number(w->json, "least", b->lasting_least[point]);
+    post_json_number(w->json, "least_worst", b->lasting_least_worst[point]);
+  }
   post_json_end(w->json);
 }
 

@@ -34,10 +34,11 @@ endif()
 shb_test(cases/plan UNIT sampling statistics sobol_indices design_statistics
   LIBRARIES shb_cases_plan PkgConfig::GSL m)
 shb_test(cases/peaks INTEGRATION design_run LIBRARIES shb_cases_peaks tests_models)
-shb_test(cases/designs UNIT design_table output_names refusals study_keys study_plan uncertain_keys
-  LIBRARIES shb_cases_designs)
-shb_test(cases/study UNIT line_minimum optimiser dakota_files design_message nearest_design
-  LIBRARIES shb_cases_study)
+shb_test(cases/designs UNIT design_table digest output_names refusals study_keys study_optimise
+  study_plan study_schema study_spec uncertain_keys LIBRARIES shb_cases_designs)
+shb_test(cases/study UNIT line_minimum optimiser optimisation dakota_files design_message
+  nearest_design crew study_summary study_run LIBRARIES shb_cases_study tests_studies MPI::MPI_C
+  SOURCES ../cases/study/crew.c ../cases/study/study_run.c ../cases/study/study_summary.c)
 
 # What is installed, by `cmake --install` and as a Debian package, works on its own.
 shb_shell_test(cases.install.install INTEGRATION cases/install/test_install.sh ${CMAKE_COMMAND}

@@ -64,6 +64,10 @@ static void assert_same_lasting(const mhb_branch *a, const mhb_branch *b) {
   assert_same(a, b, lasting_offset, n);
   assert_same(a, b, lasting_periods, n);
   assert_same(a, b, lasting_kind, n);
+  assert_same(a, b, lasting_starts, n);
+  assert_same(a, b, lasting_reached, n);
+  assert_same(a, b, lasting_least, n);
+  assert_same(a, b, lasting_least_worst, n);
   assert_int_equal(windows, b->lasting_curve.n);
   if (windows == 0) return;
   assert_same(&a->lasting_curve, &b->lasting_curve, frequency, windows);

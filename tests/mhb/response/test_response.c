@@ -40,13 +40,17 @@ static void fill_point(mhb_response *response, int branch) {
     b->judged[point] = point % 4;
     b->loss[point]   = (point + 1) % 4;
     fill_waves(b->multipliers + point * MULTIPLIERS, MULTIPLIERS, branch, point, 9);
-    b->lasting_mean[point]    = value(branch, point, 11, 0);
-    b->lasting_worst[point]   = value(branch, point, 12, 0);
-    b->lasting_error[point]   = 1e-3 * point;
-    b->lasting_side[point]    = point % 41 - 1;
-    b->lasting_offset[point]  = value(branch, point, 13, 0);
-    b->lasting_periods[point] = 25 * point;
-    b->lasting_kind[point]    = point % MHB_LASTING_KINDS;
+    b->lasting_mean[point]        = value(branch, point, 11, 0);
+    b->lasting_worst[point]       = value(branch, point, 12, 0);
+    b->lasting_error[point]       = 1e-3 * point;
+    b->lasting_side[point]        = point % 41 - 1;
+    b->lasting_offset[point]      = value(branch, point, 13, 0);
+    b->lasting_periods[point]     = 25 * point;
+    b->lasting_starts[point]      = point % 18;
+    b->lasting_reached[point]     = point % 5;
+    b->lasting_least[point]       = 0.7 / (point + 1);
+    b->lasting_least_worst[point] = 0.8 / (point + 1);
+    b->lasting_kind[point]        = point % MHB_LASTING_KINDS;
   }
   for (int i = 0; i < response->n_pairs * 3; i++)
     b->state[point * response->n_pairs * 3 + i] = fabs(value(branch, point, 7, i));
@@ -137,6 +141,10 @@ static void assert_same_branch(const mhb_response *response, const mhb_branch *a
     assert_same(a, b, lasting_side, n);
     assert_same(a, b, lasting_offset, n);
     assert_same(a, b, lasting_periods, n);
+    assert_same(a, b, lasting_starts, n);
+    assert_same(a, b, lasting_reached, n);
+    assert_same(a, b, lasting_least, n);
+    assert_same(a, b, lasting_least_worst, n);
     assert_same(a, b, lasting_kind, n);
   } else {
     assert_true(!b->judged && !b->loss && !b->multipliers);
@@ -365,7 +373,7 @@ static void test_described(void **state) {
   (void)state;
   mhb_response *response = sample(PROBES, 5);
   assert_ok(mhb_response_write(response, scratch("described.h5"), &from));
-  assert_int_equal(assert_described(scratch("described.h5")), 3 * 16 + 3 + 5 + 9 + 10);
+  assert_int_equal(assert_described(scratch("described.h5")), 3 * 16 + 3 + 5 + 9 + 14);
   hid_t file;
   char *text;
   assert_ok(h5_open(scratch("described.h5"), &file));

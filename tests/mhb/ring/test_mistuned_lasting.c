@@ -137,8 +137,8 @@ static void alike_blades_are_the_wave(void **state) {
 
 static void settled(const modal_model *model, const mhb_settings *s, const double complex *force,
                     double omega, mhb_lasting *found) {
-  const mhb_wave wave = {omega, s->n0[0], H, force};
-  assert_ok(mhb_lasting_settle(model, s, &wave, NULL, NULL, found));
+  const mhb_wave wave = {omega, s->n0[0], H, force, 0};
+  assert_ok(mhb_lasting_settle(model, s, &wave, NULL, found));
 }
 
 /* Beside a wave that is unstable, and beside a stable one. */

@@ -40,7 +40,7 @@ static void a_stuck_ring_follows_the_linear_response(void **state) {
   double complex none[3] = {0};
   double         low = .9, high = 1.1, worst = 0, top = 0, at = 0, peak[2] = {0};
   start(&model, &s);
-  const mhb_wave wave = {low, 500, 0, none};
+  const mhb_wave wave = {low, 500, 0, none, 0};
   assert_ok(mhb_slow_sweep_run(&model, &s, &wave, high / SHB_TWO_PI, NULL, NULL, &sweep));
   assert_true(sweep.n > 10);
   for (int i = 4; i < sweep.n; i++) { /* the first windows hold the start's transient */
@@ -80,7 +80,7 @@ static void an_interrupted_sweep_is_empty(void **state) {
   double complex none[3] = {0};
   int            calls   = 0;
   start(&model, &s);
-  const mhb_wave wave = {.9, 500, 0, none};
+  const mhb_wave wave = {.9, 500, 0, none, 0};
   assert_ok(mhb_slow_sweep_run(&model, &s, &wave, 1.1 / SHB_TWO_PI, few_calls, &calls, &sweep));
   assert_int_equal(sweep.n, 0);
   assert_int_equal(calls, 50);

@@ -121,6 +121,38 @@ static void a_stable_wave_says_nothing(void **state) {
   tear_down(&f);
 }
 
+/* How many starts there were, what they leave to chance, and the smallest motion beside the
+ * largest. Files of earlier versions do not know the number. */
+static void starts_and_several_motions_are_told(void **state) {
+  (void)state;
+  peak f;
+  set_up(&f);
+  modulate(&f);
+  settle(&f, MHB_LASTING_SEVERAL, 0.52, 0.83);
+  char *text = findings(&f);
+  assert_has_not(text, "disturbed starts");
+  assert_has_not(text, "the smallest");
+  free(text);
+  f.branch->lasting_starts[f.point]      = 17;
+  f.branch->lasting_least[f.point]       = 0.148;
+  f.branch->lasting_least_worst[f.point] = 0.203;
+  text                                   = findings(&f);
+  assert_has(text, "several motions (0.52, 0.83; the smallest 0.148, 0.203).");
+  assert_has(text,
+             "At least 17 disturbed starts were told apart at each: all of them miss a motion "
+             "that one in six reaches with a chance of 4.5\u00a0%.");
+  free(text);
+  f.branch->lasting_starts[f.point] = 5;
+  text                              = findings(&f);
+  assert_has(text, "At least 5 disturbed starts");
+  assert_has(text, "a chance of 40\u00a0%.");
+  free(text);
+  text = headline(&f);
+  assert_has(text, "several motions; the smallest 0.148, 0.203");
+  free(text);
+  tear_down(&f);
+}
+
 /* Where the wave is modulated, the headline says how far the blades swing. */
 static void the_headline_says_what_lasts(void **state) {
   (void)state;
@@ -209,6 +241,7 @@ int main(void) {
       cmocka_unit_test(contacts_at_the_limit_are_counted),
       cmocka_unit_test(a_stable_wave_says_nothing),
       cmocka_unit_test(the_headline_says_what_lasts),
+      cmocka_unit_test(starts_and_several_motions_are_told),
       cmocka_unit_test(what_is_missing_is_said),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
