@@ -11,8 +11,8 @@
 shb_status up_to_date_settings(const case_file *file, case_stage stage, const char *input,
                                char **text);
 
-/* The same of NAME.msh, which is made: its keys, the contents of mesh.file and of all that it
- * includes, and the pitch at which its sides must match. */
+/* The same of NAME.msh, which is made: its keys, and the pitch at which its sides must match. Of
+ * mesh.file the contents count, with all that it includes. */
 shb_status up_to_date_mesh_settings(const case_file *file, char **text);
 
 /* Was the mesh at path made from these settings? */
