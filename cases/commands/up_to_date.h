@@ -43,13 +43,8 @@ bool up_to_date_with(const char *path, const char *settings);
 /* Was the HDF5 file at path made from the present keys of stage? */
 bool up_to_date_keys(const case_file *file, case_stage stage, const char *path);
 
-/* Print a warning line on stderr if the HDF5 file at path was made from other keys of stage. A file
- * that cannot be read is no reason to warn. */
-void up_to_date_warn(const case_file *file, case_stage stage, const char *path);
-
-/* The same where the settings that the file was made from are read already. NULL or empty:
- * unknown. */
-void up_to_date_warn_of(const case_file *file, case_stage stage, const char *path,
-                        const char *settings);
+/* Print a warning line on stderr if the response file was made from other keys. A file that cannot
+ * be read is no reason to warn. */
+void up_to_date_warn(const case_file *file, const char *response);
 
 #endif
