@@ -27,8 +27,8 @@ typedef struct {
 
 /* Parse a command line: options and one FILE, in any order; "--" ends the options.
  *
- * --set KEY=VALUE (any number) and --into FOLDER are known where the usage mentions --set, and so
- * is --text COPY, which no user needs: the text of FILE stands in COPY, as it was when it was read.
+ * --set KEY=VALUE (any number) and --into FOLDER are known where the usage mentions --set. So is
+ * --text COPY, for programs that start each other: COPY holds the text of FILE, read before.
  * --help prints the usage and ends the program with 0, --version likewise. --quiet, --verbose and
  * --force are always known. Any other long option in the usage text becomes out->mode. An unknown
  * word is one line on stderr and exit code 2.

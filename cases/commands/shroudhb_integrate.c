@@ -166,7 +166,7 @@ static shb_status read_balance(const case_file *file, const char *path, const ch
       "or state",
       path, file->path);
   SHB_TRY(up_to_date_check_modal(path, modal));
-  up_to_date_warn(file, CASE_MHB, path);
+  up_to_date_warn(file, path);
   return mhb_response_read(path, balance);
 }
 

@@ -312,7 +312,7 @@ static shb_status publish(const case_file *file, const command_options *options)
   stress_work  stress      = {0};
   shb_status   status;
   if (response && html && csv && svg && points && diagram) {
-    up_to_date_warn(file, CASE_MHB, response);
+    up_to_date_warn(file, response);
     status = check_modal(file, response);
     if (status == SHB_OK) status = stress_read(file, modal, response, !options->no_report, &stress);
     const post_job job = {file->name,
@@ -400,7 +400,7 @@ static shb_status find_run(const command_options *options, const char *path, run
     out->response = case_output(&file, ".response.h5");
     out->name     = strdup(file.name);
     out->page     = case_output(&file, "");
-    up_to_date_warn(&file, CASE_MHB, out->response);
+    up_to_date_warn(&file, out->response);
     case_free(&file);
   }
   SHB_CHECK(out->response && out->name && out->page, SHB_ERR_IO, "out of memory");

@@ -3,8 +3,11 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <unistd.h>
 
 #include "cases/commands/up_to_date.h"
+#include "cases/schema/case_paths.h"
+#include "modal/hdf5/stamp.h"
 
 shb_status stage_run(const char *stage, const command_options *options, subprocess_result *result) {
   char        name[32];
@@ -21,10 +24,26 @@ shb_status stage_run(const char *stage, const command_options *options, subproce
   return status;
 }
 
+/* A modal file that is damaged, or of another program, is not replaced: the balance tells of it. One
+ * that is missing is made. */
+static bool may_be_made(const case_file *file) {
+  char *path = case_modal_path(file), *settings = NULL;
+  bool  made = path != NULL;
+  if (made && access(path, F_OK) == 0) {
+    const h5_stamp_state state = h5_stamp_check(path);
+    made                       = state == H5_INTACT || state == H5_UNSTAMPED;
+    settings                   = made ? up_to_date_written(path) : NULL;
+    made                       = settings && *settings;
+  }
+  free(settings);
+  free(path);
+  return made;
+}
+
 shb_status stage_renew_modes(const case_file *file, const command_options *options) {
   command_options   plain = *options;
   subprocess_result result;
-  if (file->modal_file || up_to_date_modes(file)) return SHB_OK;
+  if (file->modal_file || up_to_date_modes(file) || !may_be_made(file)) return SHB_OK;
   plain.force = false;
   SHB_TRY(stage_run("modal", &plain, &result));
   return result.code == SHB_OK ? SHB_OK

@@ -10,8 +10,8 @@
 shb_status stage_run(const char *stage, const command_options *options, subprocess_result *result);
 
 /* Run shroudhb-modal, which makes the mesh too, where the modes of the case are out of date: what
- * `shroudhb run` does. Nothing is done with modal.file. Errors: that of the stage, which has told
- * it. */
+ * `shroudhb run` does. Nothing is done with modal.file, and with a file that is damaged or of
+ * another program. Errors: that of the stage, which has told it. */
 shb_status stage_renew_modes(const case_file *file, const command_options *options);
 
 #endif

@@ -170,19 +170,12 @@ bool up_to_date_keys(const case_file *file, case_stage stage, const char *path) 
   return same;
 }
 
-void up_to_date_warn_of(const case_file *file, case_stage stage, const char *path,
-                        const char *settings) {
-  const char *name  = stage == CASE_MESH ? "mesh" : stage == CASE_MODAL ? "modal" : "mhb";
-  char       *keys  = case_settings(file, stage);
-  const bool  known = settings && *settings;
-  if (known && keys && strncmp(settings, keys, strlen(keys)) != 0) /* the keys come first */
-    fprintf(stderr, "shroudhb: warning: %s was made from other settings; run `shroudhb %s` first\n",
-            path, name);
+void up_to_date_warn(const case_file *file, const char *response) {
+  char *settings = up_to_date_written(response), *keys = case_settings(file, CASE_MHB);
+  if (settings && *settings && keys && strncmp(settings, keys, strlen(keys)) != 0)
+    fprintf(stderr,
+            "shroudhb: warning: %s was made from other settings; run `shroudhb mhb` first\n",
+            response); /* the keys come first */
   free(keys);
-}
-
-void up_to_date_warn(const case_file *file, case_stage stage, const char *path) {
-  char *text = up_to_date_written(path);
-  up_to_date_warn_of(file, stage, path, text);
-  free(text);
+  free(settings);
 }

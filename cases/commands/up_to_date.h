@@ -11,8 +11,8 @@
 shb_status up_to_date_settings(const case_file *file, case_stage stage, const char *input,
                                char **text);
 
-/* The same of NAME.msh, which is made: its keys, the contents of mesh.file and of all that it
- * includes, and the pitch at which its sides must match. */
+/* The same of NAME.msh, which is made: its keys, and the pitch at which its sides must match. Of
+ * mesh.file the contents count, with all that it includes. */
 shb_status up_to_date_mesh_settings(const case_file *file, char **text);
 
 /* Was the mesh at path made from these settings? */
@@ -43,13 +43,8 @@ bool up_to_date_with(const char *path, const char *settings);
 /* Was the HDF5 file at path made from the present keys of stage? */
 bool up_to_date_keys(const case_file *file, case_stage stage, const char *path);
 
-/* Print a warning line on stderr if the HDF5 file at path was made from other keys of stage. A file
- * that cannot be read is no reason to warn. */
-void up_to_date_warn(const case_file *file, case_stage stage, const char *path);
-
-/* The same where the settings that the file was made from are read already. NULL or empty:
- * unknown. */
-void up_to_date_warn_of(const case_file *file, case_stage stage, const char *path,
-                        const char *settings);
+/* Print a warning line on stderr if the response file was made from other keys. A file that cannot
+ * be read is no reason to warn. */
+void up_to_date_warn(const case_file *file, const char *response);
 
 #endif

@@ -38,23 +38,24 @@ static void read_header(case_issues *own, const mesh_table *t, study_keys *keys)
     case_issue_add(own, 0, 0, NULL,
                    "the first line holds numbers; it must name the varied keys, such as "
                    "contact.n0,contact.mu");
-  for (int k = 0; own->n == 0 && k < mesh_table_cells(t, 0); k++)
+  if (own->n > 0) return;
+  const int named = mesh_table_cells(t, 0), all = t->first[1] - t->first[0];
+  for (int k = 0; k < all; k++) {
+    const bool empty = k >= named; /* of columns without cells a comma may be left */
+    if (empty && (t->n_rows < 2 || mesh_table_cells(t, 1) <= k)) return;
     if (!name_column(own, mesh_table_cell(t, 0, k)->text, k + 1, keys)) return;
+  }
 }
 
 /* Whether a row has as many cells as the header. */
 static bool check_cells(case_issues *own, const mesh_table *t, int row, const study_keys *keys) {
-  const int   n = mesh_table_cells(t, row), named = t->first[1] - t->first[0];
+  const int   n    = mesh_table_cells(t, row);
   const char *hint = "";
   if (n == keys->n) return true;
   if (n > keys->n && t->separator == ',')
     hint = "; numbers have a decimal point, as commas separate columns";
-  if (n > keys->n && named > keys->n)
-    case_issue_add(own, 0, 0, NULL, "column %d has no name; expected a key of the case",
-                   keys->n + 1);
-  else
-    case_issue_add(own, 0, 0, NULL, "row %d has %d columns, the header has %d%s", row, n, keys->n,
-                   hint);
+  case_issue_add(own, 0, 0, NULL, "row %d has %d columns, the header has %d%s", row, n, keys->n,
+                 hint);
   return false;
 }
 

@@ -8,8 +8,8 @@
 
 enum { DIGEST_TEXT = 17 };
 
-/* Fingerprints of the files that a case reads (mesh, modes, load fields, deviations), as text; malloc'ed. A
- * design cannot change them. Errors: SHB_ERR_IO. */
+/* Fingerprints of the files that a case reads (mesh, modes, load fields, deviations), as text;
+ * malloc'ed. A design cannot change them. Errors: SHB_ERR_IO. */
 shb_status digest_inputs(const case_file *file, char **inputs);
 
 /* Digest of mesh and modes of a case. */

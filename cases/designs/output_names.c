@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "cases/parse/keys.h"
+#include "mesh/base/publish.h"
 #include "mhb/tracking/peak_system.h"
 #include "modal/hdf5/h5.h"
 
@@ -123,6 +124,10 @@ static int parse(const char *name, const case_file *file, const offer *o, study_
     }
   for (int i = 0; i < o->n_probes; i++)
     if (strcmp(name, probe_of(o, file, i)) == 0) {
+      if (!shb_name_is_plain(name)) {
+        snprintf(why, size, "the name of a probe is empty or holds control characters");
+        return -1;
+      }
       set(out, STUDY_PROBE, i, name, "m");
       return 1;
     }

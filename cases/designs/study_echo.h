@@ -1,5 +1,5 @@
-/* What was read from a study file, for a person to compare with what was meant: keys, ranges,
- * distributions, limits and cost, in the units of engineers. */
+/* What was read from a study file, for a person to compare with what was meant. Keys, ranges,
+ * distributions, limits and cost are in the units of engineers. */
 #ifndef CASES_DESIGNS_STUDY_ECHO_H
 #define CASES_DESIGNS_STUDY_ECHO_H
 

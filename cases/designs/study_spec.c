@@ -11,6 +11,7 @@
 #include "cases/parse/keys.h"
 #include "cases/parse/value.h"
 #include "cases/schema/case.h"
+#include "mesh/base/publish.h"
 
 enum { STAGES = CASE_MESH | CASE_MODAL | CASE_MHB };
 
@@ -252,6 +253,9 @@ static void read_name(reading *r, const case_node *node) {
   bool        good = !node || node->kind == CASE_SCALAR;
   if (!good) fault(r, node, "name", "expected the name of the study and its files");
   if (node && good) good = case_value_is_name(&r->issues, "name", node);
+  if (!node && !shb_name_is_plain(leaf))
+    case_issue_add(&r->issues, 1, 1, "name",
+                   "missing; the name of this file, which it would be, holds control characters");
   r->spec->name = node && good
                       ? strdup(node->text)
                       : strndup(leaf, dot && dot != leaf ? (size_t)(dot - leaf) : strlen(leaf));

@@ -30,8 +30,8 @@ typedef struct {
   case_file base;     /* the case as it is */
 } study_spec;
 
-/* The texts of a study that was read, so that a process that computes designs reads no file again:
- * one that was edited meanwhile would give rows of two cases in one table. */
+/* The texts of a study that was read, for the processes that compute designs. They read no file
+ * again: one that was edited meanwhile would give rows of two cases in one table. */
 typedef struct {
   const char *study, *base; /* texts of the study file and of its case */
   const char *columns;      /* keys of the table, one a line; "" without one */

@@ -125,12 +125,12 @@ static void release(material *m) {
 static shb_status gather(const field_options *o, const char *modal, material *m) {
   candidate chosen = {0};
   SHB_TRY(mhb_response_read(o->response, &m->response));
-  SHB_TRY(up_to_date_check_modal(o->response, modal));
   SHB_TRY(choose(m->response, o, &chosen));
   SHB_TRY(post_blade_field_read_motion(modal, &m->field));
   SHB_CHECK(m->field.n_nodes > 0, SHB_ERR_INPUT,
             "%s has no /mesh or no modes/stress; make it with shroudhb modal", modal);
   SHB_TRY(post_blade_field_match(&m->field, m->response, modal));
+  SHB_TRY(up_to_date_check_modal(o->response, modal));
   SHB_TRY(post_origin_open(modal, &m->modal));
   SHB_TRY(post_origin_open(o->response, &m->origin));
   SHB_TRY(post_period_create(&m->field, m->response, chosen.branch, chosen.kept,

@@ -106,7 +106,7 @@ bool case_value_is_name(case_issues *issues, const char *path, const case_node *
   if (!good)
     case_issue_add(issues, node->line, node->column, path,
                    "'%.60s' cannot be a file name: at most 100 characters, no '/', no '.' or '-' "
-                   "first, no control characters",
+                   "first",
                    text);
   return good;
 }

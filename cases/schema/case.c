@@ -11,6 +11,7 @@
 #include "cases/schema/checks.h"
 #include "cases/schema/interfaces.h"
 #include "cases/schema/named_groups.h"
+#include "mesh/base/publish.h"
 #include "mesh/core/file_format.h"
 #include "mhb/problem/parameter.h"
 
@@ -165,9 +166,13 @@ shb_status case_read_with(const char *path, const case_overrides *overrides, int
   if (!out->name) return no_memory(path, out);
   case_issues issues = case_issues_start(path, out->text, length);
   bool        lost   = read_document(&issues, overrides, stages, out);
-  int         n      = issues.n;
-  out->no_memory     = issues.no_memory;
-  shb_status status  = case_issues_finish(&issues, errors);
+  if (out->name && !shb_name_is_plain(out->name))
+    case_issue_add(&issues, 1, 1, "name",
+                   "missing; the name of the file or folder, which it would be, holds control "
+                   "characters");
+  int n             = issues.n;
+  out->no_memory    = issues.no_memory;
+  shb_status status = case_issues_finish(&issues, errors);
   if (status == SHB_OK) return note_overrides(overrides, out);
   case_free(out);
   /* where the only error is an input file that cannot be read, the case file itself is in order */

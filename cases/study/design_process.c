@@ -190,7 +190,7 @@ shb_status design_pool_create(const design_job *job, int n, design_pool *pool) {
 }
 
 void design_pool_free(design_pool *pool) {
-  for (int i = 0; pool->process && i < pool->n; i++) {
+  for (int i = 0; pool->process && pool->design && i < pool->n; i++) {
     design_process *p = &pool->process[i];
     if (p->child && pool->design[i] >= 0) kill(p->child, SIGTERM);
     design_process_stop(p);

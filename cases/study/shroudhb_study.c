@@ -1,6 +1,6 @@
 #define _GNU_SOURCE /* sched_getaffinity */
-/* shroudhb-study: a design study on the cores of this machine, or over MPI on several; or one design
- * of it in full. */
+/* shroudhb-study: a design study on the cores of this machine, or over MPI on several machines; or
+ * one design of it in full. */
 #include <errno.h>
 #include <glob.h>
 #include <mpi.h>
@@ -290,7 +290,7 @@ static shb_status work_over_mpi(const command_options *options, study_spec *spec
   return rank == 0 ? status : SHB_OK;
 }
 
-/* Whether mpiexec, srun or the like has started this process as one of several, or as one of one. */
+/* Whether mpiexec, srun or the like has started this process, perhaps as the only one. */
 static bool is_launched(void) {
   static const char *const variable[] = {"OMPI_COMM_WORLD_SIZE", "PMI_SIZE", "PMIX_RANK"};
   for (size_t i = 0; i < sizeof variable / sizeof *variable; i++)

@@ -135,7 +135,7 @@ __attribute__((constructor)) static void set_locale(void) {
   setlocale(LC_ALL, "C");
 }
 
-/* A file over the limit of sizes (ulimit -f) fails the write, which is told, and not the process. */
+/* A file over the limit of sizes (ulimit -f) fails the write, which is told. */
 __attribute__((constructor)) static void keep_size_limit(void) {
   signal(SIGXFSZ, SIG_IGN);
 }

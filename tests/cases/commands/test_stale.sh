@@ -1,6 +1,6 @@
 #!/bin/sh
-# Nothing stale, nothing foreign: stages make again what is out of date, and refuse a modal file that
-# is not the one of the response.
+# Nothing stale, nothing foreign: stages make again what is out of date, and refuse a modal file
+# that is not the one of the response.
 # usage: test_stale.sh PATH_OF_SHROUDHB CASE_OF_A_BLADE
 set -u
 front=$1

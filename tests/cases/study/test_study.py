@@ -387,7 +387,7 @@ FAULTS = [
     ('plan: {table: unit.csv}', "plan: unit.csv:3: contact.n0: '1 m' has unit m, expected N"),
     ('plan: {table: twice.csv}', 'plan: twice.csv: contact.mu: is the column 1 and 2'),
     ('plan: {table: nameless.csv}', 'plan: nameless.csv: column 2 has no name'),
-    ('plan: {table: semicolons.csv}', 'columns are separated by commas'),
+    ('plan: {table: semicolons.csv}', "'0,3' is not a number; write 0.3 with a decimal point"),
     ('plan: {table: low.csv}', 'fault.yaml:2:7: error: design 2: contact.mu: is -1, must be 0'),
     ('plan: {table: empty.csv}', 'holds no design'),
 ]
@@ -399,7 +399,7 @@ def check_faults():
     write('unit.csv', 'contact.mu,contact.n0\n0.3,1 N\n0.3,1 m\n')
     write('twice.csv', 'contact.mu,contact.mu\n0.3,0.4\n')
     write('nameless.csv', 'contact.mu,\n0.3,0.4\n')
-    write('semicolons.csv', 'contact.mu;contact.n0\n0.3;1\n')
+    write('semicolons.csv', 'contact.mu;contact.n0\n0,3;1\n')
     write('low.csv', 'contact.mu,contact.n0\n0.3,1\n-1,1\n')
     write('wrong.csv', 'contact.mu,contact.nu\n0.3,1\n')
     write('empty.csv', 'contact.mu\n')

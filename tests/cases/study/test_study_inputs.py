@@ -1,6 +1,7 @@
 """cases.study.study_inputs: what a study file says is what is meant, or is asked back.
 
-Usage: test_study_inputs.py BIN CASE_FOLDER, with the programs in BIN. Exit code 77: h5py is missing.
+Usage: test_study_inputs.py BIN CASE_FOLDER, with the programs in BIN. Exit code 77: no
+h5py.
 """
 import os
 import subprocess

@@ -1,6 +1,7 @@
 """cases.study.study_process: how a study and its processes end, what they leave, what they read.
 
-Usage: test_study_process.py BIN CASE_FOLDER, with the programs in BIN. Exit code 77: h5py is missing.
+Usage: test_study_process.py BIN CASE_FOLDER, with the programs in BIN. Exit code 77: no
+h5py.
 """
 import os
 import signal
