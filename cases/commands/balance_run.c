@@ -1,5 +1,6 @@
 #include "cases/commands/balance_run.h"
 
+#include <stdio.h>
 #include <stdlib.h>
 
 #include "cases/commands/load_model.h"
@@ -21,8 +22,26 @@ mhb_sampling balance_sampling(const case_file *file) {
                         .seed      = file->mistuning.seed};
 }
 
-/* Does the file at path hold the complete result of these settings? */
-static bool up_to_date(const char *path, const char *settings, int samples) {
+/* Points above the tolerance are an outcome that must not be overlooked, beside any other. */
+static shb_status tell_marks(const case_file *file, const mhb_response *response,
+                             shb_status status) {
+  const mhb_marks marks = mhb_response_marks(response);
+  char            before[512];
+  if (marks.marked == 0 || (status != SHB_OK && status != SHB_NOT_CONVERGED)) return status;
+  snprintf(before, sizeof before, "%s%s", status == SHB_OK ? "" : shb_message(),
+           status == SHB_OK ? "" : "; ");
+  return shb_fail(
+      SHB_NOT_CONVERGED, __FILE__, __LINE__,
+      "%s%d of %d points have an estimated error above mhb.tolerance %g, up to %.2g with "
+      "%d harmonics: they are marked, and no peak is told from them",
+      before, marks.marked, marks.points, file->mhb.motion_tolerance, marks.largest,
+      marks.harmonics);
+}
+
+/* Does the file at path hold the complete result of these settings? *outcome: what that is. */
+static bool up_to_date(const case_file *file, const char *path, const char *settings,
+                       shb_status *outcome) {
+  const int     samples  = file->mistuning.samples;
   bool          same     = up_to_date_with(path, settings);
   mhb_response *response = NULL;
   same                   = same && mhb_response_read(path, &response) == SHB_OK;
@@ -35,6 +54,7 @@ static bool up_to_date(const char *path, const char *settings, int samples) {
   if (samples > 0) same = same && drawn != NULL;
   for (int i = 0; same && drawn && i < drawn->preloads; i++)
     same = mhb_samples_done(drawn, i) == drawn->n;
+  if (same) *outcome = tell_marks(file, response, SHB_OK);
   mhb_response_destroy(response);
   return same;
 }
@@ -132,6 +152,7 @@ static shb_status solve(const case_file *file, const char *modal, char *settings
     status = sweep(&model, output, &provenance, progress, &response);
   shb_progress_clear(progress);
   if (response) summarise(progress, response);
+  if (response) status = tell_marks(file, response, status);
   shb_progress_note(progress, "%.2f s in all", shb_seconds() - progress->started);
   mhb_response_destroy(response);
   case_model_free(&model);
@@ -155,7 +176,7 @@ shb_status balance_run(const case_file *file, const command_options *options,
   if (status == SHB_OK) status = crew ? check_modes(file) : stage_renew_modes(file, options);
   if (status == SHB_OK) status = up_to_date_settings(file, CASE_MHB, modal, &settings);
   if (status == SHB_OK) {
-    if (!options->force && up_to_date(output, settings, file->mistuning.samples)) {
+    if (!options->force && up_to_date(file, output, settings, &status)) {
       shb_progress_note(&progress, "%s is up to date", output);
     } else {
       status = shb_publish_check(output);

@@ -10,6 +10,7 @@ double mhb_blade_amplitude(const mhb_response *r, const mhb_branch *b, int point
 mhb_ring_peak mhb_ring_peak_of(const mhb_response *r, const mhb_branch *b) {
   const int     blades = r->ring > 0 ? r->ring : 1;
   mhb_ring_peak peak   = {0};
+  int           worst = 0, highest = 0; /* points */
   for (int p = 0; p < b->n_points; p++) {
     double mean = 0;
     for (int blade = 0; blade < blades; blade++) {
@@ -19,10 +20,14 @@ mhb_ring_peak mhb_ring_peak_of(const mhb_response *r, const mhb_branch *b) {
       peak.worst    = a;
       peak.worst_at = b->frequency[p];
       peak.blade    = blade;
+      worst         = p;
     }
     if (!(mean > peak.mean)) continue;
     peak.mean    = mean;
     peak.mean_at = b->frequency[p];
+    highest      = p;
   }
+  if (b->n_points > 0)
+    peak.marked = ((b->mark[worst] | b->mark[highest]) & MHB_ABOVE_TOLERANCE) != 0;
   return peak;
 }

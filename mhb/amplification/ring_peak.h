@@ -11,6 +11,7 @@ typedef struct {
   double worst, worst_at; /* m, Hz: highest amplitude of any blade on the curve, and where */
   int    blade;           /* whose; from 0 */
   double mean, mean_at;   /* m, Hz: highest mean over the blades */
+  bool   marked;          /* the error of one of both points is above the tolerance */
 } mhb_ring_peak;
 
 /* Amplitude of a blade at a point, m. A response of a wave has one blade. */

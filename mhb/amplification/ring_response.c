@@ -9,14 +9,15 @@
 
 static void set(const mhb_response *response, mhb_branch *branch, const mhb_ring_peak *tuned) {
   const mhb_ring_peak own = mhb_ring_peak_of(response, branch);
-  branch->amplification   = (mhb_amplification){.factor   = own.worst / tuned->worst,
-                                                .worst    = own.worst,
-                                                .worst_at = own.worst_at,
-                                                .blade    = own.blade,
-                                                .mean     = own.mean,
-                                                .mean_at  = own.mean_at,
-                                                .tuned    = tuned->worst,
-                                                .tuned_at = tuned->worst_at};
+  if (own.marked || tuned->marked) return;
+  branch->amplification = (mhb_amplification){.factor   = own.worst / tuned->worst,
+                                              .worst    = own.worst,
+                                              .worst_at = own.worst_at,
+                                              .blade    = own.blade,
+                                              .mean     = own.mean,
+                                              .mean_at  = own.mean_at,
+                                              .tuned    = tuned->worst,
+                                              .tuned_at = tuned->worst_at};
 }
 
 /* Samples of the file at path, if its settings are those of this run. */

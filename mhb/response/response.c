@@ -381,3 +381,24 @@ shb_status mhb_unfinished_copy(const mhb_response *segments, int n, const mhb_tr
   *out = u;
   return SHB_OK;
 }
+
+bool mhb_branch_marked(const mhb_branch *branch, int point) {
+  return (branch->mark[point] & MHB_ABOVE_TOLERANCE) != 0;
+}
+
+mhb_marks mhb_response_marks(const mhb_response *response) {
+  mhb_marks marks = {0};
+  for (int i = 0; i < response->n_branches; i++) {
+    const mhb_branch *b = &response->branch[i];
+    if (b->kind != MHB_BRANCH_NONLINEAR && b->kind != MHB_BRANCH_TRACKED) continue;
+    marks.points += b->n_points;
+    for (int p = 0; p < b->n_points; p++) {
+      if (!mhb_branch_marked(b, p)) continue;
+      const int harmonics = b->harmonics ? b->harmonics[p] : b->n_harmonics;
+      marks.marked++;
+      marks.largest = fmax(marks.largest, b->error_truncation[p]);
+      if (harmonics > marks.harmonics) marks.harmonics = harmonics;
+    }
+  }
+  return marks;
+}

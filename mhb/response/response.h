@@ -80,4 +80,16 @@ shb_status mhb_response_write(const mhb_response *response, const char *path,
                               const shb_provenance *provenance);
 shb_status mhb_response_read(const char *path, mhb_response **response);
 
+/* Points of the balance whose error is above the tolerance, of all branches. */
+typedef struct {
+  int    points, marked;
+  double largest;   /* error_truncation of a marked one */
+  int    harmonics; /* most of a marked one; 0: not known */
+} mhb_marks;
+
+mhb_marks mhb_response_marks(const mhb_response *response);
+
+/* Whether the error of a point is above the tolerance: it is no result. */
+bool mhb_branch_marked(const mhb_branch *branch, int point);
+
 #endif

@@ -57,7 +57,8 @@ static double lower_limit(const post_tracking *t) {
   return fmin(t->open.amplitude, t->stuck.amplitude);
 }
 
-/* Largest amplitude of all nonlinear curves, or (valleys) the least one at stable points. */
+/* Largest amplitude of all nonlinear curves, or (valleys) the least one at stable points. NAN where
+ * its error is above the tolerance. */
 static post_track_point extreme(const post_analysis *analysis, bool valleys) {
   post_track_point best = {NAN, NAN, NAN, -1, -1, false, false, true};
   for (int b = 0; b < analysis->response->n_branches; b++) {
@@ -80,6 +81,9 @@ static post_track_point extreme(const post_analysis *analysis, bool valleys) {
                                 branch->complete};
     }
   }
+  const bool marked =
+      best.branch >= 0 && mhb_branch_marked(&analysis->response->branch[best.branch], best.point);
+  if (marked) best.at = best.amplitude = NAN;
   return best;
 }
 
@@ -139,6 +143,7 @@ static void put_optimum(const post_analysis *analysis, post_buffer *out) {
   char                 n0[POST_NUMBER], a[POST_NUMBER], f[POST_NUMBER], at[POST_PLACE];
   if (t->best < 0) {
     if (analysis->abscissa.parameter == MHB_IN_N0 && analysis->largest > 0) return;
+    if (mhb_response_marks(analysis->response).marked > 0) return;
     post_put(out, analysis->largest > 0
                       ? "<li>No nonlinear curve was computed at one preload: there is no "
                         "peak to compare.</li>\n"
@@ -369,6 +374,34 @@ static void put_incomplete(const post_analysis *analysis, post_buffer *out) {
   }
 }
 
+/* Points that are no result. */
+static void put_marked(const post_analysis *analysis, post_buffer *out) {
+  const mhb_marks marks = mhb_response_marks(analysis->response);
+  char            error[POST_NUMBER];
+  if (marks.marked == 0) return;
+  post_put(
+      out,
+      "<li class=\"caution\"><b>Marked:</b> at %d of %d points the error by the harmonics left "
+      "out is above <code>mhb.tolerance</code>, up to %s",
+      marks.marked, marks.points, post_percent(error, marks.largest));
+  if (marks.harmonics > 0) post_put(out, " with %d harmonics", marks.harmonics);
+  post_put(out, ". No peak is told from them.</li>\n");
+}
+
+/* Points where a contact that sticks leaves something open. */
+static void put_undetermined(const mhb_response *r, post_buffer *out) {
+  int points = 0;
+  for (int b = 0; b < r->n_branches; b++)
+    for (int p = 0; p < r->branch[b].n_points; p++)
+      points += (r->branch[b].mark[p] & MHB_TRACTION_UNDETERMINED) != 0;
+  if (points > 0)
+    post_put(out,
+             "<li><b>Not determined:</b> at %d points a contact sticks all the time. Nothing "
+             "determines its mean friction; the smallest is taken. Where others slip or open "
+             "meanwhile, the amplitude depends on it too.</li>\n",
+             points);
+}
+
 /* Curves that a sweep from the end of the range does not reach. */
 static void put_other_curves(const post_analysis *analysis, post_buffer *out) {
   int n = 0;
@@ -505,9 +538,11 @@ static void put_accuracy(const post_analysis *analysis, post_buffer *out) {
 void post_findings(const post_analysis *analysis, post_buffer *out) {
   post_put(out, "<ul class=\"findings\">\n");
   put_incomplete(analysis, out);
+  put_marked(analysis, out);
   post_put_ring(analysis, out);
   if (analysis->response->track) {
     post_tracked_findings(analysis, out);
+    put_undetermined(analysis->response, out);
     put_accuracy(analysis, out);
     post_put(out, "</ul>\n");
     return;
@@ -521,6 +556,7 @@ void post_findings(const post_analysis *analysis, post_buffer *out) {
   put_searches(analysis, out);
   put_flips(analysis->response, out);
   post_stability_findings(analysis, out);
+  put_undetermined(analysis->response, out);
   put_accuracy(analysis, out);
   post_put(out, "</ul>\n");
 }
@@ -536,10 +572,18 @@ static void put_brief(const post_analysis *analysis, post_buffer *out, const cha
            at_end(p) ? ", the end of the range" : "");
 }
 
+static void put_marked_brief(const mhb_response *r, post_buffer *out) {
+  const mhb_marks marks = mhb_response_marks(r);
+  if (marks.marked > 0)
+    post_put(out, "%s%d of %d points above mhb.tolerance, no peak is told from them",
+             out->length ? "; " : "", marks.marked, marks.points);
+}
+
 void post_summary(const post_analysis *analysis, post_buffer *out) {
   const post_tracking *t = &analysis->tracking;
   if (analysis->response->track) {
     post_tracked_summary(analysis, out);
+    put_marked_brief(analysis->response, out);
     return;
   }
   put_brief(analysis, out, at_end(&t->open) ? "open, largest" : "open peak", &t->open);
@@ -548,6 +592,7 @@ void post_summary(const post_analysis *analysis, post_buffer *out) {
     post_track_point lowest = extreme(analysis, true);
     put_brief(analysis, out, "lowest", &lowest);
   }
+  put_marked_brief(analysis->response, out);
   if (t->best < 0) return;
   char name[96], n0[POST_NUMBER];
   snprintf(name, sizeof name, "lowest (n0 = %s) peak", preload(n0, t->point[t->best].n0));

@@ -68,7 +68,7 @@ static shb_status fill(const work *w, int group, column *c) {
     if (w->analysis->curve[b].group != group || branch->kind == MHB_BRANCH_INTEGRATION) continue;
     SHB_TRY(post_find_peaks(branch->n_points, branch->frequency, w->values[b], &peak, &n));
     for (int i = 0; i < n; i++)
-      if (!peak[i].edge)
+      if (!peak[i].edge && !mhb_branch_marked(branch, peak[i].point))
         add(c, (post_track_point){w->analysis->group[group].n0, peak[i].at, peak[i].amplitude, b,
                                   peak[i].point, false, false, branch->complete});
     free(peak);

@@ -172,6 +172,9 @@ static shb_status track_group(const post_analysis *analysis, int group, double *
     }
     free(peaks);
   }
+  /* a lower peak is not the highest one, and that is not known */
+  if (out->branch >= 0 && mhb_branch_marked(&analysis->response->branch[out->branch], out->point))
+    out->at = out->amplitude = NAN;
   return SHB_OK;
 }
 

@@ -21,10 +21,10 @@ typedef struct {
   int rank;
 } post_group;
 
-/* Highest peak of one group. */
+/* Highest peak of one group. Where its error is above the tolerance none is told. */
 typedef struct {
   double n0, at,
-      amplitude;      /* n0 of the group; abscissa and amplitude (m) refined, NAN without a point */
+      amplitude;      /* n0 of the group; abscissa and amplitude (m) refined, NAN: none is told */
   int  branch, point; /* indices, -1 if there is none */
   bool edge;          /* the largest value is at an end of the range */
   /* The amplitude is constant; at: the end where the limit is that of the response. */

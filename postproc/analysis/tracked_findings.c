@@ -7,6 +7,19 @@
 #include "mhb/problem/parameter.h"
 #include "postproc/draw/number_format.h"
 
+bool post_optimum_told(const mhb_response *r) {
+  const mhb_optimum *o = &r->optimum;
+  for (int b = 0; b < r->n_branches; b++) {
+    const mhb_branch *branch = &r->branch[b];
+    int               next   = 0;
+    if (branch->kind != MHB_BRANCH_TRACKED || branch->n_points == 0) continue;
+    for (int p = 1; p < branch->n_points; p++)
+      if (fabs(branch->value[p] - o->value) < fabs(branch->value[next] - o->value)) next = p;
+    if (mhb_branch_marked(branch, next)) return false;
+  }
+  return o->kind != MHB_OPTIMUM_NONE;
+}
+
 /* "n₀ = 11.842285 N", with the digits that the bracket allows. */
 static void put_value(const post_analysis *analysis, const char *name, post_buffer *out) {
   const mhb_response *r = analysis->response;
@@ -32,7 +45,7 @@ static void put_amplitude(const mhb_response *r, post_buffer *out) {
 void post_tracked_figure(const post_analysis *analysis, post_buffer *out) {
   const mhb_optimum *o = &analysis->response->optimum;
   char               f[POST_NUMBER];
-  if (o->kind == MHB_OPTIMUM_NONE) return;
+  if (!post_optimum_told(analysis->response)) return;
   post_put(out, "<div class=\"figure\"><dt>Least highest peak, ");
   put_value(analysis, analysis->abscissa.name, out);
   post_put(out, "</dt><dd><b>");
@@ -127,7 +140,7 @@ void post_tracked_findings(const post_analysis *analysis, post_buffer *out) {
     put_ends(r, out);
     return;
   }
-  if (o->kind != MHB_OPTIMUM_NONE) {
+  if (post_optimum_told(r)) {
     post_put(out, "<li>The highest peak is least at ");
     put_value(analysis, analysis->abscissa.name, out);
     post_put(out, ": ");
@@ -152,7 +165,7 @@ void post_tracked_summary(const post_analysis *analysis, post_buffer *out) {
   const mhb_response *r = analysis->response;
   const mhb_optimum  *o = &r->optimum;
   char                f[POST_NUMBER];
-  if (o->kind == MHB_OPTIMUM_NONE) return;
+  if (!post_optimum_told(analysis->response)) return;
   post_put(out, "%soptimum ", out->length ? "; " : "");
   put_value(analysis, mhb_parameter_name(r->parameter), out);
   post_put(out, ": ");

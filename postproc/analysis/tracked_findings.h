@@ -5,6 +5,8 @@
 #include "postproc/analysis/response_analysis.h"
 #include "postproc/draw/text_buffer.h"
 
+/* There is an optimum, and the errors of the points next to it are within the tolerance. */
+bool post_optimum_told(const mhb_response *response);
 /* The key figure as HTML; nothing without an optimum. */
 void post_tracked_figure(const post_analysis *analysis, post_buffer *out);
 /* Items of the list of findings: optimum with its bracket, kink, check by a sweep, what was not

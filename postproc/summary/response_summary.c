@@ -5,6 +5,7 @@
 
 #include "mhb/problem/parameter.h"
 #include "postproc/analysis/stability_findings.h"
+#include "postproc/analysis/tracked_findings.h"
 
 /* What all curves need. */
 typedef struct {
@@ -111,7 +112,7 @@ static shb_status put_curve(const work *w, int group) {
   const post_analysis *analysis = w->analysis;
   const post_group    *g        = &analysis->group[group];
   const post_peak     *peak;
-  int                  branch = highest(analysis, group, &peak), folds = 0, points = 0;
+  int                  branch = highest(analysis, group, &peak), folds = 0, points = 0, marked = 0;
   bool                 complete = true;
   const char          *reason   = NULL;
   for (int b = 0; b < analysis->response->n_branches; b++) {
@@ -119,21 +120,25 @@ static shb_status put_curve(const work *w, int group) {
     if (analysis->curve[b].group != group) continue;
     folds += analysis->curve[b].n_folds;
     points += one->n_points;
+    for (int p = 0; p < one->n_points; p++) marked += mhb_branch_marked(one, p);
     if (complete && !one->complete) reason = one->reason;
     complete = complete && one->complete;
   }
+  const bool told =
+      branch >= 0 && !mhb_branch_marked(&analysis->response->branch[branch], peak->point);
   post_json_object(w->json, NULL);
   post_json_text(w->json, "kind", mhb_branch_kind_name(g->kind));
   post_json_number(w->json, "n0", g->n0);
   post_json_bool(w->json, "complete", complete);
   post_json_text(w->json, "reason", reason);
-  if (branch >= 0)
+  if (told)
     SHB_TRY(put_peak(w, branch, peak));
   else
     post_json_null(w->json, "peak");
   if (branch >= 0) put_amplification(w, branch);
   post_json_integer(w->json, "folds", folds);
   post_json_integer(w->json, "points", points);
+  post_json_integer(w->json, "marked", marked);
   post_json_end(w->json);
   return SHB_OK;
 }
@@ -178,7 +183,7 @@ static void put_tracked(const work *w, const mhb_optimum *o) {
 
 static void put_optimum(const work *w) {
   const post_tracking *t = &w->analysis->tracking;
-  if (w->analysis->response->optimum.kind != MHB_OPTIMUM_NONE) {
+  if (post_optimum_told(w->analysis->response)) {
     put_tracked(w, &w->analysis->response->optimum);
     return;
   }
@@ -229,14 +234,17 @@ static void put_resonances(const work *w) {
 
 shb_status post_response_put(const post_analysis *analysis, const post_stress_source *stress,
                              post_json *json) {
-  const mhb_response *r = analysis->response;
-  const work          w = {analysis, stress, json};
+  const mhb_response *r     = analysis->response;
+  const work          w     = {analysis, stress, json};
+  const mhb_marks     marks = mhb_response_marks(r);
   char                place[128];
   bool                complete = true;
   for (int b = 0; b < r->n_branches; b++) complete = complete && r->branch[b].complete;
   post_place_name(r, analysis->primary, place);
   post_json_bool(json, "finished", !r->unfinished);
   post_json_bool(json, "complete", complete);
+  post_json_integer(json, "marked", marks.marked);
+  post_json_number(json, "largest_marked_error", marks.marked > 0 ? marks.largest : NAN);
   post_json_integer(json, "engine_order", r->engine_order);
   post_json_integer(json, "blades", r->blades);
   if (r->ring) post_json_integer(json, "ring", r->ring);

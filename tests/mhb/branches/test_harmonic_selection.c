@@ -16,6 +16,7 @@
 #include "mhb/branches/harmonic_selection.h"
 #include "mhb/branches/main_branch.h"
 #include "mhb/numerics/fourier.h"
+#include "tests/support/check.h"
 #include "tests/support/main_curve.h"
 #include "tests/support/periodic.h"
 #include "tests/support/random_model.h"
@@ -193,6 +194,67 @@ static void jumps(void **state) {
   }
 }
 
+/* Off resonance a blade bounces over a gap. Motions of one harmonic are none of many there: their
+ * estimates are 0.4 to 28. None of their points is kept, and those kept are exact. */
+static void a_curve_of_few_harmonics_is_left_where_it_is_none_of_many(void **state) {
+  (void)state;
+  static const double tolerance = 1e-2;
+  static const double rows[][4] = {/* kv, force, from, to */
+                                   {9, 0.6, 0.5, 0.52},
+                                   {9, 0.6, 0.8, 0.82},
+                                   {30, 0.2, 0.8, 0.82},
+                                   {30, 0.6, 0.5, 0.52},
+                                   {60, 0.06, 0.35, 0.36}};
+  for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
+    modal_model   model;
+    mhb_response *r;
+    one_degree_model(0.02, 0, rows[i][1], &model);
+    mhb_settings s     = ground_settings(0.3, rows[i][0], 0.6 * rows[i][0], -4, 1);
+    s.motion_tolerance = tolerance;
+    s.frequency[0]     = rows[i][2] / SHB_TWO_PI;
+    s.frequency[1]     = rows[i][3] / SHB_TWO_PI;
+    assert_ok(main_curve(&model, &s, FINE, NULL, &r));
+    s.motion_tolerance    = 0;
+    const truth     t     = compare(&model, s, r);
+    const mhb_marks marks = mhb_response_marks(r);
+    print_message("kv %2g F %4g: %2d points to H %2d, %d lost, worst %.1e, %d marked\n", rows[i][0],
+                  rows[i][1], t.n, t.most, t.lost, t.worst, marks.marked);
+    assert_true(r->branch[0].complete && t.n > 10);
+    assert_true(t.lost == 0 && t.worst <= tolerance);
+    assert_true(t.most > 1 && marks.marked == 0);
+    mhb_response_destroy(r);
+    modal_model_free(&model);
+  }
+}
+
+/* 31 harmonics do not keep 1e-7: the points that miss it are marked, the linear ones are not. */
+static void what_no_level_keeps_is_marked(void **state) {
+  (void)state;
+  modal_model   model;
+  mhb_response *r;
+  three_degree_model(&model);
+  mhb_settings s     = ground_settings(0.4, 0.8, 0.5, 0.3, 1);
+  s.motion_tolerance = 1e-7;
+  s.frequency[0]     = 0.8 / SHB_TWO_PI;
+  s.frequency[1]     = 1.7 / SHB_TWO_PI;
+  assert_ok(main_curve(&model, &s, FINE, NULL, &r));
+  const mhb_branch *b      = &r->branch[0];
+  int               marked = 0, fewer = 0;
+  for (int p = 0; p < b->n_points; p++) {
+    const bool misses = (b->mark[p] & MHB_ABOVE_TOLERANCE) != 0;
+    marked += misses;
+    fewer += misses && b->harmonics[p] < FINE;
+    if (b->special[p] == MHB_ORDINARY)
+      assert_int_equal(misses, b->error_truncation[p] > s.motion_tolerance);
+  }
+  const mhb_marks marks = mhb_response_marks(r);
+  print_message("%d of %d points marked, to %.1e\n", marked, b->n_points, marks.largest);
+  assert_true(marked > 5 && marked < b->n_points && fewer == 0);
+  assert_true(marks.marked == marked && marks.points == b->n_points && marks.harmonics == FINE);
+  mhb_response_destroy(r);
+  modal_model_free(&model);
+}
+
 /* An interference bends the blade 57 and 570 times as far as it vibrates. The tolerance is one of
  * the vibration. */
 static void static_parts_do_not_count(void **state) {
@@ -252,6 +314,8 @@ int main(void) {
       cmocka_unit_test(beam),
       cmocka_unit_test(jumps),
       cmocka_unit_test(static_parts_do_not_count),
+      cmocka_unit_test(a_curve_of_few_harmonics_is_left_where_it_is_none_of_many),
+      cmocka_unit_test(what_no_level_keeps_is_marked),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }
