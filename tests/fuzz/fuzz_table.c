@@ -3,30 +3,31 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "cases/designs/design_table.h"
 #include "cases/study/dakota_files.h"
+#include "mesh/table/csv.h"
+#include "mhb/mistuning/deviation_table.h"
 #include "mhb/mistuning/deviations.h"
 #include "tests/fuzz/fuzz_file.h"
 
 enum { WHY = 512, MOST_BLADES = 8 };
 
-static void check_designs(const char *path) {
-  design_table table;
-  char         why[WHY] = "";
-  if (!design_table_read(path, &table, why, sizeof why)) {
-    fuzz_assert(why[0], "a refusal without a word");
+static void check_cells(const char *path) {
+  mesh_table table;
+  if (mesh_table_read(path, true, &table) != SHB_OK) {
+    fuzz_assert(shb_message()[0], "a refusal without a word");
     return;
   }
   size_t length = 0;
-  for (int i = 0; i < table.n_rows * table.n_columns; i++) length += strlen(table.cell[i]);
+  for (int i = 0; i < table.first[table.n_rows]; i++) length += table.cell[i].length;
   fuzz_assert(length <= FUZZ_MOST, "cells hold more than the file");
-  design_table_free(&table);
+  mesh_table_free(&table);
 }
 
-static void check_deviations(const char *path, int blades) {
-  int     columns;
-  double *value = NULL;
-  if (mhb_deviations_read(path, blades, 2, &columns, &value) == SHB_OK) {
+static void check_deviations(const char *path, int blades, bool hz) {
+  const mhb_deviation_table table = {.path = path, .hz = hz, .blades = blades, .n_modes = 2};
+  int                       columns;
+  double                   *value = NULL;
+  if (mhb_deviation_table_read(&table, &columns, &value) == SHB_OK) {
     fuzz_assert(columns == 1 || columns == 2, "another number of columns");
     for (int i = 0; i < blades * columns; i++)
       fuzz_assert(isfinite(value[i]) && value[i] > MHB_LEAST_DEVIATION,
@@ -59,10 +60,10 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size) {
   const char *path = fuzz_text("table.csv", data + 1, size - 1);
   switch (data[0] % 3) {
     case 0:
-      check_designs(path);
+      check_cells(path);
       break;
     case 1:
-      check_deviations(path, 1 + data[0] / 3 % MOST_BLADES);
+      check_deviations(path, 1 + data[0] / 3 % MOST_BLADES, data[0] % 2);
       break;
     default:
       check_parameters(path);

@@ -1,79 +1,70 @@
-/* A table of designs: its cells, and what is wrong with it. */
+/* A table of designs: its keys, its values in SI, and what is wrong with it. */
 #include "cases/designs/design_table.h"
 
-#include "tests/support/check.h"
-#include "tests/support/scratch_folder.h"
+#include <stdlib.h>
 
-static void write_table(const char *text) {
+#include "tests/support/scratch_folder.h"
+#include "tests/support/study_text.h"
+
+/* Designs of a table [n][keys.n]; fault: part of the message of a table that is refused. */
+static double *read_table(const char *table, const char *fault, study_keys *keys, int *n) {
   FILE *file = fopen(scratch("table.csv"), "w");
   assert_non_null(file);
-  fputs(text, file);
+  fputs(table, file);
   fclose(file);
+  study_text t      = study_text_parse("plan: table.csv\n");
+  double    *design = NULL;
+  *keys             = (study_keys){0};
+  design_table_read(&t.issues, t.root, scratch("table.csv"), keys, n, &design);
+  study_text_check(&t, fault);
+  study_text_free(&t);
+  return design;
 }
 
-static void check_cells(const char *text) {
-  design_table t;
-  char         why[512];
-  write_table(text);
-  assert_true(design_table_read(scratch("table.csv"), &t, why, sizeof why));
-  assert_int_equal(t.n_columns, 2);
-  assert_int_equal(t.n_rows, 2);
-  assert_string_equal(t.column[0], "contact.n0");
-  assert_string_equal(t.column[1], "contact.mu");
-  assert_string_equal(t.cell[0], "10 N");
-  assert_string_equal(t.cell[1], "0.3");
-  assert_string_equal(t.cell[2], "12 N");
-  assert_string_equal(t.cell[3], "");
-  design_table_free(&t);
-  assert_null(t.text);
+static void check_values(const char *table) {
+  study_keys keys;
+  int        n;
+  double    *design = read_table(table, NULL, &keys, &n);
+  assert_int_equal(keys.n, 2);
+  assert_int_equal(n, 2);
+  assert_string_equal(keys.key[0].path, "contact.n0");
+  assert_string_equal(keys.key[1].path, "contact.mu");
+  const double wanted[] = {10, 0.3, 1200, 0.4};
+  for (int i = 0; i < 4; i++) assert_within(design[i], wanted[i], 1e-15);
+  free(design);
+  study_keys_free(&keys);
 }
 
-static void cells_are_without_blanks(void **state) {
+static void values_are_in_si_whoever_wrote_the_table(void **state) {
   (void)state;
-  check_cells("contact.n0,contact.mu\n10 N,0.3\n12 N,\n");
-  check_cells("  contact.n0\t, contact.mu \r\n10 N ,\t0.3\r\n 12 N, ");
+  check_values("contact.n0,contact.mu\n10 N,0.3\n1.2 kN,0.4\n");
+  check_values("  contact.n0 , contact.mu \r\n\r\n10 N ,  0.3\r\n 1.2 kN, 0.4");
+  check_values("\xef\xbb\xbf\"contact.n0\";\"contact.mu\"\n\"10 N\";0.3\n1.2 kN;0.4\n");
 }
 
-/* Empty lines are left out, and counted. */
-static void lines_are_those_of_the_file(void **state) {
-  (void)state;
-  design_table t;
-  char         why[512];
-  write_table("\n  \na\n\n1\n\t\n2\n3");
-  assert_true(design_table_read(scratch("table.csv"), &t, why, sizeof why));
-  assert_int_equal(t.n_rows, 3);
-  assert_int_equal(t.line[0], 5);
-  assert_int_equal(t.line[1], 7);
-  assert_int_equal(t.line[2], 8);
-  assert_string_equal(t.cell[2], "3");
-  design_table_free(&t);
-}
-
-static void check_refused(const char *text, const char *part) {
-  design_table t;
-  char         why[512] = "";
-  if (text) write_table(text);
-  assert_false(
-      design_table_read(text ? scratch("table.csv") : scratch("none.csv"), &t, why, sizeof why));
-  assert_has(why, part);
-  assert_null(strchr(why, '\n'));
-  assert_null(t.text);
+static void check_refused(const char *table, const char *part) {
+  study_keys keys;
+  int        n;
+  double    *design = read_table(table, part, &keys, &n);
+  assert_null(design);
+  study_keys_free(&keys);
 }
 
 static void faults_are_told_with_their_line(void **state) {
   (void)state;
-  check_refused("", "empty");
-  check_refused("\n \n", "empty");
-  check_refused("a,b\n1,2\n\n3\n", ".csv:4: row 2 has 1 columns, the header has 2");
-  check_refused("a,b\n1,2,3\n", "row 1 has 3 columns, the header has 2");
-  check_refused("a,b\n1;2\n", "separated by commas");
-  check_refused(NULL, "none.csv");
+  check_refused("", "the table is empty");
+  check_refused("1,2\n3,4\n", "must name the varied keys");
+  check_refused("contact.n0,\n1,2\n", "column 2 has no name");
+  check_refused("contact.n0,contact.n0\n1,2\n", "is the column 1 and 2");
+  check_refused("contact.n0,contact.mu\n1 N,0.3\n2 N\n", "table.csv:3");
+  check_refused("contact.n0,contact.mu\n1 N,0,3\n", "a decimal point");
+  check_refused("contact.n0,contact.mu\n1 m,0.3\n", "table.csv:2");
+  check_refused("contact.nothing\n1\n", "contact.nothing");
 }
 
 int main(void) {
   const struct CMUnitTest tests[] = {
-      cmocka_unit_test(cells_are_without_blanks),
-      cmocka_unit_test(lines_are_those_of_the_file),
+      cmocka_unit_test(values_are_in_si_whoever_wrote_the_table),
       cmocka_unit_test(faults_are_told_with_their_line),
   };
   return cmocka_run_group_tests(tests, scratch_make, scratch_remove);
