@@ -60,8 +60,9 @@ static double rounding(int size) {
 
 /* Column j of R by the rotations so far and a new one. Of a column that depends on those before
  * only rounding is left: nothing is gained by it, and its number on the diagonal is 0.
- *   least  in  what is rounding */
-static void rotate(mhb_gmres *g, int j, double least) {
+ *   least  in  what is rounding
+ * Returns whether it gains something. */
+static bool rotate(mhb_gmres *g, int j, double least) {
   double *r = g->R + (size_t)j * ((size_t)g->most + 1);
   memcpy(r, g->H + (size_t)j * ((size_t)g->most + 1), sizeof(double) * ((size_t)j + 2));
   for (int i = 0; i < j; i++) {
@@ -76,6 +77,7 @@ static void rotate(mhb_gmres *g, int j, double least) {
   r[j]          = gains ? length : 0;
   g->g[j + 1]   = -g->s[j] * g->g[j];
   g->g[j] *= g->c[j];
+  return gains;
 }
 
 /* x <- Z y, R y = g. */
@@ -107,10 +109,10 @@ int mhb_gmres_solve(mhb_gmres *g, int size, mhb_gmres_apply apply, void *context
     const double least = rounding(size) * cblas_dnrm2(size, w, 1);
     double       next  = orthogonalise(g, size, j, w, h);
     if (!isfinite(next)) return 0;
-    rotate(g, j, least);
-    g->iterations = j + 1;
-    g->residual   = fabs(g->g[j + 1]) / length;
-    if (g->residual <= tolerance || next <= least) break;
+    const bool gains = rotate(g, j, least);
+    g->iterations    = j + 1;
+    g->residual      = fabs(g->g[j + 1]) / length;
+    if (g->residual <= tolerance || next == 0 || !gains) break;
     cblas_dscal(size, 1 / next, w, 1);
   }
   combine(g, size, x);
