@@ -59,9 +59,9 @@ static double rounding(int size) {
 }
 
 /* Column j of R by the rotations so far and a new one. Of a column that depends on those before
- * only rounding is left: nothing is gained by it, and its number on the diagonal is 0. Returns
- * whether the column gains something.
- *   least  in  what is rounding */
+ * only rounding is left: nothing is gained by it, and its number on the diagonal is 0.
+ *   least  in  what is rounding
+ * Returns whether it gains something. */
 static bool rotate(mhb_gmres *g, int j, double least) {
   double *r = g->R + (size_t)j * ((size_t)g->most + 1);
   memcpy(r, g->H + (size_t)j * ((size_t)g->most + 1), sizeof(double) * ((size_t)j + 2));
