@@ -15,6 +15,7 @@ endforeach()
 
 shb_test(cases/contact hysteresis_picture shb_cases_contact)
 shb_test(cases/commands up_to_date shb_cases_commands)
+shb_test(cases/commands balance_run shb_cases_commands tests_models)
 shb_test(cases/commands modal_changes shb_cases_commands)
 shb_test(cases/commands contact_points shb_cases_commands tests_models)
 target_sources(test_cases_commands_contact_points PRIVATE bench/shroud_face.c)
