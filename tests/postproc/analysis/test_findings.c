@@ -36,6 +36,46 @@ static void response_is_told(void **state) {
   free(text);
 }
 
+/* The usual response with all points of a nonlinear curve marked, or of all of them (-1). */
+static char *marked_text(int curve, writer write) {
+  fixture_options o = fixture_usual();
+  mhb_response   *r = fixture_response(&o);
+  post_analysis  *analysis;
+  post_buffer     out = {0};
+  for (int i = 0, n = 0; i < r->n_branches; i++) {
+    mhb_branch *b = &r->branch[i];
+    if (b->kind != MHB_BRANCH_NONLINEAR) continue;
+    if (curve < 0 || n++ == curve)
+      for (int p = 0; p < b->n_points; p++) b->mark[p] = MHB_ABOVE_TOLERANCE;
+  }
+  assert_ok(post_analysis_create(r, &analysis));
+  write(analysis, &out);
+  post_analysis_destroy(analysis);
+  mhb_response_destroy(r);
+  return out.text;
+}
+
+/* The lowest peak is that of the fourth curve, at 100 N, where its points are results. */
+static void points_above_the_tolerance_are_no_headline(void **state) {
+  (void)state;
+  char *text = marked_text(3, post_findings);
+  assert_has(text, "<b>Marked:</b> at 240 of ");
+  assert_has(text, "of the 6 preloads computed gives the lowest peak");
+  assert_null(strstr(text, "<b>100\u00a0N</b> of"));
+  free(text);
+  text = marked_text(3, post_summary);
+  assert_has(text, "; 240 of ");
+  assert_null(strstr(text, "lowest (n0 = 100\u00a0N)"));
+  free(text);
+  text = marked_text(-1, post_summary);
+  assert_has(text, "above mhb.tolerance, no peak is told from them");
+  assert_null(strstr(text, "lowest"));
+  free(text);
+  text = marked_text(-1, post_key_figures);
+  assert_null(strstr(text, "Lowest peak"));
+  free(text);
+}
+
 /* Two searches found three curves, and motions that were not followed. */
 static void motions_not_followed_are_told(void **state) {
   (void)state;
@@ -111,9 +151,12 @@ static void summary_is_plain(void **state) {
 }
 
 int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(response_is_told),     cmocka_unit_test(motions_not_followed_are_told),
-      cmocka_unit_test(limits_may_be_absent), cmocka_unit_test(figures_are_four),
-      cmocka_unit_test(rest_is_told),         cmocka_unit_test(summary_is_plain)};
+  const struct CMUnitTest tests[] = {cmocka_unit_test(points_above_the_tolerance_are_no_headline),
+                                     cmocka_unit_test(response_is_told),
+                                     cmocka_unit_test(motions_not_followed_are_told),
+                                     cmocka_unit_test(limits_may_be_absent),
+                                     cmocka_unit_test(figures_are_four),
+                                     cmocka_unit_test(rest_is_told),
+                                     cmocka_unit_test(summary_is_plain)};
   return cmocka_run_group_tests(tests, NULL, NULL);
 }
