@@ -24,7 +24,7 @@ static mhb_settings settings_of(void) {
   s.n_preloads   = 2;
   s.n0[0]        = .15;
   s.n0[1]        = 3;
-  s.frequency[0] = .88 / SHB_TWO_PI;
+  s.frequency[0] = .915 / SHB_TWO_PI;
   s.frequency[1] = .94 / SHB_TWO_PI;
   s.stability    = MHB_STABILITY_ALWAYS;
   s.lasting      = MHB_LASTING_AUTO;
