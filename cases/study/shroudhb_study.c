@@ -1,7 +1,6 @@
 #define _GNU_SOURCE /* sched_getaffinity */
 /* shroudhb-study: a design study on the cores of this machine, or over MPI on several machines; or
  * one design of it in full. */
-#include <errno.h>
 #include <glob.h>
 #include <mpi.h>
 #include <sched.h>
@@ -15,6 +14,7 @@
 #include "cases/designs/study_echo.h"
 #include "cases/parse/units.h"
 #include "cases/peaks/design_memory.h"
+#include "cases/peaks/own_run.h"
 #include "cases/study/design_process.h"
 #include "cases/study/study_run.h"
 #include "mesh/base/progress.h"
@@ -39,47 +39,6 @@ static const char usage[] =
     "\n"
     "Exit codes: 0 done, 2 bad input, 3 some designs failed or did not converge, 4 input/output,\n"
     "130 interrupted (results so far kept).\n";
-
-/* The designs of an optimisation are in its file only. */
-static shb_status read_designs(const study_spec *spec, design_study *done) {
-  char      *path   = study_path(spec, ".study.h5");
-  shb_status status = path ? study_file_read(path, done)
-                           : shb_fail(SHB_ERR_IO, __FILE__, __LINE__, "out of memory");
-  free(path);
-  SHB_TRY(status);
-  SHB_CHECK(done->n_keys == spec->keys.n, SHB_ERR_INPUT,
-            "the file of the study has other keys; run the study again");
-  return SHB_OK;
-}
-
-/* Replace this program by `shroudhb run` for one design, counted from 1. */
-static shb_status run_design(const study_spec *spec, int design, const command_options *options) {
-  enum { MORE = 10 };
-  char        *words[2 * STUDY_MAX_KEYS + MORE] = {NULL}, name[3 * CASE_NAME], run[] = "run";
-  char         set[] = "--set", into[] = "--into", quiet[] = "--quiet";
-  int          n    = 0;
-  design_study done = {0};
-  if (spec->optimise.wanted) SHB_TRY(read_designs(spec, &done));
-  int n_designs = spec->optimise.wanted ? done.n : spec->n_designs;
-  SHB_CHECK(design >= 1 && design <= n_designs, SHB_ERR_INPUT,
-            "--design=%d: the study has the designs 1 to %d", design, n_designs);
-  snprintf(name, sizeof name, "name=%s_%d", spec->name, design);
-  words[n++] = subprocess_program("shroudhb");
-  words[n++] = run;
-  if (options->quiet) words[n++] = quiet;
-  words[n++]          = set;
-  words[n++]          = name;
-  words[n++]          = into;
-  words[n++]          = spec->folder;
-  const double *value = spec->optimise.wanted
-                            ? done.design[design - 1].key
-                            : spec->design + (size_t)(design - 1) * (size_t)spec->keys.n;
-  int           sets  = study_spec_words(spec, value, words + n);
-  if (sets >= 0) words[n + sets] = spec->case_path;
-  SHB_CHECK(sets >= 0 && words[0], SHB_ERR_IO, "out of memory");
-  execvp(words[0], words);
-  SHB_FAIL(SHB_ERR_IO, "%s: cannot be started: %s", words[0], strerror(errno));
-}
 
 /* Cores that this process may use. */
 static int n_cores(void) {
@@ -303,7 +262,7 @@ static int work_alone(const command_options *options, int design) {
   study_spec spec;
   shb_status status = study_spec_read(options->path, design == 0, stderr, &spec);
   if (status == SHB_OK)
-    status = design > 0 ? run_design(&spec, design, options) : check(&spec, options);
+    status = design > 0 ? own_run(&spec, design, options->quiet) : check(&spec, options);
   study_spec_free(&spec);
   return command_finish(status);
 }

@@ -6,9 +6,9 @@
  *   more                 every point, if the slipping ones cost 1 s a branch at most
  *   else                 every linear point (no slip, opening or closing), and slipping points as
  *                        many as 1 s allows, at least twelve
- * The first of the latter is the highest point of the first output, then those of
- * mhb/floquet/curve_verdicts.h: the largest motion, peaks, slip onset and both sides of folds, then
- * by bisection. The cost is computed from the number of states, never measured.
+ * The first of the latter is the highest point of the first output. The next are the largest
+ * motion, peaks, slip onset and both sides of folds, then others by bisection
+ * (mhb/floquet/curve_verdicts.h). The cost is computed from the number of states, never measured.
  *
  * Verdicts, and what they rest on (judged):
  *   multipliers  all inside the unit circle, or some outside by more than the margin

@@ -145,13 +145,13 @@ static bool go_on(const sweep *s) {
 }
 
 static bool point(mhb_monitor *monitor, const mhb_response *own, int branch, int at) {
-  sweep                *s    = (sweep *)monitor;
-  const mhb_settings   *c    = s->settings;
-  const mhb_branch     *b    = &own->branch[branch];
-  mhb_parameter         what = c->parameter;
-  double amplitude        = mhb_response_amplitude(own, b, at, own->n_probes);
-  double low              = mhb_parameter_shown(what, mhb_parameter_end(c, what, 0));
-  double high = mhb_parameter_shown(what, mhb_parameter_end(c, what, 1)), total = 0;
+  sweep              *s         = (sweep *)monitor;
+  const mhb_settings *c         = s->settings;
+  const mhb_branch   *b         = &own->branch[branch];
+  mhb_parameter       what      = c->parameter;
+  double              amplitude = mhb_response_amplitude(own, b, at, own->n_probes);
+  double              low       = mhb_parameter_shown(what, mhb_parameter_end(c, what, 0));
+  double              high = mhb_parameter_shown(what, mhb_parameter_end(c, what, 1)), total = 0;
   mhb_publisher_lock(&s->publisher, true);
   for (int i = 0; i < c->n_preloads; i++) {
     if (c->n0[i] == b->n0[at] && s->preload[i].done < s->main_share)

@@ -46,8 +46,8 @@ struct mhb_floquet {
   double                 *coarse; /* the matrix of twice the sub-step */
   int             refinement;     /* of the finer one in the last evaluation; 0: none was used */
   int             nu, max_states;
-  double          highest;  /* rad/s, of the excitation */
-  double          statical; /* rad/s, the lowest mode without dynamics; INFINITY: all have */
+  double          highest;    /* rad/s, of the excitation */
+  double          statical;   /* rad/s, the lowest mode without dynamics; INFINITY: all have */
   int            *state;      /* [pair] */
   double complex *multiplier; /* [states] */
   shb_arena       arena;      /* of coarse too, which changes places with the monodromy's M */
@@ -71,12 +71,11 @@ static double frequency_of(const mhb_modal_structure *all, int mode) {
 
 /* The map is [states][states of a cell]: with more cells it has room for more modes. */
 static int modes_of(const mhb_floquet *s) {
-  const mhb_modal_structure *all   = &s->structure;
-  const int                  more  = (int)(s->max_states * sqrt(mhb_floquet_cells(s)));
-  const int                  least = affordable(all->blades, all->contacts, all->modes,
-                                                s->max_states);
-  const int                  most  = affordable(all->blades, all->contacts, all->modes, more);
-  int                        kept  = least;
+  const mhb_modal_structure *all  = &s->structure;
+  const int                  more = (int)(s->max_states * sqrt(mhb_floquet_cells(s)));
+  const int least = affordable(all->blades, all->contacts, all->modes, s->max_states);
+  const int most  = affordable(all->blades, all->contacts, all->modes, more);
+  int       kept  = least;
   while (kept < most && frequency_of(all, kept) <= REACH * s->highest) kept++;
   return kept;
 }
@@ -151,7 +150,7 @@ shb_status mhb_floquet_create(const mhb_receptance *receptance, const mhb_settin
   mhb_floquet *s = calloc(1, sizeof *s);
   SHB_CHECK(s, SHB_ERR_IO, "out of memory");
   s->max_states     = max_states > 0 ? max_states : MAX_STATES;
-  s->highest        = SHB_TWO_PI * settings->frequency[1];
+  s->highest        = SHB_TWO_PI * fmax(settings->frequency[0], settings->frequency[1]);
   shb_status status = fill(s, receptance, settings, substeps);
   if (status != SHB_OK) {
     mhb_floquet_destroy(s);

@@ -13,8 +13,8 @@ typedef enum { MHB_STABILITY_AUTO, MHB_STABILITY_ALWAYS, MHB_STABILITY_NEVER } m
 /* Motion that takes over where the wave is unstable: at few points; at all of them; never. */
 typedef enum { MHB_LASTING_AUTO, MHB_LASTING_ALWAYS, MHB_LASTING_NEVER } mhb_lasting_when;
 
-/* Size of an output whose peaks are located: largest displacement of one harmonic, its root of the
- * sum of squares, or the peak to peak of all (mhb/numerics/extent.h). In the order of the key. */
+/* Size of an output whose peaks are located, in the order of the key (mhb/numerics/extent.h). It is
+ * the largest displacement of one harmonic, the peak to peak of all, or the rss of one. */
 typedef enum { MHB_OUTPUT_HARMONIC, MHB_OUTPUT_PEAK_TO_PEAK, MHB_OUTPUT_RSS } mhb_output_quantity;
 
 /* Special points that are followed along a parameter. */

@@ -4,7 +4,8 @@
  *
  * a_k is the harmonic of the output (mhb_output_harmonic), of a probe or of the relative motion of
  * a contact pair. Or A is the rss of a_k, or the peak to peak of all harmonics
- * (mhb/numerics/extent.h). A probe answers the load and the contact forces p(x). Its gradient by x passes through dp/dx. */
+ * (mhb/numerics/extent.h). A probe answers the load and the contact forces p(x). Its gradient by x
+ * passes through dp/dx. */
 #ifndef MHB_TRACKING_OUTPUT_AMPLITUDE_H
 #define MHB_TRACKING_OUTPUT_AMPLITUDE_H
 

@@ -5,12 +5,14 @@
  *   bench_study_agreement --one FILE N0 MU KU KV SCALE DAMPING
  *   bench_study_agreement --quick         a small random ring, 2 designs with a gap
  *
- * A third of the preloads is even from -20 to 20 N, the others even in the logarithm to 600 N. ku
- * and kv are 0.1 to 10 MN/m, scale 0.1 to 10, damping 2e-4 to 2e-2, all in the logarithm, and mu is
- * 0.05 to 0.6. The reference is the highest point of a sweep in outline with 15 harmonics. It has
- * 31 where the peak is not within AGREES of it. A design is a fault if its peak is done and lower
- * than the reference by more than three times its told error. A peak between two points of an
- * outline is higher than both by up to POINTS, so a higher peak is no fault. */
+ * A third of the preloads is even from -20 to 20 N. The others reach 600 N, even in the logarithm.
+ * Friction is 0.05 to 0.6. Even in the logarithm are ku and kv, 0.1 to 10 MN/m, the scale, 0.1 to
+ * 10, and the damping, 2e-4 to 2e-2.
+ *
+ * The reference is the highest point of a sweep in outline with 15 harmonics. It has 31 where the
+ * peak is not within AGREES of it. A design is a fault if its peak is done and lower than the
+ * reference by more than three times its told error. A peak between two points of an outline is
+ * higher than both by up to POINTS, so a higher peak is no fault. */
 #include <math.h>
 #include <omp.h>
 #include <stdio.h>
@@ -72,7 +74,7 @@ static shb_status study_peak(const case_model *model, row *out) {
   static const study_output output[OUTPUTS] = {{.quantity = STUDY_PEAK},
                                                {.quantity = STUDY_FREQUENCY}};
   design_study              one;
-  SHB_TRY(design_study_create(0, OUTPUTS, 0, &one));
+  SHB_TRY(design_study_create(0, OUTPUTS, study_derivatives(OUTPUTS, output), &one));
   study_design *design = design_study_add(&one, NULL);
   double        began  = shb_processor_seconds();
   shb_status status = design ? design_run(NULL, model, NULL, OUTPUTS, output, design) : SHB_ERR_IO;
@@ -203,8 +205,8 @@ int main(int argc, char **argv) {
     model.settings.frequency[0]     = 60;
     model.settings.frequency[1]     = 420;
     model.settings.motion_tolerance = 1e-3;
-    fault                           = one ? one_design(&model, argv + 3)
-                                          : random_designs(&model, atoi(argv[2]), argc > 3 ? strtoul(argv[3], NULL, 10) : 1);
+    const unsigned long seed        = !one && argc > 3 ? strtoul(argv[3], NULL, 10) : 1;
+    fault = one ? one_design(&model, argv + 3) : random_designs(&model, atoi(argv[2]), seed);
   }
   if (fault < 0) fprintf(stderr, "%s\n", shb_message());
   printf("%s\n", fault ? "FAULTS" : "no peak is lower than its sweeps by three times its error");

@@ -7,7 +7,7 @@ shb_python_test(cases.schema.key_schema UNIT cases/schema/test_key_schema.py
   $<TARGET_FILE:shroudhb> ${CASES})
 
 shb_test(cases/contact UNIT hysteresis_picture LIBRARIES shb_cases_contact)
-shb_test(cases/commands UNIT up_to_date modal_changes INTEGRATION contact_points
+shb_test(cases/commands UNIT up_to_date modal_changes balance_run INTEGRATION contact_points
   LIBRARIES shb_cases_commands tests_models)
 shb_shell_test(cases.commands.commands UNIT cases/commands/test_commands.sh
   $<TARGET_FILE:shroudhb>)

@@ -94,7 +94,7 @@ static void keys_and_kinds(void **state) {
        "c.yaml:34:20: error: mhb.output_quantity: only says something with mhb.track: peak", 1},
       {"  scale: 1.3", "  track: peak\n  vary: {kv: [1 MN/m, 2 MN/m]}\n  output_quantity: swing",
        "c.yaml:36:20: error: mhb.output_quantity: 'swing' is not known; expected one of harmonic, "
-       "peak_to_peak",
+       "peak_to_peak, rss",
        1},
       {"  scale: 1.3",
        "  track: peak\n  vary: {kv: [1 MN/m, 2 MN/m]}\n  output_quantity: peak_to_peak\n"

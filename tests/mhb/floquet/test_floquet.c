@@ -244,6 +244,31 @@ static void identities(void **state) {
   modal_model_free(&plain);
 }
 
+/* A mode near the excitation that has no dynamics: the multipliers are not judged. */
+static void a_mode_near_the_excitation_is_not_left_out(void **state) {
+  (void)state;
+  modal_model     model;
+  mhb_settings    s = random_settings(9);
+  periodic        p;
+  mhb_floquet    *stability;
+  mhb_multipliers out;
+  random_model(1, WITH_LEFT, 11, &model);
+  s.blades = 3;
+  s.n0[0]  = .05;
+  periodic_create(&model, &s, 1.1, NULL, &p);
+  assert_int_equal(mhb_floquet_create(p.residual->receptance, &s, N, 6 * 5 + 6, &stability),
+                   SHB_OK);
+  mhb_floquet_evaluate(stability, &p.solution, &out);
+  print_message("5 of 6 modes, the last at %.2f of the excitation: %s\n",
+                SHB_TWO_PI * model.frequency[5] / 1.1, out.reason);
+  assert_true(SHB_TWO_PI * model.frequency[5] < 3 * 1.1);
+  assert_int_equal(out.verdict, MHB_UNDECIDED);
+  assert_non_null(strstr(out.reason, "too few modes"));
+  mhb_floquet_destroy(stability);
+  periodic_destroy(&p);
+  modal_model_free(&model);
+}
+
 /* A ring with fewer modes than the model has; none at all; a contact that was lost; no
  * sub-steps. */
 static void limits(void **state) {
@@ -254,6 +279,7 @@ static void limits(void **state) {
   mhb_floquet   *stability;
   double complex full[MOST];
   random_model(1, WITH_LEFT, 11, &model);
+  for (int i = 3; i < 6; i++) model.frequency[i] *= 3;
   s.blades = 3;
   s.n0[0]  = .05;
   periodic_create(&model, &s, 1.1, NULL, &p);
@@ -319,6 +345,7 @@ int main(void) {
       cmocka_unit_test(friction_alone_is_stable),
       cmocka_unit_test(stiff_contact),
       cmocka_unit_test(identities),
+      cmocka_unit_test(a_mode_near_the_excitation_is_not_left_out),
       cmocka_unit_test(limits),
       cmocka_unit_test(nothing_is_allocated),
   };

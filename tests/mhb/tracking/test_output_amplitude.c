@@ -83,7 +83,7 @@ static void the_harmonic_is_the_one_asked_for(void **state) {
     mhb_settings   settings = random_settings(H);
     double         x[N], r[N], by_x[N], square = 0;
     double complex p[3 * PAIRS], q[6], weight[3 * PAIRS * (H + 1)];
-    mhb_amplitude  a = {.by_x = by_x, .weight = weight};
+    mhb_amplitude  a = {.by_x = by_x, .weight = weight, .size = MHB_SIZE_RSS};
     mhb_balance   *b;
     settings.output_harmonic = k;
     settings.n0[0]           = 0.05;
@@ -108,10 +108,9 @@ static void the_harmonic_is_the_one_asked_for(void **state) {
 }
 
 int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(the_gradient_is_that_of_differences),
-      cmocka_unit_test(so_is_that_of_another_harmonic),
-      cmocka_unit_test(so_are_those_of_the_half_axis_and_the_peak_to_peak),
-      cmocka_unit_test(the_harmonic_is_the_one_asked_for)};
+  const struct CMUnitTest tests[] = {cmocka_unit_test(the_gradient_is_that_of_differences),
+                                     cmocka_unit_test(so_is_that_of_another_harmonic),
+                                     cmocka_unit_test(so_are_those_of_the_rss_and_the_peak_to_peak),
+                                     cmocka_unit_test(the_harmonic_is_the_one_asked_for)};
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -101,7 +101,7 @@ static void peaks_of_the_peak_to_peak_are_those_of_sweeps(void **state) {
   double       of_first;
   s.output_quantity = MHB_OUTPUT_PEAK_TO_PEAK;
   mhb_response *r   = compare_with_sweeps(&s, &of_first);
-  assert_true(r->peak_to_peak);
+  assert_int_equal(r->quantity, MHB_OUTPUT_PEAK_TO_PEAK);
   assert_true(of_first < 0.5);
   mhb_response_destroy(r);
 }
