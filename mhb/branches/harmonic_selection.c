@@ -182,12 +182,13 @@ static bool is_nearly_linear(const mhb_evaluation *e, int n_pairs) {
 void mhb_harmonic_levels_errors(mhb_harmonic_levels *h, mhb_curve_point *point) {
   if (h->settings->outline && h->n == 1) {
     point->truncation_kind = MHB_TRUNCATION_NONE;
-    point->truncation = point->modal = NAN;
+    point->truncation = point->truncation_max = point->modal = NAN;
     return;
   }
   mhb_harmonic_level *level = mhb_harmonic_levels_current(h);
   mhb_balance_use(level->balance, point->evaluation);
   point->truncation      = mhb_truncation_error(level->truncation, point->x);
+  point->truncation_max  = level->truncation->largest;
   point->truncation_kind = level->truncation->kind;
   bool newton            = point->truncation_kind == MHB_TRUNCATION_NEWTON;
   point->modal = mhb_modal_error(level->balance, point->x, newton ? level->truncation : NULL);

@@ -22,6 +22,7 @@ typedef struct {
   bool            near;        /* x is near that of the last evaluation, which may help the next */
   double          residual;    /* |r|/|x| */
   double          truncation;  /* relative error of the harmonics left out */
+  double          truncation_max; /* the largest within the period, over the same amplitude */
   double          modal;       /* relative error of the modes left out */
   int             truncation_kind; /* mhb_truncation_kind */
 } mhb_curve_point;

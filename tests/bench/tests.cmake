@@ -52,3 +52,5 @@ if(SHROUDHB_PYTHON)
     COMMAND ${SHROUDHB_PYTHON} -B ${CMAKE_CURRENT_SOURCE_DIR}/bench/bench_study_rates.py
             $<TARGET_FILE_DIR:shroudhb-study> --quick)
 endif()
+shb_bench(harmonics)
+target_link_libraries(bench_harmonics PRIVATE tests_models)

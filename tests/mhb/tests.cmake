@@ -5,7 +5,7 @@ function(shb_counts_allocations target)
     LINKER:--wrap=malloc,--wrap=calloc,--wrap=realloc,--wrap=aligned_alloc)
 endfunction()
 
-foreach(noun block_cyclic extent fourier lu thin_product)
+foreach(noun block_cyclic extent fourier lu tail thin_product)
   shb_test(mhb/numerics ${noun} shb_mhb_numerics)
 endforeach()
 foreach(noun transitions slip slip_onset static_friction slider sensitivity dense_output)
@@ -36,7 +36,7 @@ shb_test(mhb/response direct_stress tests_fem tests_models shb_modal)
 shb_test(mhb/branches stiff_disc tests_fem tests_box tests_models shb_modal shb_mesh_blade)
 shb_test(mhb/branches disc_run_up tests_fem tests_models shb_modal)
 foreach(noun balance stick_stiffness condensation newton ring_system subharmonics
-    truncation_error doubled_ring modal_error spatial_error stuck_solver coriolis
+    truncation_error truncation_norms doubled_ring modal_error spatial_error stuck_solver coriolis
     disc_contacts)
   shb_test(mhb/balance ${noun} tests_models)
 endforeach()
@@ -77,7 +77,7 @@ target_link_options(test_mhb_continuation_first_solution PRIVATE
 foreach(noun whitehead ring_response)
   shb_test(mhb/amplification ${noun} tests_models)
 endforeach()
-foreach(noun branch_completion branch_stability chain forced_response harmonic_selection
+foreach(noun free_body branch_completion branch_stability chain forced_response harmonic_selection
     lasting_motion linear_limits main_branch mistuned_sweep peak_search period_doubling record
     run_up secondary_branches ring_search sweep_memory tracer unfinished_curve verdicts)
   shb_test(mhb/branches ${noun} tests_models)

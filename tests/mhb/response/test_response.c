@@ -56,6 +56,7 @@ static void fill_point(mhb_response *response, int branch) {
   b->seconds[point]          = 1e-3 * point;
   b->error_newton[point]     = 1e-12 * point;
   b->error_truncation[point] = 1e-5 * point;
+  if (b->error_truncation_max) b->error_truncation_max[point] = 2e-5 * point;
   b->error_sampling[point]   = 1e-9 * point;
   b->error_modal[point]      = 1e-4 * point;
 }
@@ -137,6 +138,7 @@ static void assert_same_branch(const mhb_response *response, const mhb_branch *a
     assert_same(a, b, lasting_offset, n);
     assert_same(a, b, lasting_periods, n);
     assert_same(a, b, lasting_kind, n);
+    assert_same(a, b, error_truncation_max, n);
   } else {
     assert_true(!b->judged && !b->loss && !b->multipliers);
   }
