@@ -26,11 +26,52 @@ static double series_ratio(const modal_model *model, double w) {
   double       worst = 0, weight = modal_series_at(model, w).weight[2];
   for (int i = 0; i < n; i++) {
     double error = modal_series_error(model, w, i);
-    if (error < 0) return w * w / (top * top);
+    if (error < 0) return top > 0 ? w * w / (top * top) : 1;
     double term = weight * modal_series_diagonal(model, 2, i);
     if (term > 0) worst = fmax(worst, error / term);
   }
   return worst;
+}
+
+/* Misfit up to which the modes kept have the damping of mass and stiffness (Rayleigh). */
+static const double RAYLEIGH = 0.02;
+
+/* 2 zeta w_e of modes left out near w_e: by Rayleigh's alpha + beta w^2 where the modes kept have
+ * that, else with the damping ratio of the highest. */
+static double damping_beyond(const modal_model *model, double w_e) {
+  const int n    = model->n_modes;
+  double    s[3] = {0}, t[2] = {0}, misfit = 0;
+  bool      damped = n >= 3; /* any two have it */
+  for (int i = 0; i < n; i++) {
+    const double w = SHB_TWO_PI * model->frequency[i], d = 2 * model->damping_ratio[i] * w;
+    damped = damped && d > 0;
+    if (!damped) break;
+    s[0] += 1 / (d * d);
+    s[1] += w * w / (d * d);
+    s[2] += w * w * w * w / (d * d);
+    t[0] += 1 / d;
+    t[1] += w * w / d;
+  }
+  const double det   = s[0] * s[2] - s[1] * s[1];
+  const double alpha = (t[0] * s[2] - t[1] * s[1]) / det, beta = (s[0] * t[1] - s[1] * t[0]) / det;
+  for (int i = 0; i < n && damped; i++) {
+    const double w = SHB_TWO_PI * model->frequency[i], d = 2 * model->damping_ratio[i] * w;
+    misfit = fmax(misfit, fabs((alpha + beta * w * w) / d - 1));
+  }
+  if (damped && misfit < RAYLEIGH) return fmax(0, alpha + beta * w_e * w_e);
+  return 2 * model->damping_ratio[n - 1] * w_e;
+}
+
+/* The residual terms are of modes without damping. With it a mode has 1/w_i^2 (1 - 2 j zeta_i w/w_i
+ * + ...): the loss of all modes left out, relative to the first term, at w. w_e: that of their
+ * first two terms, or the last mode kept. */
+static double missing_loss(const modal_model *model, double w) {
+  const int n      = 3 * model->n_pairs * (model->has_left ? 2 : 1);
+  double    square = pow(SHB_TWO_PI * model->frequency[model->n_modes - 1], 2), most[2] = {0, 0};
+  for (int i = 0; i < n && modal_series_has_fourth(model); i++)
+    for (int t = 0; t < 2; t++) most[t] = fmax(most[t], modal_series_diagonal(model, t, i));
+  if (most[1] > 0) square = fmax(square, most[0] / most[1]);
+  return square > 0 ? w * damping_beyond(model, sqrt(square)) / square : 0;
 }
 
 /* Number of the last term that the model has. */
@@ -40,34 +81,48 @@ static int last_term(void *const term[MODAL_TERMS]) {
   return t;
 }
 
+/* What is missing of the modes left out at one harmonic. */
+typedef struct {
+  double ratio; /* by series_ratio, of their last term */
+  double loss;  /* by missing_loss, of their first term */
+} missing;
+
 /* to[n] <- what the motion of one structure lacks at harmonic k, by the forces p[n]; NULL: by its
  * load. */
-static void missing_motion(const mhb_receptance *r, int k, double ratio, const double complex *p,
-                           double complex *to) {
+static void missing_motion(const mhb_receptance *r, int k, const missing *of,
+                           const double complex *p, double complex *to) {
   const mhb_residual_terms *terms = r->residual_terms;
   const modal_series        s = modal_series_at(mhb_receptance_model(r, k), k * r->omega / r->nu);
   const int                 t = last_term(terms->own[0] ? (void *const *)terms->own
                                                         : (void *const *)terms->contact),
             u                 = last_term((void *const *)terms->load);
+  double complex lost[r->n];
   memset(to, 0, sizeof *to * (size_t)r->n);
-  if (p) mhb_residual_terms_add_product(terms, t, k, -ratio * s.weight[t], p, to);
-  for (int i = 0; i < r->n && !p && terms->load[u]; i++)
-    to[i] = ratio * s.load_weight[u] * r->scale * terms->load[u][k * r->n + i];
+  memset(lost, 0, sizeof lost);
+  if (p) {
+    mhb_residual_terms_add_product(terms, t, k, -of->ratio * s.weight[t], p, to);
+    mhb_residual_terms_add_product(terms, 0, k, of->loss, p, lost);
+  }
+  for (int i = 0; i < r->n && !p && terms->load[u]; i++) {
+    to[i]   = of->ratio * s.load_weight[u] * r->scale * terms->load[u][k * r->n + i];
+    lost[i] = -of->loss * r->scale * terms->load[0][k * r->n + i];
+  }
+  for (int i = 0; i < r->n; i++) to[i] += CMPLX(-cimag(lost[i]), creal(lost[i])); /* j lost */
 }
 
 /* The same of all blades of a ring, to[n]. */
-static void missing_in_ring(const mhb_ring_receptance *g, int k, double ratio,
+static void missing_in_ring(const mhb_ring_receptance *g, int k, const missing *of,
                             const double complex *p, double complex *to) {
   double complex force[2 * g->n], motion[2 * g->n];
   memset(to, 0, sizeof *to * (size_t)g->blades * (size_t)g->n);
   for (int i = 0; i < g->blades; i++) {
-    missing_motion(g->blade[i], k, ratio, mhb_ring_forces_of_blade(g, i, p, force), motion);
+    missing_motion(g->blade[i], k, of, mhb_ring_forces_of_blade(g, i, p, force), motion);
     mhb_ring_add_blade(g, i, motion, to);
   }
 }
 
-/* One part of e[k][n]; ratio[k] by series_ratio. */
-static void set_missing_motion(const mhb_balance *b, const double *ratio, part by,
+/* One part of e[k][n]; of[k]. */
+static void set_missing_motion(const mhb_balance *b, const missing *of, part by,
                                double complex *e) {
   const mhb_receptance *r = b->receptance;
   double complex        p[3 * b->n_pairs];
@@ -76,9 +131,9 @@ static void set_missing_motion(const mhb_balance *b, const double *ratio, part b
     double complex       *to = e + k * 3 * b->n_pairs;
     if (on) mhb_balance_contact_force(b, k, p);
     if (r->ring)
-      missing_in_ring(r->ring, k, ratio[k], on, to);
+      missing_in_ring(r->ring, k, &of[k], on, to);
     else
-      missing_motion(r, k, ratio[k], on, to);
+      missing_motion(r, k, &of[k], on, to);
   }
 }
 
@@ -132,7 +187,8 @@ double mhb_modal_error(const mhb_balance *b, const double *x, mhb_truncation *t)
   const int             n = r->n, all = (b->m + 1) * n;
   const bool            linear = !t && (r->ring || n <= MOST_SOLVED) && mhb_balance_is_linear(b);
   const double          size   = mhb_balance_vibration(b, x);
-  double                ratio[b->m + 1], sum = 0;
+  missing               of[b->m + 1];
+  double                sum = 0;
   int                   pivot[n];
   if (!one->residual_terms->contact[0] && !one->residual_terms->own[0]) return -1;
   double complex *e =
@@ -141,10 +197,13 @@ double mhb_modal_error(const mhb_balance *b, const double *x, mhb_truncation *t)
     free(e);
     return e ? 0 : -1;
   }
-  for (int k = 1; k <= b->m; k++)
-    ratio[k] = series_ratio(mhb_receptance_model(one, k), k * r->omega / r->nu);
+  for (int k = 1; k <= b->m; k++) {
+    const modal_model *model = mhb_receptance_model(one, k);
+    const double       w     = k * r->omega / r->nu;
+    of[k] = (missing){.ratio = series_ratio(model, w), .loss = missing_loss(model, w)};
+  }
   for (part by = 0; by < PARTS; by++) {
-    set_missing_motion(b, ratio, by, e);
+    set_missing_motion(b, of, by, e);
     if (linear) solve_by_harmonic(b, e + all, pivot, e);
     sum = hypot(sum, t ? solve_by_system(b, t, size, e) : norm_of(all, e));
   }

@@ -1,10 +1,13 @@
 #include "mhb/balance/truncation_error.h"
 
+#include <cblas.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
+#include "mesh/base/constants.h"
 #include "mhb/numerics/fourier.h"
+#include "mhb/numerics/tail.h"
 #include "mhb/numerics/vector.h"
 
 /* Higher harmonics below this share of the step are not fed back. */
@@ -28,6 +31,15 @@ enum { WORTH_BROYDEN = 250 };
 /* Error of the products with the receptance of many pairs. The estimate is a few per cent off
  * anyhow, and an error above 1e-5 is one. */
 static const double COARSE = 1e-8;
+
+/* The order of a tail is known to this only: between 7 and 31 harmonics it scatters so. */
+static const double ORDER_MARGIN = 0.75;
+
+/* The error falls to this part at most where m is doubled: by the first order. */
+static const double SLOWEST = 0.5;
+
+/* Times of a period for each harmonic of 2m, and the fewest. */
+enum { TIMES_A_HARMONIC = 4, LEAST_TIMES = 32 };
 
 static int least(int a, int b) {
   return a < b ? a : b;
@@ -62,6 +74,11 @@ shb_status mhb_truncation_create(const mhb_balance *balance, mhb_truncation **ou
     t->trial               = shb_arena_take(&t->arena, n, sizeof(double));
     t->feedback            = shb_arena_take(&t->arena, n, sizeof(double));
     t->before              = shb_arena_take(&t->arena, n, sizeof(double));
+    t->n_times             = most(TIMES_A_HARMONIC * t->doubled->m, LEAST_TIMES);
+    size_t times           = (size_t)t->n_times;
+    t->power               = shb_arena_take(&t->arena, (size_t)top + 1, sizeof(double));
+    t->basis  = shb_arena_take(&t->arena, times * (size_t)t->doubled->nb, sizeof(double));
+    t->motion = shb_arena_take(&t->arena, times * 3 * (size_t)balance->n_pairs, sizeof(double));
     t->force = shb_arena_take(&t->arena, 3 * (size_t)mhb_real_size(top), sizeof(double));
     if (t->arena.failed) status = shb_fail(SHB_ERR_IO, __FILE__, __LINE__, "out of memory");
   }
@@ -248,13 +265,72 @@ static void set_step(mhb_truncation *t, bool by_broyden) {
   t->doubled->eval->near = false;
 }
 
+/* Squares of the sizes of the harmonics: of solution and step up to 2m, of the estimate above.
+ * Returns the highest. */
+static int set_powers(mhb_truncation *t) {
+  const mhb_balance *b   = t->doubled;
+  const int          top = t->higher && b->m < MHB_LEAST_OF_TAIL ? t->higher->last : b->m;
+  memset(t->power, 0, sizeof(double) * (size_t)(top + 1));
+  for (int row = 0; row < 3 * b->n_pairs; row++) {
+    const double *x = t->x + row * b->nb, *step = t->step + row * b->nb;
+    for (int i = 1; i < b->nb; i++)
+      t->power[(i + 1) / 2] += (x[i] + step[i]) * (x[i] + step[i]);
+  }
+  for (int k = b->m + 1; k <= top; k++) t->power[k] = mhb_truncation_power(t, k);
+  return top;
+}
+
+static void set_basis(mhb_truncation *t) {
+  const int nb = t->doubled->nb;
+  if (t->basis[0] != 0) return;
+  for (int i = 0; i < t->n_times; i++)
+    mhb_basis(t->doubled->m, SHB_TWO_PI * i / t->n_times, t->basis + (size_t)i * (size_t)nb, NULL);
+}
+
+/* Largest |e(t)| over all axes, e of 2m harmonics. */
+static double largest_in_period(mhb_truncation *t, const double *e) {
+  const int rows = 3 * t->doubled->n_pairs, nb = t->doubled->nb, n = t->n_times;
+  double    top = 0;
+  set_basis(t);
+  cblas_dgemm(CblasRowMajor, CblasNoTrans, CblasTrans, rows, n, nb, 1, e, nb, t->basis, nb, 0,
+              t->motion, n);
+  for (int i = 0; i < n; i++) {
+    double sum = 0;
+    for (int row = 0; row < rows; row++) {
+      const double x = t->motion[row * n + i];
+      sum += x * x;
+    }
+    top = fmax(top, sum);
+  }
+  return sqrt(top);
+}
+
+/* Both norms of the error, from the step and the tail; t->trial <- the error up to 2m. size: of the
+ * vibration. Returns the first. */
+static double set_errors(mhb_truncation *t, double size) {
+  const mhb_balance *b       = t->doubled;
+  const int          low     = t->balance->nb;
+  const bool         knows   = t->kind == MHB_TRUNCATION_NEWTON;
+  const mhb_tail     tail    = knows ? mhb_tail_of(set_powers(t), t->power, ORDER_MARGIN)
+                                     : (mhb_tail){.order = INFINITY};
+  const double       ratio   = fmin(SLOWEST, exp2(2 - (tail.order - ORDER_MARGIN)));
+  double             highest = 0;
+  t->order                   = tail.order;
+  for (int i = 0; i < b->n; i++) t->trial[i] = t->step[i] * (i % b->nb < low ? 1 / (1 - ratio) : 1);
+  for (int k = b->m + 1; t->higher && k <= t->higher->last; k++)
+    highest += sqrt(mhb_truncation_power(t, k));
+  t->largest = (largest_in_period(t, t->trial) + fmax(highest, tail.sum)) / size;
+  return hypot(mhb_norm(t->trial, b->n), fmax(t->higher_size, tail.rms)) / size;
+}
+
 double mhb_truncation_error(mhb_truncation *t, const double *x) {
   mhb_balance *b    = t->doubled;
   double       size = mhb_balance_vibration(t->balance, x);
   copy_rows(3 * b->n_pairs, x, t->balance->nb, t->x, b->nb);
   memset(t->step, 0, sizeof(double) * (size_t)b->n);
-  t->higher_size = 0;
-  t->kind        = MHB_TRUNCATION_NONE;
+  t->higher_size = t->largest = 0;
+  t->order                    = INFINITY;
+  t->kind                     = MHB_TRUNCATION_NONE;
   if (mhb_balance_is_linear(t->balance)) return 0;
   mhb_balance_set_operating_point(b, &t->balance->eval->at);
   for (int a = 0; a < b->n_pairs; a++) { /* nothing from an estimate before enters */
@@ -262,7 +338,7 @@ double mhb_truncation_error(mhb_truncation *t, const double *x) {
     b->eval->kind[a] = t->balance->eval->kind[a];
   }
   set_step(t, t->broyden != NULL);
-  return size > 0 ? hypot(mhb_norm(t->step, b->n), t->higher_size) / size : 0;
+  return size > 0 ? set_errors(t, size) : 0;
 }
 
 bool mhb_truncation_solve(mhb_truncation *t, double *change) {

@@ -8,8 +8,12 @@
  * A harmonic above 2m may be at a resonance. Those harmonics are estimated one by one
  * (higher_harmonics.h). Where they are not small, r is evaluated anew with them before the step.
  *
- * Two cases save the factors with 2m harmonics. With many pairs Broyden's method finds the step
- * (truncation_step.h). In a ring of different blades GMRES does (doubled_ring.h); there harmonics
+ * The tail of the spectrum (tail.h) adds what the harmonics looked at leave out. It also tells how
+ * slowly the error falls with m: delta is the difference of two errors, of m and of 2m harmonics.
+ * The part of delta up to m is divided by 1 - rho, rho the ratio of these errors.
+ *
+ * Two cases save the factors with 2m harmonics. With many pairs, or many harmonics, Broyden's method
+ * finds the step (truncation_step.h). In a ring of different blades GMRES does (doubled_ring.h); there harmonics
  * above 2m are not looked at. */
 #ifndef MHB_BALANCE_TRUNCATION_ERROR_H
 #define MHB_BALANCE_TRUNCATION_ERROR_H
@@ -52,7 +56,14 @@ typedef struct {
   double                *step;       /* [doubled->n] delta, -r or 0 of the last estimate */
   double                *r, *trial, *feedback; /* [doubled->n] */
   double                *before;               /* [doubled->n] residual at x */
+  double                *power;   /* [highest + 1] of harmonics of solution and estimate, m^2 */
+  int                    n_times; /* of a period */
+  double                *basis;   /* [n_times][doubled->nb] */
+  double                *motion;  /* [3 pairs][n_times] */
   double                 higher_size;          /* |u_k|, k > 2m, of the last estimate */
+  double                 largest;              /* the largest error within the period, as estimated
+                                                * last: |e(t)| over all axes, as mhb_truncation_error */
+  double                 order;                /* p of the tail |u_k| ~ k^-p seen there */
   mhb_truncation_kind    kind;                 /* of the last estimate */
   bool                   by_broyden;           /* its step; the system is not factored there */
   bool                   by_gmres;             /* its step, from the ring; nor here */
@@ -67,7 +78,9 @@ shb_status mhb_truncation_create(const mhb_balance *balance, mhb_truncation **tr
 void       mhb_truncation_destroy(mhb_truncation *truncation);
 
 /* Estimated error of the solution x[n], the point of the balance's evaluation in use, relative to
- * its vibration. Of first order also where the Newton step does not exist (at a fold). */
+ * its vibration: the root-mean-square error in a period over that of the motion. `largest` is the
+ * largest error within the period, relative to the same amplitude. Of first order also where the
+ * Newton step does not exist (at a fold). */
 double mhb_truncation_error(mhb_truncation *truncation, const double *x);
 
 /* change[doubled->n] <- (I + R J)^-1 change at the point of the last estimate. false: it failed. By

@@ -186,12 +186,13 @@ static double factor_of(const mhb_curve_point *point) {
 void mhb_harmonic_levels_errors(mhb_harmonic_levels *h, mhb_curve_point *point) {
   if (h->settings->outline && h->n == 1) {
     point->truncation_kind = MHB_TRUNCATION_NONE;
-    point->truncation = point->miss = point->modal = NAN;
+    point->truncation = point->truncation_max = point->miss = point->modal = NAN;
     return;
   }
   mhb_harmonic_level *level = mhb_harmonic_levels_current(h);
   mhb_balance_use(level->balance, point->evaluation);
   point->truncation      = mhb_truncation_error(level->truncation, point->x);
+  point->truncation_max  = level->truncation->largest;
   point->truncation_kind = level->truncation->kind;
   point->miss            = factor_of(point) * point->truncation;
   bool newton            = point->truncation_kind == MHB_TRUNCATION_NEWTON;

@@ -92,6 +92,7 @@ shb_status mhb_record(mhb_response *response, int index, mhb_balance *b,
   record_signals(response, branch, at, b, point->x);
   record_states(branch, at, b);
   branch->error_truncation[at] = point->truncation;
+  if (branch->error_truncation_max) branch->error_truncation_max[at] = point->truncation_max;
   if (branch->harmonics) branch->harmonics[at] = b->m;
   if (branch->error_spatial) branch->error_spatial[at] = -1;
   if (branch->truncation_kind) branch->truncation_kind[at] = point->truncation_kind;

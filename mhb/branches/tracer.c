@@ -356,6 +356,7 @@ static void pass_current(mhb_trace_state *s, mhb_arclength *curve) {
   mhb_trace_state_numbers(s, &p->residual, 1);
   mhb_trace_state_numbers(s, &p->truncation, 1);
   mhb_trace_state_numbers(s, &p->miss, 1);
+  mhb_trace_state_numbers(s, &p->truncation_max, 1);
   mhb_trace_state_numbers(s, &p->modal, 1);
   mhb_trace_state_whole(s, &p->truncation_kind);
   mhb_trace_state_numbers(s, &curve->former_step, 1);

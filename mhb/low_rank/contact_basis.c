@@ -154,8 +154,9 @@ static int orthonormalise(candidates *c, int n) {
 }
 
 /* 1/(w_i^2 - w^2 + 2 j zeta w_i w), not nearer to an undamped resonance than 1e-4 of it. */
-static double complex receptance_of(const modal_model *model, int i, double w) {
-  double wi = SHB_TWO_PI * model->frequency[i], zeta = fmax(model->damping_ratio[i], 5e-5);
+static double complex receptance_of(const modal_model *model, int i, double held, double w) {
+  double wi   = fmax(SHB_TWO_PI * model->frequency[i], held),
+         zeta = fmax(model->damping_ratio[i], 5e-5);
   return 1.0 / CMPLX(wi * wi - w * w, 2 * zeta * wi * w);
 }
 
@@ -170,7 +171,7 @@ static void add_frequency(const mhb_receptance *r, int k, candidates *c, const l
   for (int j = 0; j < poles; j++) {
     double complex L = 0; /* beyond the residual modes of the harmonic */
     if (j < r->n_modes)
-      L = receptance_of(model, j, w);
+      L = receptance_of(model, j, k == 0 ? r->hold : 0, w);
     else if (j - r->n_modes < model->n_residual)
       L = modal_series_mode(model, j - r->n_modes, &series, &slope);
     for (int i = 0; i < q; i++) c->work[i * poles + j] = L * c->G[i * poles + j];

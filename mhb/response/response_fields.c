@@ -29,11 +29,13 @@ const mhb_field mhb_fields[] = {
     {"error/newton", "", MHB_DOUBLE, AT(error_newton), "-",
      "estimated error from the Newton residual, relative to the motion"},
     {"error/truncation", "", MHB_DOUBLE, AT(error_truncation), "-",
-     "estimated error from the harmonics left out, relative to the vibration"},
+     "estimated error from the harmonics left out, relative to the vibration: the "
+     "root-mean-square over the period of the error over that of the motion"},
     {"error/sampling", "", MHB_DOUBLE, AT(error_sampling), "-",
      "estimated error of the contact force's harmonics, relative to the motion"},
     {"error/modal", "", MHB_DOUBLE, AT(error_modal), "-",
-     "estimated error from the modes left out, relative to the vibration"},
+     "estimated error from the modes left out, their damping with them, relative to the "
+     "vibration"},
     {"mark", "", MHB_INT, AT(mark), "-",
      "what the point is not worth, a sum: 1 error/truncation is above the tolerance asked for; 2 a "
      "contact sticks all the time: nothing determines its mean friction; 4 the error is not "
@@ -49,6 +51,9 @@ const mhb_field mhb_fields[] = {
      "how error/truncation was estimated: 0 nothing is left out (open or stuck throughout), 1 "
      "first "
      "order: can be several times too small, 2 a Newton step of twice the harmonics"},
+    {"error/truncation_max", "", MHB_DOUBLE, AT(error_truncation_max), "-",
+     "estimated error from the harmonics left out: the largest within the period, over the "
+     "amplitude that error/truncation is relative to; -1: not known"},
     {"error/spatial", "", MHB_DOUBLE, AT(error_spatial), "-",
      "estimated error from the number of contact pairs, at the same frequency, relative to the "
      "vibration; -1: not judged"},
@@ -112,7 +117,7 @@ const mhb_field mhb_fields[] = {
      "lines of the contact motion where it does not repeat, largest first; 0: none"},
     {"spectrum/amplitude", "l", MHB_DOUBLE, AT(line_amplitude), "m", "amplitude of the line"},
 };
-enum { N_TRACKED = 1, N_LATER = 23, N_INTEGRATION = 5 };
+enum { N_TRACKED = 1, N_LATER = 24, N_INTEGRATION = 5 };
 _Static_assert(sizeof mhb_fields / sizeof *mhb_fields == MHB_N_FIELDS, "MHB_N_FIELDS counts them");
 
 size_t mhb_field_bytes(mhb_number kind) {

@@ -13,6 +13,10 @@
 
 static const double NUDGE = 1e-8;
 
+/* At k = 0 a mode is at least this part of the lowest frequency asked for. It holds the mean of a
+ * mode at 0 Hz, whose receptance there has no bound. */
+static const double HOLD = 1e-3;
+
 /* From this damping ratio on no gyroscopic mode has a resonance as sharp as NUDGE. */
 static const double LEAST_DAMPING = 1e-6;
 
@@ -200,6 +204,7 @@ static shb_status set_blade(mhb_receptance *r, const mhb_settings *settings,
                             const mhb_residual_terms *like) {
   const double step  = settings->to_ground ? 0 : phase_step(settings);
   const int contacts = r->ring ? r->ring->blades : settings->contacts > 1 ? settings->contacts : 1;
+  r->hold            = HOLD * SHB_TWO_PI * fmin(settings->frequency[0], settings->frequency[1]);
   SHB_TRY(mhb_interfaces_match(r->model, settings, r->interface));
   mhb_pair_shares(r->model->n_pairs, mhb_interfaces(settings), r->interface, r->model->area,
                   contacts, r->share);
@@ -300,8 +305,9 @@ MHB_HOT static void set_lambda(const mhb_receptance *r, int k, double w, double 
                                double *restrict im) {
   const modal_model *model  = mhb_receptance_model(r, k);
   const double *restrict hz = model->frequency, *restrict zeta = model->damping_ratio;
+  const double held = k == 0 ? r->hold : 0;
   for (int i = 0; i < r->n_modes; i++) {
-    double wi = SHB_TWO_PI * hz[i], a = wi * wi - w * w, b = 2 * zeta[i] * wi * w,
+    double wi = mhb_most(SHB_TWO_PI * hz[i], held), a = wi * wi - w * w, b = 2 * zeta[i] * wi * w,
            size  = a * a + b * b;
     double least = NUDGE * wi * wi, at = size < least * least ? copysign(least, a) : a;
     size  = at * at + b * b;
@@ -351,7 +357,7 @@ void mhb_receptance_dynamic_stiffness(const mhb_receptance *r, int k, double w, 
   for (size_t j = 0; j < m; j++)
     for (size_t i = 0; i < m; i++) A[j * m + i] = G ? I * w * G[i * m + j] : 0;
   for (size_t i = 0; i < m; i++) {
-    const double wi = SHB_TWO_PI * model->frequency[i];
+    const double wi = fmax(SHB_TWO_PI * model->frequency[i], k == 0 ? r->hold : 0);
     A[i * m + i] += CMPLX(wi * wi - w * w, 2 * model->damping_ratio[i] * wi * w);
   }
 }

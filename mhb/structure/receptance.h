@@ -10,6 +10,9 @@
  * and the probes by the same with their own shapes. |L_i| is at most 1e8/w_i^2: without damping, at
  * a resonance, it is that of a frequency 5e-9 beside it.
  *
+ * A mode may be at 0 Hz. Its mean is then held by a spring of (1e-3 w)^2, w the lowest frequency
+ * asked for: a steady load along it needs a contact that carries it.
+ *
  * Coriolis terms (modes/coriolis of the model) couple the modes:
  *   L = (diag(w_i^2 - w^2 + 2 j zeta_i w_i w) + j w G_k)^-1,   [modes][modes]
  * It is not formed: a factor of its inverse is kept for each harmonic.
@@ -52,6 +55,7 @@ typedef struct mhb_receptance {
   const int            *driven; /* [k] whether the load has this harmonic */
   mhb_residual_terms   *residual_terms;
   double                scale;      /* of the excitation */
+  double                hold;       /* rad/s: lowest frequency of a mode at k = 0 */
   double                omega;      /* rad/s, of mhb_receptance_set_frequency */
   double               *updated_at; /* [k] rad/s of the arrays below, NAN: never */
   double               *load_at;    /* [k] the same of lambda and free */

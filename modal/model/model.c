@@ -284,10 +284,11 @@ shb_status modal_model_write(hid_t file, const modal_model *model,
 static shb_status check_modes(const char *path, const modal_model *model) {
   for (int i = 0; i < model->n_modes; i++) {
     double f = model->frequency[i], zeta = model->damping_ratio[i];
-    SHB_CHECK(f > 0, SHB_ERR_INPUT,
-              "%s: /modes/frequency: value %d (from 0) is %g Hz; all must be positive (a free body "
-              "must be clamped)",
-              path, i, f);
+    SHB_CHECK(
+        f >= 0, SHB_ERR_INPUT,
+        "%s: /modes/frequency: value %d (from 0) is %g Hz; a frequency is 0 (of a free body) or "
+        "positive",
+        path, i, f);
     SHB_CHECK(i == 0 || f >= model->frequency[i - 1], SHB_ERR_INPUT,
               "%s: /modes/frequency: value %d (from 0), %g Hz, is below the one before; sort the "
               "modes by frequency",
@@ -429,6 +430,7 @@ static shb_status check_flexibility(const char *path, const modal_model *model,
       other = i < right ? im->right + (size_t)i * (size_t)m
                         : im->left + (size_t)(i - right) * (size_t)m;
     for (int k = 0; k < m; k++) {
+      if (!(model->frequency[k] > 0)) continue; /* it has no static flexibility */
       modes += pow(shape[k] / (SHB_TWO_PI * model->frequency[k]), 2);
       if (other) modes += pow(other[k] / (SHB_TWO_PI * model->frequency[k]), 2);
     }

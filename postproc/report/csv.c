@@ -63,7 +63,7 @@ static void put_header(const mhb_response *response, post_buffer *out) {
   post_put(
       out,
       ",stable,special,judged,loss,largest_multiplier,iterations,seconds,error_newton,error_"
-      "truncation,error_sampling,"
+      "truncation,error_truncation_max,error_sampling,"
       "error_modal,error_spatial,origin,order,lasting_mean,lasting_worst,lasting_kind,lasting_side,"
       "lasting_offset\r\n");
 }
@@ -133,6 +133,9 @@ static void put_quality(const mhb_response *response, const mhb_branch *branch, 
   put_number(out, branch->seconds[point]);
   put_number(out, branch->error_newton[point]);
   put_number(out, branch->error_truncation[point]);
+  put_number(out, branch->error_truncation_max && branch->error_truncation_max[point] >= 0
+                      ? branch->error_truncation_max[point]
+                      : NAN);
   put_number(out, branch->error_sampling[point]);
   put_number(out, branch->error_modal[point]);
   put_number(out, post_spatial_error(branch, point));

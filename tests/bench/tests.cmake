@@ -14,7 +14,8 @@ shb_bench(contact NIGHTLY SOURCES method.c baseline.c march.c summary.c work_pre
   LIBRARIES shb_post tests_motions)
 shb_bench(response NIGHTLY SOURCES child.c contact_faces.c precision.c stiff_faces.c
   LIBRARIES tests_models)
-foreach(noun stability integrate lasting tracking harmonics)
+foreach(noun stability integrate lasting tracking harmonics
+    harmonic_cost)
   shb_bench(${noun} NIGHTLY LIBRARIES tests_models)
 endforeach()
 foreach(noun face_integration ring)

@@ -2,7 +2,7 @@
 set(COUNTS_ALLOCATIONS SOURCES support/allocations.c
   LINK LINKER:--wrap=malloc,--wrap=calloc,--wrap=realloc,--wrap=aligned_alloc)
 
-shb_test(mhb/numerics UNIT block_cyclic extent fourier lu thin_product LIBRARIES shb_mhb_numerics)
+shb_test(mhb/numerics UNIT block_cyclic extent fourier lu tail thin_product LIBRARIES shb_mhb_numerics)
 shb_test(mhb/contact UNIT transitions slip slip_onset static_friction slider sensitivity
   dense_output time_history INTEGRATION contact reference_law accuracy continuity random
   LIBRARIES tests_motions)
@@ -18,7 +18,7 @@ shb_test(mhb/response INTEGRATION direct_stress PROGRAM test_mhb_response_modal
   LIBRARIES tests_fem tests_models shb_modal)
 shb_test(mhb/balance UNIT balance stick_stiffness newton ring_system subharmonics doubled_ring
   modal_error spatial_error stuck_solver disc_contacts
-  INTEGRATION truncation_error coriolis condensation
+  INTEGRATION truncation_error truncation_norms coriolis condensation
   LIBRARIES tests_models ${COUNTS_ALLOCATIONS})
 shb_test(mhb/search UNIT multistart ring_symmetry ring_motion LIBRARIES tests_models)
 shb_test(mhb/floquet UNIT multipliers hill linearised_law ring_band bloch hessenberg_qr
@@ -34,7 +34,7 @@ shb_test(mhb/continuation UNIT arclength_scalar balance_curve closed_curve corre
   resonance_detection segment INTEGRATION arclength linear_resonances
   LIBRARIES tests_models LINK LINKER:--wrap=mhb_arclength_start)
 shb_test(mhb/amplification UNIT whitehead INTEGRATION ring_response LIBRARIES tests_models)
-shb_test(mhb/branches UNIT branch_completion chain linear_limits main_branch peak_search
+shb_test(mhb/branches UNIT free_body branch_completion chain linear_limits main_branch peak_search
   period_doubling record tracer
   INTEGRATION branch_stability forced_response harmonic_selection
   lasting_motion mistuned_sweep run_up secondary_branches ring_search unfinished_curve

@@ -63,6 +63,11 @@ static double distance(const double *x, int nb, const double *fine) {
   return sqrt(sum) / mhb_norm(fine, 3 * wide);
 }
 
+/* What the estimate says before it counts the tail of the spectrum (test_truncation_norms). */
+static double distance_told(const mhb_truncation *t) {
+  return hypot(mhb_norm(t->step, t->doubled->n), t->higher_size);
+}
+
 /* Near a fold the error at fixed frequency goes with the root of the shift of the curve. */
 static int near_fold(const mhb_branch *b, int point) {
   for (int i = 0; i < b->n_points; i++)
@@ -92,7 +97,8 @@ static void compare(workspace *s, const mhb_branch *b, int folds, comparison *ou
       continue;
     }
     mhb_balance_evaluate(r, x, omega, s->newton->r, NULL, NULL);
-    double estimate = mhb_truncation_error(s->truncation, x);
+    mhb_truncation_error(s->truncation, x);
+    double estimate = distance_told(s->truncation) / mhb_balance_vibration(r, x);
     out->worst      = fmax(out->worst, error);
     if (fmax(error, estimate) > 1e-7) out->ratio[out->n++] = estimate / error; /* else: noise */
   }

@@ -33,6 +33,7 @@ static void set_up(fixture *f, mhb_parameter parameter, double value, int wide) 
                                   .iterations      = 4,
                                   .residual        = 1e-11,
                                   .truncation      = 2e-3,
+                                  .truncation_max  = 5e-3,
                                   .modal           = 3e-4,
                                   .truncation_kind = 2};
   f->response = mhb_response_create(PAIRS, PROBES, wide);
@@ -64,7 +65,7 @@ static void a_point_arrives_with_all_its_figures(void **state) {
     assert_int_equal(b->harmonics[i], H);
     assert_int_equal(b->truncation_kind[i], 2);
     assert_true(b->error_newton[i] == 1e-11 && b->error_truncation[i] == 2e-3);
-    assert_true(b->error_modal[i] == 3e-4);
+    assert_true(b->error_modal[i] == 3e-4 && b->error_truncation_max[i] == 5e-3);
     double worst    = 0;
     int    at_limit = 0;
     for (int a = 0; a < PAIRS; a++) {

@@ -60,6 +60,7 @@ static void fill_point(mhb_response *response, int branch) {
   b->seconds[point]          = 1e-3 * point;
   b->error_newton[point]     = 1e-12 * point;
   b->error_truncation[point] = 1e-5 * point;
+  if (b->error_truncation_max) b->error_truncation_max[point] = 2e-5 * point;
   b->error_sampling[point]   = 1e-9 * point;
   b->error_modal[point]      = 1e-4 * point;
   b->mark[point]             = (point + branch) % (MHB_ALL_MARKS + 1);
@@ -146,6 +147,7 @@ static void assert_same_branch(const mhb_response *response, const mhb_branch *a
     assert_same(a, b, lasting_least, n);
     assert_same(a, b, lasting_least_worst, n);
     assert_same(a, b, lasting_kind, n);
+    assert_same(a, b, error_truncation_max, n);
   } else {
     assert_true(!b->judged && !b->loss && !b->multipliers);
   }
@@ -373,7 +375,7 @@ static void test_described(void **state) {
   (void)state;
   mhb_response *response = sample(PROBES, 5);
   assert_ok(mhb_response_write(response, scratch("described.h5"), &from));
-  assert_int_equal(assert_described(scratch("described.h5")), 3 * 16 + 3 + 5 + 9 + 14);
+  assert_int_equal(assert_described(scratch("described.h5")), 3 * 16 + 3 + 5 + 9 + 15);
   hid_t file;
   char *text;
   assert_ok(h5_open(scratch("described.h5"), &file));

@@ -416,7 +416,7 @@ static void test_values(void **state) {
   (void)state;
 #define IN(member) offsetof(modal_model, member)
   static const fault faults[] = {
-      {IN(frequency), 0, 0, "/modes/frequency: value 0 (from 0) is 0 Hz; all must be positive"},
+      {IN(frequency), 0, -1, "/modes/frequency: value 0 (from 0) is -1 Hz; a frequency is 0"},
       {IN(frequency), 0, -3, "value 0 (from 0) is -3 Hz"},
       {IN(frequency), 2, 200, "value 2 (from 0), 200 Hz, is below the one before"},
       {IN(frequency), 1, NAN, "/modes/frequency: the value at [1] (from 0) is not a number"},
