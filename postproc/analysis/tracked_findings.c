@@ -27,10 +27,32 @@ static void put_amplitude(const mhb_response *r, post_buffer *out) {
            r->peak_to_peak ? " peak to peak" : "");
 }
 
+/* The recorded point nearest to the optimum has an estimated error above the tolerance. */
+static bool is_doubtful(const mhb_response *r) {
+  const mhb_optimum *o     = &r->optimum;
+  double             least = INFINITY;
+  bool               found = false;
+  for (int b = 0; b < r->n_branches; b++) {
+    const mhb_branch *branch = &r->branch[b];
+    for (int i = 0; i < branch->n_points; i++) {
+      const double off = hypot(branch->value[i] - o->value, branch->frequency[i] - o->frequency[0]);
+      if (off < least) found = post_doubtful(branch, i);
+      least = fmin(least, off);
+    }
+  }
+  return found;
+}
+
 void post_tracked_figure(const post_analysis *analysis, post_buffer *out) {
   const mhb_optimum *o = &analysis->response->optimum;
   char               f[POST_NUMBER];
   if (o->kind == MHB_OPTIMUM_NONE) return;
+  if (is_doubtful(analysis->response)) {
+    post_put(out,
+             "<div class=\"figure\"><dt>Least highest peak</dt><dd><b>not known</b><span>its "
+             "estimated error is above the tolerance</span></dd></div>\n");
+    return;
+  }
   post_put(out, "<div class=\"figure\"><dt>Least highest peak, ");
   put_value(analysis, analysis->abscissa.name, out);
   post_put(out, "</dt><dd><b>");
@@ -125,7 +147,7 @@ void post_tracked_findings(const post_analysis *analysis, post_buffer *out) {
     put_ends(r, out);
     return;
   }
-  if (o->kind != MHB_OPTIMUM_NONE) {
+  if (o->kind != MHB_OPTIMUM_NONE && !is_doubtful(r)) {
     post_put(out, "<li>The highest peak is least at ");
     put_value(analysis, analysis->abscissa.name, out);
     post_put(out, ": ");
@@ -151,6 +173,11 @@ void post_tracked_summary(const post_analysis *analysis, post_buffer *out) {
   const mhb_optimum  *o = &r->optimum;
   char                f[POST_NUMBER];
   if (o->kind == MHB_OPTIMUM_NONE) return;
+  if (is_doubtful(r)) {
+    post_put(out, "%soptimum not known: its estimated error is above the tolerance",
+             out->length ? "; " : "");
+    return;
+  }
   post_put(out, "%soptimum ", out->length ? "; " : "");
   put_value(analysis, mhb_parameter_name(r->parameter), out);
   post_put(out, ": ");
