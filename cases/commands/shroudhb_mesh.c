@@ -90,7 +90,7 @@ static shb_status read_mesh(const case_file *file, const char *path, mesh_fe *me
 /* Warns if coordinates seem to be in mm and not in m; the mesh itself is in order. */
 static void warn_size(const case_file *file, const mesh_fe *mesh) {
   const double size  = mesh_fe_extent(mesh);
-  const char  *doubt = mesh_unit_hint(size);
+  const char  *doubt = mesh_unit_hint(size, file->source.unit_given);
   if (*doubt)
     fprintf(stderr, "shroudhb: warning: %s: the body measures %.3g m%s\n", file->mesh_file, size,
             doubt);

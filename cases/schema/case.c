@@ -64,6 +64,8 @@ static void share(case_reader *r) {
   file->material.E       = file->constants.E[0];
   file->material.nu      = file->constants.nu[0];
   file->has_materials    = case_reader_given(r, "materials") != NULL;
+  /* no message asks for it then */
+  file->source.unit_given = step || case_reader_given(r, "mesh.unit");
   for (int i = 0; i < file->n_materials; i++) {
     case_material *one = &file->materials[i];
     one->material.E    = one->constants.E[0];

@@ -139,8 +139,9 @@ double mesh_fe_extent(const mesh_fe *mesh) {
   return vec3_distance(high, low);
 }
 
-const char *mesh_unit_hint(double extent) {
+const char *mesh_unit_hint(double extent, bool unit_given) {
   static const double least = 2e-3, most = 10; /* m */
+  if (unit_given) return "";
   if (extent > most) return "; are its coordinates in mm? Say so with mesh.unit";
   return extent < least ? "; are its coordinates in m? Say so with mesh.unit" : "";
 }
@@ -153,7 +154,7 @@ shb_status mesh_fe_near(const mesh_fe *mesh, const double point[3], const char *
             "%s: (%g, %g, %g) m is %.3g m off the nearest node of the body, which measures %.3g m; "
             "give a point on it, in mesh axes (that node is at (%.4g, %.4g, %.4g) m)%s",
             what, point[0], point[1], point[2], distance, extent, x[0], x[1], x[2],
-            mesh_unit_hint(extent));
+            mesh_unit_hint(extent, mesh->unit_given));
   return SHB_OK;
 }
 

@@ -45,6 +45,7 @@ typedef struct {
   char      more[MESH_MAX_MORE][MESH_WORD]; /* their names */
   mesh_face_set set[MESH_MAX_SETS];         /* the usual six, then the others */
   char          found[MESH_FOUND];          /* "a, b": all groups of the file, for messages */
+  bool          unit_given;                 /* the unit of the file is known, for messages */
   int           n_regions;                  /* number of volumes with a material; 0: one material */
   char (*region_name)[MESH_WORD];           /* [n_regions] */
   int   *region; /* [n_elements] volume of each element; NULL: one material */
@@ -109,9 +110,9 @@ int mesh_fe_nearest(const mesh_fe *mesh, const double point[3]);
 /* Diagonal of the box around all nodes, m. */
 double mesh_fe_extent(const mesh_fe *mesh);
 
-/* End of a message about a place, "" for a body of usual extent in m. Otherwise it asks whether the
- * coordinates are in mm. */
-const char *mesh_unit_hint(double extent);
+/* End of a message about a place, "" for a body of usual extent in m, and where the case gives the
+ * unit. Otherwise it asks whether the coordinates are in mm. */
+const char *mesh_unit_hint(double extent, bool unit_given);
 
 /* Node nearest to point.
  *   what  in  heads the message, e.g. "probe.tip"

@@ -174,7 +174,7 @@ static shb_status take_nearest(const surface *s, const mesh_rule *rule, int id, 
             "mesh.groups.%s.nearest: (%g, %g, %g) m is %.3g m off the body of %s, which measures "
             "%.3g m; name a point on the face that is meant, in mesh axes%s",
             mesh_fe_set_name(s->mesh, id), rule->at[0], rule->at[1], rule->at[2], least, s->file,
-            s->extent, mesh_unit_hint(s->extent));
+            s->extent, mesh_unit_hint(s->extent, s->mesh->unit_given));
   edge *list  = list_edges(s);
   int  *queue = malloc(((size_t)s->outer.n + 1) * sizeof *queue);
   if (list && queue) flood_fill(s, list, first, queue, taken);
@@ -222,7 +222,7 @@ static shb_status apply_one(const surface *s, const mesh_rule *rule, int id, mes
               "mesh.groups.%s.tolerance: %g m is too wide for the body of %s, which measures %.3g "
               "m: other faces would be taken too; give at most %.2g m%s",
               mesh_fe_set_name(s->mesh, id), rule->tolerance, s->file, s->extent,
-              MESH_RULE_MAX_TOLERANCE * s->extent, mesh_unit_hint(s->extent));
+              MESH_RULE_MAX_TOLERANCE * s->extent, mesh_unit_hint(s->extent, s->mesh->unit_given));
     if (take_fitting(s, rule, taken, &least) == 0) return refuse_empty(s, rule, id, least);
   }
   return copy_taken(s, taken, &mesh->set[id]);

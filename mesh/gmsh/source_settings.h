@@ -6,8 +6,9 @@
 
 typedef struct {
   const char *path;
-  double      unit; /* m: length of one unit of the file; STEP files are read in mm */
-  double      size; /* m, element size of a solid; 0: as in the file (.geo) */
+  double      unit;       /* m: length of one unit of the file; STEP files are read in mm */
+  bool        unit_given; /* by the case or by a STEP file; else it is m by default */
+  double      size;       /* m, element size of a solid; 0: as in the file (.geo) */
   mesh_axis   axis;
   int         blades; /* periodic contact faces of a solid; 0: contact to ground */
   mesh_rules  rules;

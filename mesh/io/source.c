@@ -12,6 +12,7 @@
 static shb_status finish(const mesh_source *source, mesh_fe *mesh) {
   for (size_t i = 0; source->unit != 1 && i < 3 * (size_t)mesh->n_nodes; i++)
     mesh->coordinates[i] *= source->unit;
+  mesh->unit_given = source->unit_given;
   SHB_TRY(mesh_rules_apply(&source->rules, source->axis, source->path, mesh));
   return mesh_fe_check_groups(mesh, source->path);
 }

@@ -409,14 +409,17 @@ void post_campbell_table(const modal_speeds *s, bool all, post_buffer *out) {
   char text[POST_NUMBER];
   post_put(out, "  %d speeds; frequencies of the tracked modes, Hz (*: MAC below %g)\n  %6s", s->n,
            modal_speeds_mac_limit, "rpm");
-  for (int i = 0; i < s->n; i += step)
-    post_put(out, "%10s ", post_plain(text, s->speed[i] * 60 / SHB_TWO_PI, 5));
+  for (int i = 0; i < s->n; i += step) {
+    post_put_column(out, 10, post_plain(text, s->speed[i] * 60 / SHB_TWO_PI, 5));
+    post_put(out, " ");
+  }
   post_put(out, "\n");
   for (int t = 0; t < shown; t++) {
     post_put(out, "  %6d", t + 1);
-    for (int i = 0; i < s->n; i += step)
-      post_put(out, "%10s%s", post_plain(text, modal_speeds_frequency(s, i, t), 6),
-               s->mac[i * s->n_modes + t] < modal_speeds_mac_limit ? "*" : " ");
+    for (int i = 0; i < s->n; i += step) {
+      post_put_column(out, 10, post_plain(text, modal_speeds_frequency(s, i, t), 6));
+      post_put(out, s->mac[i * s->n_modes + t] < modal_speeds_mac_limit ? "*" : " ");
+    }
     post_put(out, "\n");
   }
   if (shown < s->n_modes) post_put(out, "  … %d more (--verbose shows them)\n", s->n_modes - shown);

@@ -60,7 +60,7 @@ static double lower_limit(const post_tracking *t) {
 /* Largest amplitude of all nonlinear curves, or (valleys) the least one at stable points. NAN where
  * its error is above the tolerance. */
 static post_track_point extreme(const post_analysis *analysis, bool valleys) {
-  post_track_point best = {NAN, NAN, NAN, -1, -1, false, false, true};
+  post_track_point best = {NAN, NAN, NAN, -1, -1, false, false, true, false};
   for (int b = 0; b < analysis->response->n_branches; b++) {
     const mhb_branch *branch = &analysis->response->branch[b];
     const post_curve *c      = &analysis->curve[b];
@@ -78,7 +78,8 @@ static post_track_point extreme(const post_analysis *analysis, bool valleys) {
                                 peak[i].point,
                                 peak[i].edge,
                                 peak[i].level,
-                                branch->complete};
+                                branch->complete,
+                                false};
     }
   }
   const bool marked =
@@ -122,6 +123,9 @@ void post_key_figures(const post_analysis *analysis, post_buffer *out) {
     put_peak_figure(analysis, out, label, best);
     put_gain(best->amplitude, t, out);
     post_lasting_figure(analysis, best, out);
+  } else if (t->n > 0) {
+    put_figure(out, "Lowest peak", "not known",
+               "the estimated error of every peak is above the tolerance");
   }
   post_put(out, "</dl>\n");
 }
@@ -143,7 +147,7 @@ static void put_optimum(const post_analysis *analysis, post_buffer *out) {
   char                 n0[POST_NUMBER], a[POST_NUMBER], f[POST_NUMBER], at[POST_PLACE];
   if (t->best < 0) {
     if (analysis->abscissa.parameter == MHB_IN_N0 && analysis->largest > 0) return;
-    if (mhb_response_marks(analysis->response).marked > 0) return;
+    if (t->n > 0) return; /* their errors are above the tolerance, which is said elsewhere */
     post_put(out, analysis->largest > 0
                       ? "<li>No nonlinear curve was computed at one preload: there is no "
                         "peak to compare.</li>\n"
@@ -169,8 +173,9 @@ static void put_optimum(const post_analysis *analysis, post_buffer *out) {
     post_put(out, " The optimum lies between %s and %s", post_plain(n0, t->bracket[0], 6),
              preload(a, t->bracket[1]));
   else if (t->n > 1)
-    post_put(out, " It is the %s preload computed: the optimum may lie beyond it.",
-             t->best == 0 ? "lowest" : "highest");
+    post_put(out, " It is the %s preload%s: the optimum may lie beyond it.",
+             isnan(t->bracket[0]) ? "lowest" : "highest",
+             t->best == 0 || t->best == t->n - 1 ? " computed" : " whose peak is known");
   if (isfinite(t->optimum_n0))
     post_put(out, "; a parabola through these three puts it near %s",
              post_measure(f, t->optimum_n0, NEWTON, 2));
@@ -206,16 +211,30 @@ static void put_extremes(const post_analysis *analysis, post_buffer *out) {
            post_measure(a, highest.amplitude, post_unit_length(highest.amplitude), 3));
 }
 
+/* " from 103.6 to 110.2 Hz", or " stays at 103.6 Hz" where the digits that are shown are equal. */
+static void put_way(const post_abscissa *x, const char *verb, double from, double to, int digits,
+                    post_buffer *out) {
+  char a[POST_PLACE], b[POST_PLACE], c[POST_PLACE];
+  post_abscissa_number(x, from, digits, a);
+  post_abscissa_number(x, to, digits, b);
+  if (strcmp(a, b) == 0)
+    post_put(out, " stays at %s", post_abscissa_value(x, to, digits, c));
+  else
+    post_put(out, "%s from %s to %s", verb, a, post_abscissa_value(x, to, digits, c));
+}
+
 /* One resonance over the preload: "from 103.6 to 110.2 Hz (open 103.6, stuck 121.9 Hz)". */
 static void put_resonance(const post_analysis *analysis, int index, post_buffer *out) {
   const post_tracking *t        = &analysis->resonances.list[index];
   const post_abscissa *x        = &analysis->abscissa;
   const double         limit[2] = {t->open.at, t->stuck.at};
-  char                 from[POST_PLACE], to[POST_PLACE];
+  char                 to[POST_PLACE];
   const char          *joint = " (";
-  post_put(out, "%s%d from %s to %s", index ? "; " : " ", index + 1,
-           post_abscissa_number(x, t->point[0].at, 5, from),
-           post_abscissa_value(x, t->point[t->n - 1].at, 5, to));
+  post_put(out, "%s%d", index ? "; " : " ", index + 1);
+  if (t->n > 1)
+    put_way(x, "", t->point[0].at, t->point[t->n - 1].at, 5, out);
+  else
+    post_put(out, " at %s", post_abscissa_value(x, t->point[0].at, 5, to));
   for (int i = 0; i < 2; i++) {
     if (!isfinite(limit[i])) continue;
     post_put(out, "%s%s %s", joint, i ? "stuck" : "open", post_abscissa_value(x, limit[i], 5, to));
@@ -225,8 +244,11 @@ static void put_resonance(const post_analysis *analysis, int index, post_buffer 
 }
 
 static void put_resonances(const post_analysis *analysis, post_buffer *out) {
-  const post_resonances *r = &analysis->resonances;
-  post_put(out, "<li>The range holds %d resonances. Over the preloads their peaks move:", r->n);
+  const post_resonances *r     = &analysis->resonances;
+  bool                   moves = false;
+  for (int i = 0; i < r->n; i++) moves |= r->list[i].n > 1;
+  post_put(out, "<li>The range holds %d resonances. %s:", r->n,
+           moves ? "Over the preloads their peaks move" : "Their peaks are");
   for (int i = 0; i < r->n && i < 6; i++) put_resonance(analysis, i, out);
   post_put(out, "%s.</li>\n", r->n > 6 ? "; and more" : "");
 }
@@ -246,19 +268,18 @@ static void put_shift(const post_analysis *analysis, post_buffer *out) {
   while (last > first && t->point[last].edge) last--;
   if (last > first) {
     const post_track_point *a = &t->point[first], *b = &t->point[last];
-    post_put(out, "<li>From %s to %s of preload the highest peak moves from %s to %s",
-             post_plain(n0, a->n0, 5), preload(n1, b->n0),
-             post_abscissa_number(x, a->at, digits, from),
-             post_abscissa_value(x, b->at, digits, to));
+    post_put(out, "<li>From %s to %s of preload the highest peak", post_plain(n0, a->n0, 5),
+             preload(n1, b->n0));
+    put_way(x, " moves", a->at, b->at, digits, out);
     if (isfinite(limits))
       post_put(out, " (open to stuck: %s by %s, %s)", limits >= 0 ? "up" : "down",
                post_abscissa_value(x, fabs(limits), 3, from),
                post_percent(to, fabs(limits) / t->open.at));
     post_put(out, ".</li>\n");
-  } else if (isfinite(limits)) {
-    post_put(out, "<li>Sticking shrouds move the highest peak from %s to %s.</li>\n",
-             post_abscissa_number(x, t->open.at, 5, from),
-             post_abscissa_value(x, t->stuck.at, 5, to));
+  } else if (isfinite(limits) && !t->open.edge && !t->stuck.edge) {
+    post_put(out, "<li>With sticking shrouds the highest peak");
+    put_way(x, " moves", t->open.at, t->stuck.at, 5, out);
+    post_put(out, ".</li>\n");
   }
 }
 
@@ -376,8 +397,11 @@ static void put_incomplete(const post_analysis *analysis, post_buffer *out) {
 
 /* Points that are no result. */
 static void put_marked(const post_analysis *analysis, post_buffer *out) {
-  const mhb_marks marks = mhb_response_marks(analysis->response);
-  char            error[POST_NUMBER];
+  const post_tracking *t     = &analysis->tracking;
+  const mhb_marks      marks = mhb_response_marks(analysis->response);
+  char                 error[POST_NUMBER];
+  int                  peaks = 0;
+  for (int i = 0; i < t->n; i++) peaks += t->point[i].doubtful;
   if (marks.marked == 0) return;
   post_put(
       out,
@@ -385,7 +409,11 @@ static void put_marked(const post_analysis *analysis, post_buffer *out) {
       "out is above <code>mhb.tolerance</code>, up to %s",
       marks.marked, marks.points, post_percent(error, marks.largest));
   if (marks.harmonics > 0) post_put(out, " with %d harmonics", marks.harmonics);
-  post_put(out, ". No peak is told from them.</li>\n");
+  post_put(out, ". They are hollow in the charts, and no peak is told from them.");
+  if (peaks > 0)
+    post_put(out, " Of %d preloads %d %s the highest peak among them.", t->n, peaks,
+             peaks > 1 ? "have" : "has");
+  post_put(out, "</li>\n");
 }
 
 /* Points where a contact that sticks leaves something open. */
@@ -503,6 +531,26 @@ static void put_flips(const mhb_response *r, post_buffer *out) {
              untraced);
 }
 
+/* Modes without damping. */
+static int undamped(const mhb_response *r) {
+  int n = 0;
+  for (int i = 0; r->mode_damping && i < r->n_modes; i++) n += r->mode_damping[i] <= 0;
+  return n;
+}
+
+static void put_undamped(const mhb_response *r, post_buffer *out) {
+  const int n = undamped(r);
+  if (n == 0) return;
+  post_put(out, "<li class=\"caution\"><b>");
+  if (n == r->n_modes)
+    post_put(out, "No mode has damping");
+  else
+    post_put(out, "%d of %d modes ha%s no damping", n, r->n_modes, n > 1 ? "ve" : "s");
+  post_put(out,
+           "</b>: where nothing slips a resonance is infinitely high, and the height told here is "
+           "that of the grid of frequencies.</li>\n");
+}
+
 static void put_accuracy(const post_analysis *analysis, post_buffer *out) {
   double worst = NAN, at_peak = NAN;
   int    unknown = 0; /* points whose estimate is no number below 1 */
@@ -540,6 +588,7 @@ void post_findings(const post_analysis *analysis, post_buffer *out) {
   put_incomplete(analysis, out);
   put_marked(analysis, out);
   post_put_ring(analysis, out);
+  put_undamped(analysis->response, out);
   if (analysis->response->track) {
     post_tracked_findings(analysis, out);
     put_undetermined(analysis->response, out);
@@ -579,7 +628,7 @@ static void put_marked_brief(const mhb_response *r, post_buffer *out) {
              out->length ? "; " : "", marks.marked, marks.points);
 }
 
-void post_summary(const post_analysis *analysis, post_buffer *out) {
+static void put_line(const post_analysis *analysis, post_buffer *out) {
   const post_tracking *t = &analysis->tracking;
   if (analysis->response->track) {
     post_tracked_summary(analysis, out);
@@ -598,4 +647,13 @@ void post_summary(const post_analysis *analysis, post_buffer *out) {
   snprintf(name, sizeof name, "lowest (n0 = %s) peak", preload(n0, t->point[t->best].n0));
   put_brief(analysis, out, name, &t->point[t->best]);
   post_lasting_summary(analysis, &t->point[t->best], out);
+}
+
+void post_summary(const post_analysis *analysis, post_buffer *out) {
+  const int n = undamped(analysis->response);
+  put_line(analysis, out);
+  if (n == 0) return;
+  post_put(out, "%s", out->length ? "; " : "");
+  if (n < analysis->response->n_modes) post_put(out, "%d modes have ", n);
+  post_put(out, "no damping: heights where nothing slips are those of the grid");
 }

@@ -34,7 +34,7 @@ typedef struct {
   chain                chain[MOST_CHAINS];
 } work;
 
-static const post_track_point NONE = {NAN, NAN, NAN, -1, -1, false, false, false};
+static const post_track_point NONE = {NAN, NAN, NAN, -1, -1, false, false, false, false};
 
 /* ---------------------------------------------------------------- peaks of a curve */
 
@@ -70,7 +70,7 @@ static shb_status fill(const work *w, int group, column *c) {
     for (int i = 0; i < n; i++)
       if (!peak[i].edge && !mhb_branch_marked(branch, peak[i].point))
         add(c, (post_track_point){w->analysis->group[group].n0, peak[i].at, peak[i].amplitude, b,
-                                  peak[i].point, false, false, branch->complete});
+                                  peak[i].point, false, false, branch->complete, false});
     free(peak);
   }
   int kept = 0;

@@ -13,6 +13,11 @@ double post_spatial_error(const mhb_branch *branch, int point) {
   return error && error[point] >= 0 ? error[point] : NAN;
 }
 
+bool post_undetermined(const mhb_response *response, const mhb_branch *branch, int point) {
+  return (branch->mark[point] & MHB_TRACTION_UNDETERMINED) &&
+         post_state(response, branch, point, MHB_STICK) < 1;
+}
+
 double post_error(const mhb_branch *branch, int point) {
   const double *part[] = {branch->error_newton, branch->error_truncation, branch->error_sampling,
                           branch->error_modal};
@@ -151,7 +156,7 @@ void post_values_free(const mhb_response *response, double **values) {
 /* Highest peak of one group. */
 static shb_status track_group(const post_analysis *analysis, int group, double *const *values,
                               post_track_point *out) {
-  *out = (post_track_point){analysis->group[group].n0, NAN, NAN, -1, -1, false, false, true};
+  *out = (post_track_point){analysis->group[group].n0, NAN, NAN, -1, -1, false, false, true, false};
   for (int b = 0; b < analysis->response->n_branches; b++) {
     const mhb_branch *branch = &analysis->response->branch[b];
     if (analysis->curve[b].group != group || branch->kind == MHB_BRANCH_INTEGRATION) continue;
@@ -169,12 +174,10 @@ static shb_status track_group(const post_analysis *analysis, int group, double *
       out->level     = peaks[top].level;
       out->branch    = b;
       out->point     = peaks[top].point;
+      out->doubtful  = mhb_branch_marked(branch, out->point);
     }
     free(peaks);
   }
-  /* a lower peak is not the highest one, and that is not known */
-  if (out->branch >= 0 && mhb_branch_marked(&analysis->response->branch[out->branch], out->point))
-    out->at = out->amplitude = NAN;
   return SHB_OK;
 }
 
@@ -184,13 +187,16 @@ void post_tracking_optimum(bool any_edge, post_tracking *t) {
   for (int edges = any_edge; edges <= 1 && t->best < 0; edges++)
     for (int i = 0; i < t->n; i++) {
       bool lower = t->best < 0 || t->point[i].amplitude < t->point[t->best].amplitude;
-      if (lower && (edges || !t->point[i].edge)) t->best = i;
+      if (lower && !t->point[i].doubtful && (edges || !t->point[i].edge)) t->best = i;
     }
-  if (t->best > 0) t->bracket[0] = t->point[t->best - 1].n0;
-  if (t->best >= 0 && t->best < t->n - 1) t->bracket[1] = t->point[t->best + 1].n0;
+  for (int i = 0; i < t->best; i++)
+    if (!t->point[i].doubtful) t->bracket[0] = t->point[i].n0;
+  for (int i = t->n - 1; t->best >= 0 && i > t->best; i--)
+    if (!t->point[i].doubtful) t->bracket[1] = t->point[i].n0;
   if (isnan(t->bracket[0]) || isnan(t->bracket[1])) return;
   const post_track_point *p = &t->point[t->best - 1];
-  if (p[0].edge || p[1].edge || p[2].edge) return;
+  for (int i = 0; i < 3; i++)
+    if (p[i].edge || p[i].doubtful) return;
   bool   log_x = p[0].n0 > 0;
   double x[3], y[3];
   for (int i = 0; i < 3; i++) {
@@ -208,7 +214,7 @@ void post_tracking_optimum(bool any_edge, post_tracking *t) {
 
 shb_status post_track(const post_analysis *analysis, double *const *values,
                       post_tracking *tracking) {
-  post_track_point none = {NAN, NAN, NAN, -1, -1, false, false, false};
+  post_track_point none = {NAN, NAN, NAN, -1, -1, false, false, false, false};
   *tracking             = (post_tracking){.open = none, .stuck = none};
   tracking->point       = calloc((size_t)analysis->n_groups, sizeof *tracking->point);
   SHB_CHECK(tracking->point, SHB_ERR_IO, "not enough memory for the tracking curve");

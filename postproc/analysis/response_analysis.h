@@ -30,6 +30,7 @@ typedef struct {
   /* The amplitude is constant; at: the end where the limit is that of the response. */
   bool level;
   bool complete; /* all branches of the group cover the range */
+  bool doubtful; /* its estimated error is above the tolerance: it is no result */
 } post_track_point;
 
 /* Highest peak of one output over the preload. */
@@ -37,12 +38,13 @@ typedef struct {
   int               n;           /* preloads with a known n0 and at least one point, ascending */
   post_track_point *point;       /* [n] */
   post_track_point  open, stuck; /* the limits; amplitude NAN if not computed */
-  /* Index of the lowest peak; one at an edge of the range only if all are; -1 if n = 0. */
+  /* Index of the lowest peak, without doubtful ones; one at an edge of the range only if all are;
+   * -1: none. */
   int    best;
-  double bracket[2]; /* n0 of the neighbours of best, N; NAN at an end */
+  double bracket[2]; /* n0 of the next peaks that are not doubtful, N; NAN if there is none */
   /* Vertex of the parabola through best and its neighbours, log amplitude over n0 (over log n0 if
    * all are positive). NAN unless best has two neighbours at a ratio of spacings below 4 and no
-   * point is at an edge. */
+   * point is at an edge or doubtful. */
   double optimum_n0, optimum_amplitude;
 } post_tracking;
 
@@ -108,6 +110,10 @@ shb_status post_track(const post_analysis *analysis, double *const *values,
 void post_tracking_optimum(bool any_edge, post_tracking *tracking);
 void post_tracking_free(post_tracking *tracking);
 void post_resonances_free(post_resonances *resonances);
+
+/* Some contacts of a point stick throughout and others do not. Nothing determines the mean friction
+ * of the former, which moves the latter: the point is one of many answers. */
+bool post_undetermined(const mhb_response *response, const mhb_branch *branch, int point);
 
 /* Largest finite error estimate of a point; NAN if there is none. */
 double post_error(const mhb_branch *branch, int point);

@@ -24,24 +24,36 @@ static void put_factor(const mhb_branch *b, post_buffer *out) {
            post_plain(at, b->amplification.worst_at, 5), post_plain(n0, b->n0[0], 4));
 }
 
-/* "n0 = 12 N: median 1.2, 95 % below 1.4 (1.3 to 1.6)": one item a preload. */
+/* " (1.3 to 1.6 with 95 % confidence)"; a bound that so few samples cannot give is said to lack. */
+static void put_bounds(const double bounds[2], int samples, post_buffer *out) {
+  char text[2][POST_NUMBER];
+  for (int i = 0; i < 2; i++) post_plain(text[i], bounds[i], 4);
+  if (isfinite(bounds[0]) && isfinite(bounds[1]))
+    post_put(out, " (%s to %s with 95\u00a0%% confidence)", text[0], text[1]);
+  else if (isfinite(bounds[0]) || isfinite(bounds[1]))
+    post_put(out, " (%s %s with 97.5\u00a0%% confidence; %d samples give no %s bound)",
+             isfinite(bounds[0]) ? "above" : "below", text[isfinite(bounds[0]) ? 0 : 1], samples,
+             isfinite(bounds[0]) ? "upper" : "lower");
+  else
+    post_put(out, " (%d samples give no bound)", samples);
+}
+
+/* "n0 = 12 N: median 1.2 (1.1 to 1.3), 95 % quantile 1.4 (1.3 to 1.6)": one item a preload. */
 static void put_samples(const mhb_samples *s, int preload, post_buffer *out) {
-  char   text[4][POST_NUMBER], n0[POST_NUMBER];
-  double median[3], high[3];
+  char      text[POST_NUMBER], n0[POST_NUMBER];
+  const int done = mhb_samples_done(s, preload);
+  double    median[3], high[3];
   mhb_samples_quantile(s, preload, 0.5, median);
   mhb_samples_quantile(s, preload, 0.95, high);
   const int worst = mhb_samples_worst(s, preload);
   if (worst < 0) return;
-  post_put(
-      out,
-      "<li>%d random rings, n0 = %s\u00a0N: the factor's median is %s; 95\u00a0%% are below %s",
-      mhb_samples_done(s, preload), post_plain(n0, s->n0[preload], 4),
-      post_plain(text[0], median[0], 4), post_plain(text[1], high[0], 4));
-  if (isfinite(high[1]) && isfinite(high[2]))
-    post_put(out, " (%s to %s with 95\u00a0%% confidence)", post_plain(text[2], high[1], 4),
-             post_plain(text[3], high[2], 4));
+  post_put(out, "<li>%d random rings, n0 = %s\u00a0N: the factor's median is %s", done,
+           post_plain(n0, s->n0[preload], 4), post_plain(text, median[0], 4));
+  put_bounds(median + 1, done, out);
+  post_put(out, ", its 95\u00a0%% quantile %s", post_plain(text, high[0], 4));
+  put_bounds(high + 1, done, out);
   post_put(out, "; the largest is %s (sample %d).</li>\n",
-           post_plain(text[2], s->factor[preload * s->n + worst], 4), worst);
+           post_plain(text, s->factor[preload * s->n + worst], 4), worst);
 }
 
 /* Whether the tuned ring is highest at an end of the curve: it then has no peak there. */

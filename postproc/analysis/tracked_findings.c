@@ -45,7 +45,13 @@ static void put_amplitude(const mhb_response *r, post_buffer *out) {
 void post_tracked_figure(const post_analysis *analysis, post_buffer *out) {
   const mhb_optimum *o = &analysis->response->optimum;
   char               f[POST_NUMBER];
-  if (!post_optimum_told(analysis->response)) return;
+  if (o->kind == MHB_OPTIMUM_NONE) return;
+  if (!post_optimum_told(analysis->response)) {
+    post_put(out,
+             "<div class=\"figure\"><dt>Least highest peak</dt><dd><b>not known</b><span>its "
+             "estimated error is above the tolerance</span></dd></div>\n");
+    return;
+  }
   post_put(out, "<div class=\"figure\"><dt>Least highest peak, ");
   put_value(analysis, analysis->abscissa.name, out);
   post_put(out, "</dt><dd><b>");
@@ -165,7 +171,12 @@ void post_tracked_summary(const post_analysis *analysis, post_buffer *out) {
   const mhb_response *r = analysis->response;
   const mhb_optimum  *o = &r->optimum;
   char                f[POST_NUMBER];
-  if (!post_optimum_told(analysis->response)) return;
+  if (o->kind == MHB_OPTIMUM_NONE) return;
+  if (!post_optimum_told(r)) {
+    post_put(out, "%soptimum not known: its estimated error is above the tolerance",
+             out->length ? "; " : "");
+    return;
+  }
   post_put(out, "%soptimum ", out->length ? "; " : "");
   put_value(analysis, mhb_parameter_name(r->parameter), out);
   post_put(out, ": ");

@@ -7,7 +7,7 @@
 
 #include "mhb/problem/parameter.h"
 
-static const post_track_point NONE = {NAN, NAN, NAN, -1, -1, false, false, false};
+static const post_track_point NONE = {NAN, NAN, NAN, -1, -1, false, false, false, false};
 
 /* ---------------------------------------------------------------- curves */
 

@@ -140,6 +140,12 @@ void post_put_json(post_buffer *buffer, const char *text) {
   post_put(buffer, "\"");
 }
 
+void post_put_column(post_buffer *buffer, int width, const char *text) {
+  int characters = 0;
+  for (const char *c = text; *c; c++) characters += ((unsigned char)*c & 0xc0) != 0x80;
+  post_put(buffer, "%*s%s", characters < width ? width - characters : 1, "", text);
+}
+
 /* Byte i of the floats in little-endian order, on any machine. */
 static uint32_t float_byte(const float *values, size_t i, size_t n_bytes) {
   if (i >= n_bytes) return 0;

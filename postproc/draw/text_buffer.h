@@ -26,6 +26,10 @@ void post_put_escaped(post_buffer *buffer, const char *text);
 /* Text for a terminal; control characters but newline and tab become '?'. */
 void post_put_printable(post_buffer *buffer, const char *text);
 
+/* A column of a table for a terminal: text to the right of `width` characters, at least one blank
+ * before it. */
+void post_put_column(post_buffer *buffer, int width, const char *text);
+
 /* A field of a CSV file, in quotes if it needs them. Spreadsheets compute what begins with = + - or
  * @: an apostrophe stands before such a text unless it is a number. Control characters but newline
  * become '?'. */

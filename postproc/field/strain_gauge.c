@@ -159,7 +159,7 @@ static shb_status place(const post_blade_field *field, const mesh_face_set *face
   const double   far = find_foot(mesh, faces, gauge, &face, normal);
   SHB_CHECK(far <= MESH_FE_NEAR * mesh_fe_extent(mesh), SHB_ERR_INPUT,
             "gauge.%s.at: is %.4g mm from the surface of the blade%s", gauge->name, 1e3 * far,
-            mesh_unit_hint(mesh_fe_extent(mesh)));
+            mesh_unit_hint(mesh_fe_extent(mesh), mesh->unit_given));
   SHB_CHECK(
       set_along(normal, gauge), SHB_ERR_INPUT,
       "gauge.%s.direction: is normal to the surface there, whose normal is [%.3f, %.3f, %.3f]",

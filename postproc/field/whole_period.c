@@ -2,6 +2,7 @@
 
 #include <cblas.h>
 #include <complex.h>
+#include <float.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -18,6 +19,27 @@ static void set_lag(post_period *p) {
   const int shift = p->blades > 0 ? mhb_wave_shift(&wave) : -1;
   p->closes       = shift >= 0;
   if (p->closes) p->lag = SHB_TWO_PI / p->order * ((double)p->engine_order / p->blades + shift);
+}
+
+/* Sums of the harmonics, rows[rows][width] with `each` numbers a node, must be finite in single
+ * precision, as pictures have them. Their squares then are in double precision. */
+static shb_status check_rows(int n_rows, int width, int each, const double *rows,
+                             const char *what) {
+  for (int i = 0; i < width; i++) {
+    double sum = 0;
+    for (int k = 0; k < n_rows; k++) sum += fabs(rows[(size_t)k * (size_t)width + (size_t)i]);
+    SHB_CHECK(sum <= FLT_MAX, SHB_ERR_INPUT,
+              "the %s of node %d of the mesh is %.3g: no motion; the mode shapes of the modal file "
+              "or the amplitudes of the response are too large",
+              what, i / each + 1, sum);
+  }
+  return SHB_OK;
+}
+
+static shb_status check_finite(const post_period *p) {
+  const int rows = 2 * (p->n_harmonics + 1), n = p->field->n_nodes;
+  SHB_TRY(check_rows(rows, 3 * n, 3, p->displacement, "displacement, in m,"));
+  return check_rows(rows, POST_STRESSES * n, POST_STRESSES, p->stress, "stress, in Pa,");
 }
 
 shb_status post_period_create(const post_blade_field *field, const mhb_response *response,
@@ -39,7 +61,8 @@ shb_status post_period_create(const post_blade_field *field, const mhb_response 
   SHB_CHECK(p->displacement && p->stress, SHB_ERR_IO, "out of memory for the field of %zu nodes",
             n);
   SHB_TRY(post_blade_displacement(field, b, kept, p->displacement));
-  return post_blade_stress(field, b, kept, p->stress);
+  SHB_TRY(post_blade_stress(field, b, kept, p->stress));
+  return check_finite(p);
 }
 
 /* m kg^-1/2, greatest displacement of a node in a mode over the period. The node moves on an
@@ -97,9 +120,10 @@ shb_status post_period_of_mode(const post_blade_field *field, int mode, int diam
   take_mode(mode, POST_STRESSES * n, field->stress, w ? w->stress : NULL, sigma);
   const double most = greatest_of_mode(n, shape, shape + 3 * (size_t)n);
   SHB_CHECK(most > 0, SHB_ERR_INPUT, "mode %d does not move", mode);
+  SHB_CHECK(isfinite(most), SHB_ERR_INPUT, "the shape of mode %d is not finite", mode);
   cblas_dscal(6 * n, size / most, shape, 1);
   cblas_dscal(2 * POST_STRESSES * n, size / most, sigma, 1);
-  return SHB_OK;
+  return check_finite(p);
 }
 
 void post_period_free(post_period *p) {

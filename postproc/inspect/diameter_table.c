@@ -19,7 +19,7 @@ static void put_block(const modal_nodal_diameters *d, int first, int rows, post_
     post_put(out, "  %5d", m + 1);
     for (int i = first; i < last; i++) {
       char hz[POST_NUMBER];
-      post_put(out, "%12s", post_plain(hz, d->model[i].frequency[m], 6));
+      post_put_column(out, 12, post_plain(hz, d->model[i].frequency[m], 6));
     }
     post_put(out, "\n");
   }
@@ -43,9 +43,11 @@ static shb_status put_waves(const modal_nodal_diameters *d, int at, bool left, i
   for (int m = 0; status == SHB_OK && m < rows; m++) {
     const double right = g.omega[g.n + m] / SHB_TWO_PI, back = -g.omega[g.n - 1 - m] / SHB_TWO_PI;
     char         a[POST_NUMBER], b[POST_NUMBER], c[POST_NUMBER];
-    post_put(out, "  %5d%6d%14s%14s%14s\n", d->diameter[at], m + 1,
-             post_plain(a, d->model[at].frequency[m], 6), post_plain(b, left ? back : right, 6),
-             post_plain(c, left ? right : back, 6));
+    post_put(out, "  %5d%6d", d->diameter[at], m + 1);
+    post_put_column(out, 14, post_plain(a, d->model[at].frequency[m], 6));
+    post_put_column(out, 14, post_plain(b, left ? back : right, 6));
+    post_put_column(out, 14, post_plain(c, left ? right : back, 6));
+    post_put(out, "\n");
   }
   mhb_gyroscopic_free(&g);
   return status;

@@ -201,14 +201,16 @@ static void put_pair(const post_mac *mac, const modal_model m[2], int i, post_bu
   char          a[POST_NUMBER], b[POST_NUMBER];
   for (int j = 1; j < mac->n[1]; j++)
     if (row[j] > row[best]) best = j;
-  post_put(out, "  %5d %12s", i + 1, post_plain(a, m[0].frequency[i], 6));
+  post_put(out, "  %5d", i + 1);
+  post_put_column(out, 13, post_plain(a, m[0].frequency[i], 6));
   if (row[best] < alike) {
     post_put(out, "%7s %12s %11s %7.3f\n", "-", "none alike", "", row[best]);
     return;
   }
   double change = 100 * (m[1].frequency[best] / m[0].frequency[i] - 1);
-  post_put(out, "%7d %12s %+11.3g %7.3f\n", best + 1, post_plain(b, m[1].frequency[best], 6),
-           fabs(change) < 1e-10 ? 0. : change, row[best]);
+  post_put(out, "%7d", best + 1);
+  post_put_column(out, 13, post_plain(b, m[1].frequency[best], 6));
+  post_put(out, " %+11.3g %7.3f\n", fabs(change) < 1e-10 ? 0. : change, row[best]);
 }
 
 static void put_matrix(const post_mac *mac, post_buffer *out) {

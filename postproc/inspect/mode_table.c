@@ -32,8 +32,9 @@ static void put_share(double share, post_buffer *out) {
 
 static void put_row(const modal_model *m, const shares *s, int i, post_buffer *out) {
   char hz[POST_NUMBER], zeta[POST_NUMBER];
-  post_put(out, "  %5d %12s %9s", i + 1, post_plain(hz, m->frequency[i], 6),
-           post_plain(zeta, m->damping_ratio[i], 3));
+  post_put(out, "  %5d", i + 1);
+  post_put_column(out, 13, post_plain(hz, m->frequency[i], 6));
+  post_put_column(out, 10, post_plain(zeta, m->damping_ratio[i], 3));
   if (s->mass > 0) {
     for (int d = 0; d < 3; d++) put_share(s->translation[3 * i + d] / s->mass, out);
     put_share(s->inertia > 0 ? s->rotation[i] / s->inertia : 0, out);
@@ -79,7 +80,9 @@ static shb_status put_coriolis(const modal_model *m, bool all, post_buffer *out)
   if (status == SHB_OK) post_put(out, "  with Coriolis terms\n");
   for (int i = 0; status == SHB_OK && i < shown; i++) {
     char hz[POST_NUMBER];
-    post_put(out, "  %5d %12s\n", i + 1, post_plain(hz, g.omega[g.n + i] / SHB_TWO_PI, 6));
+    post_put(out, "  %5d", i + 1);
+    post_put_column(out, 13, post_plain(hz, g.omega[g.n + i] / SHB_TWO_PI, 6));
+    post_put(out, "\n");
   }
   mhb_gyroscopic_free(&g);
   return status;

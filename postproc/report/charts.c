@@ -135,6 +135,9 @@ static void draw_branch(const post_analysis *analysis, const post_plot *plot, in
   }
   snprintf(classes, sizeof classes, "dot %s", group);
   if (n == 1) plot_dot(plot, classes, x[0], c->amplitude[0], 3);
+  snprintf(classes, sizeof classes, "doubtful %s", group);
+  for (int i = 0; i < n; i++)
+    if (mhb_branch_marked(branch, i)) plot_dot(plot, classes, x[i], c->amplitude[i], 2.2);
   snprintf(classes, sizeof classes, "fold %s", group);
   for (int i = 0; i < c->n_folds; i++)
     plot_dot(plot, classes, c->fold[i].at, c->fold[i].amplitude, 2.6);
@@ -323,7 +326,11 @@ static void draw_track(const post_analysis *analysis, const post_plot *plot, boo
   for (int i = 0; i < t->n; i++) {
     const post_track_point *p = &t->point[i];
     char                    classes[40];
-    snprintf(classes, sizeof classes, "%s c%d", p->edge ? "ring" : "dot", i);
+    snprintf(classes, sizeof classes, "%s c%d",
+             p->doubtful ? "doubtful"
+             : p->edge   ? "ring"
+                         : "dot",
+             i);
     plot_dot(plot, classes, p->n0, shown(p, place), i == t->best ? 5.5 : 4);
   }
 }
@@ -352,11 +359,13 @@ void post_chart_tracking(const post_analysis *analysis, post_buffer *out) {
   above.y = peak_axis(range, post_amplitude_is_log(analysis), unit.scale, label);
   plot_frame(&above);
   draw_track(analysis, &above, false);
-  const post_track_point *best = &t->point[t->best];
-  snprintf(optimum, sizeof optimum, "lowest: %s\u00a0%s",
-           post_plain(number, best->n0 / force.scale, 4), force.name);
-  plot_text(&above, "mark strong", best->n0, best->amplitude, (const double[2]){0, 21}, "middle",
-            optimum);
+  if (t->best >= 0) {
+    const post_track_point *best = &t->point[t->best];
+    snprintf(optimum, sizeof optimum, "lowest: %s\u00a0%s",
+             post_plain(number, best->n0 / force.scale, 4), force.name);
+    plot_text(&above, "mark strong", best->n0, best->amplitude, (const double[2]){0, 21}, "middle",
+              optimum);
+  }
   snprintf(preload, sizeof preload, "preload n₀, %s", force.name);
   post_plot below = {
       .out = out, .id = "tracking-f", .left = 60, .top = 374, .width = 1020, .height = 170};

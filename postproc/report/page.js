@@ -4,7 +4,8 @@
         {Panel, show, widthOf, extent} = Plot;
   const D = JSON.parse($("data").textContent);
   /* f: the abscissa, the frequency unless another parameter is followed */
-  const ROW = {f: 0, stick: 1, slip: 2, gap: 3, energy: 4, error: 5, stable: 6, special: 7};
+  const ROW = {f: 0, stick: 1, slip: 2, gap: 3, energy: 4, error: 5, stable: 6, special: 7, mark: 8};
+  const ABOVE = 1, UNDETERMINED = 2, NOT_JUDGED = 4; /* bits of mark */
 
   /* ---------------------------------------------------------------- data */
   for (const b of D.branches) {
@@ -94,6 +95,9 @@
         main.dot("dot " + classOf(g), f, worst, 2);
       }
       if (b.n === 1) main.dot("dot " + classes, b.f[0], a[0], 3);
+      b.row(ROW.mark).forEach((mark, k) => {
+        if (mark & ABOVE) main.dot("doubtful " + classes, b.f[k], a[k], 2.2);
+      });
       b.row(ROW.special).forEach((special, k) => {
         if (special > 2) main.dot("bifurcation " + classes, b.f[k], a[k], 2.6);
       });
@@ -164,7 +168,18 @@
             stable === 0 ? "beyond a fold: never seen" :
                            "not judged"
       ]);
-      if (error > 0) rows.push(["error estimate", error > 1 ? "no bound" : percent(error)]);
+      const mark = b.row(ROW.mark)[i], size = error > 1 ? "no bound" : percent(error);
+      if (mark & ABOVE) rows.push(["error estimate", size + ", above the tolerance: no result"]);
+      else if (mark & NOT_JUDGED)
+        rows.push(["error estimate", "not judged"]);
+      else if (error > 0)
+        rows.push(["error estimate", size]);
+      if (mark & UNDETERMINED)
+        rows.push([
+          "mean friction",
+          shares[0] < 1 ? "not determined where contacts stick: one of many answers" :
+                          "not determined: all contacts stick, the vibration is the same"
+        ]);
     }
     const special = b.row(ROW.special)[i],
           what =
@@ -280,16 +295,16 @@
       p.line("line track", track.map(t => t[T.n0]), track.map(t => t[value]));
       track.forEach(
           (t, i) => p.dot(
-              (t[T.edge] ? "ring" : "dot") + " " + classOf(D.groups[t[0]]), t[T.n0], t[value],
+              ["dot", "ring", "doubtful"][t[T.edge]] + " " + classOf(D.groups[t[0]]), t[T.n0], t[value],
               i === best ? 5.5 : 4));
     }
-    const ends = track[best][T.n0];
-    above.text(
-        "mark strong", ends, track[best][T.a], 0, 21,
-        best === 0                    ? "start" :
-            best === track.length - 1 ? "end" :
-                                        "middle",
-        `lowest: ${number(ends / fu[1], 4, false)}${NBSP}${fu[0]}`);
+    if (best >= 0)
+      above.text(
+          "mark strong", track[best][T.n0], track[best][T.a], 0, 21,
+          best === 0                    ? "start" :
+              best === track.length - 1 ? "end" :
+                                          "middle",
+          `lowest: ${number(track[best][T.n0] / fu[1], 4, false)}${NBSP}${fu[0]}`);
     show("tracking", 600, [above, below]);
   }
 

@@ -11,7 +11,7 @@
 
 enum {
   BUDGET        = 400000,
-  FIXED_ROWS    = 8,
+  FIXED_ROWS    = 9,
   LEAST_ROWS    = 12,
   MAX_COLUMNS   = 256,
   MAX_PLACES    = 8,
@@ -131,7 +131,7 @@ static void put_track_point(const post_analysis *analysis, const post_track_poin
   double            all[]  = {p->n0,
                               p->amplitude,
                               p->at,
-                              p->edge,
+                  p->doubtful ? 2 : p->edge,
                               post_state(analysis->response, branch, p->point, 0),
                               post_state(analysis->response, branch, p->point, 1),
                               post_state(analysis->response, branch, p->point, 2),
@@ -292,8 +292,10 @@ static double fixed_value(const post_analysis *analysis, const mhb_branch *branc
       return post_error(branch, point);
     case 6: /* 1 stable, 0 never seen, -1 not judged, 2 modulated */
       return post_verdict_of(branch, point) == POST_VERDICT_MODULATED ? 2 : branch->stable[point];
-    default:
+    case 7:
       return branch->special[point];
+    default: /* 1 above the tolerance, 2 undetermined friction, 4 not judged */
+      return branch->mark[point];
   }
 }
 

@@ -9,11 +9,12 @@
  *   abscissa  {parameter (as in a case file), name, unit, scale (shown is value in SI / scale),
  *             log, range [lo, hi]}
  *
- *   data   base64 of float32 [rows][n]. Rows 0 .. 7: abscissa in SI, shares stuck, slipping, open,
- *          dissipation in J, error estimate, stable, special. Further rows, in m, belong to
+ *   data   base64 of float32 [rows][n]. Rows 0 .. 8: abscissa in SI, shares stuck, slipping, open,
+ *          dissipation in J, error estimate, stable, special, mark. Further rows, in m, belong to
  *          outputs and spectra (harmonics 0 .. n - 1).
  *   track  for each preload [group, n0, amplitude, abscissa, edge, stuck, slipping, open,
  *          dissipation]
+ *          edge: 2 where the estimated error is above the tolerance
  *   best   index of the lowest of these, -1: none
  *   peaks, folds  [group, abscissa, amplitude]
  *   resonances    where there are several, each [[n0, abscissa, amplitude], ...] */

@@ -134,6 +134,28 @@ static const char *tracked_title(const mhb_response *r) {
   return r->tracks_multiplier ? "Tracked Neimark-Sacker points" : "Tracked peaks";
 }
 
+/* What the marks of points say, below the main chart. */
+static void put_marks(const post_analysis *analysis, post_buffer *out) {
+  const mhb_response *r        = analysis->response;
+  int                 doubtful = 0, undetermined = 0;
+  for (int b = 0; b < r->n_branches; b++)
+    for (int p = 0; p < r->branch[b].n_points; p++) {
+      doubtful += mhb_branch_marked(&r->branch[b], p);
+      undetermined += post_undetermined(r, &r->branch[b], p);
+    }
+  if (doubtful > 0)
+    post_put(out,
+             "<p class=\"note\">Small hollow points: the estimated error is above the tolerance; "
+             "they are no results.</p>\n");
+  if (undetermined > 0)
+    post_put(
+        out,
+        "<p class=\"note\">At %d point%s some contacts stick throughout. Nothing determines "
+        "their mean friction, and it moves the contacts that slip or open: what is drawn there "
+        "is one of many answers, that of the smallest mean. A click tells which points.</p>\n",
+        undetermined, undetermined > 1 ? "s" : "");
+}
+
 static void put_main(const post_analysis *analysis, const char *case_name, post_buffer *out) {
   char frequency[POST_PLACE], harmonic[32];
   post_quantity_name(analysis->response, post_quantity_primary(analysis->response), harmonic);
@@ -150,7 +172,11 @@ static void put_main(const post_analysis *analysis, const char *case_name, post_
       "seen. Thin: not judged. Bands and bars: the whole ring, from the mean to the worst blade. "
       "Small circles: folds; full ones: flips (period doubling) and Neimark-Sacker points. "
       "Dashed grey: the linear limits, contact open (long) and stuck (short). Amplitude, %s: "
-      "the largest displacement it reaches in a cycle.</figcaption>\n"
+      "the largest displacement it reaches in a cycle.</figcaption>\n",
+      harmonic);
+  put_marks(analysis, out);
+  post_put(
+      out,
       "<p class=\"hint\">Point at a curve to read it, click or tap it to see its contact, "
       "harmonics and "
       "motion below. Drag a rectangle, turn the wheel (after a click into the chart, or with Ctrl) "
@@ -159,8 +185,7 @@ static void put_main(const post_analysis *analysis, const char *case_name, post_
       "and "
       "between curves, Enter chooses, Escape resets.</p>\n<p id=\"spoken\" class=\"hidden\" "
       "aria-live=\"polite\"></p>\n"
-      "</figure></div>\n</section>\n",
-      harmonic);
+      "</figure></div>\n</section>\n");
 }
 
 /* ---------------------------------------------------------------- chosen point */
@@ -214,14 +239,17 @@ static void put_point(const post_analysis *analysis, post_buffer *out) {
 
 static void put_tracking(const post_analysis *analysis, post_buffer *out) {
   if (analysis->tracking.n < 2) return;
+  bool doubtful = false;
+  for (int i = 0; i < analysis->tracking.n; i++) doubtful |= analysis->tracking.point[i].doubtful;
   post_put(
       out,
       "<section>\n<h2>Peak against preload</h2>\n<p class=\"note\">Each preload’s highest peak, "
       "joined; lesser peaks are the "
-      "faint dots.%s An open ring marks a largest value at the edge of the %s range.</p>\n"
+      "faint dots.%s An open ring marks a largest value at the edge of the %s range%s.</p>\n"
       "<div class=\"card\"><figure><div class=\"chart\">\n",
       analysis->resonances.n > 1 ? " The thin lines join the peaks of one resonance each." : "",
-      post_at_one_frequency(analysis) ? "parameter’s" : "frequency");
+      post_at_one_frequency(analysis) ? "parameter’s" : "frequency",
+      doubtful ? ", a thin one an estimated error above the tolerance" : "");
   post_chart_tracking(analysis, out);
   post_put(out, "</div></figure></div>\n");
   post_table_resonances(analysis, out);

@@ -111,7 +111,7 @@ static void put_peak_cells(const post_analysis *analysis, const post_track_point
 
 static void put_resonance_row(const post_analysis *analysis, int index, post_unit unit,
                               post_buffer *out) {
-  static const post_track_point none = {NAN, NAN, NAN, -1, -1, false, false, false};
+  static const post_track_point none = {NAN, NAN, NAN, -1, -1, false, false, false, false};
   const post_tracking          *t    = &analysis->resonances.list[index];
   const post_track_point       *best = t->best >= 0 ? &t->point[t->best] : &none;
   char                          number[POST_NUMBER];

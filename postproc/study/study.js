@@ -862,7 +862,7 @@
         "No design is chosen." :
         `Design ${i + 1}${
             state.chosen < 0 ?
-                `, ${U ? "the median" : "the lowest"}; click another to see its own` :
+                `, ${U || R ? "the median" : "the lowest"}; click another to see its own` :
                 ""}. ` +
             "Relative derivative of the peak by each parameter." +
             (rest.length ? ` Of unknown value, so per unit only: ${

@@ -59,6 +59,24 @@ static int objective_at(const design_study *s, int group, int level) {
   return (group * s->n_outputs + study_objective(s)) * s->robust.n_percentiles + level;
 }
 
+/* "A to B at 95 % confidence". A bound that so few samples cannot give is said to lack. */
+static void put_bounds(const design_study *s, double low, double high, double confidence,
+                       int samples, post_buffer *out) {
+  const int  objective = study_objective(s);
+  const bool has_low = isfinite(low), has_high = isfinite(high);
+  if (!has_low && !has_high) {
+    post_put(out, "%d samples are too few for a bound", samples);
+    return;
+  }
+  if (!has_low || !has_high) post_put(out, has_low ? "above " : "below ");
+  if (has_low) put_output(s, objective, low, out);
+  if (has_low && has_high) post_put(out, " to ");
+  if (has_high) put_output(s, objective, high, out);
+  post_put(out, " at %g\u00a0%% confidence", 100 * confidence);
+  if (!has_low || !has_high)
+    post_put(out, "; %d samples give no %s bound", samples, has_low ? "upper" : "lower");
+}
+
 /* The varied keys at which the highest percentile is least. */
 static void put_robust_answer(const design_study *s, int group, int level, put_text put,
                               post_buffer *out) {
@@ -66,8 +84,12 @@ static void put_robust_answer(const design_study *s, int group, int level, put_t
   post_put(out, "%g\u00a0%% of the samples of ", r->level[level]);
   put(out, s->output[study_objective(s)].name);
   post_put(out, " stay below ");
-  put_output(s, study_objective(s), r->percentile[objective_at(s, group, level)], out);
-  post_put(out, " at ");
+  const int i = objective_at(s, group, level);
+  put_output(s, study_objective(s), r->percentile[i], out);
+  post_put(out, " (");
+  put_bounds(s, r->percentile_low[i], r->percentile_high[i], r->confidence, r->n_samples[group],
+             out);
+  post_put(out, ") at ");
   put_group_place(s, group, put, out);
   post_put(out, r->n_groups > 1 ? ", the least of %d" : "", r->n_groups);
 }
@@ -87,6 +109,9 @@ static void put_answer(const design_study *s, put_text put, post_buffer *out) {
     if (q >= 0 && isfinite(u->percentile[i])) {
       post_put(out, "; %g\u00a0%% of the samples stay below ", u->level[q]);
       put_output(s, objective, u->percentile[i], out);
+      post_put(out, " (");
+      put_bounds(s, u->percentile_low[i], u->percentile_high[i], u->confidence, u->n_samples, out);
+      post_put(out, ")");
     }
   } else if (best >= 0 && objective >= 0) {
     post_put(out, s->n > 1 ? "Design %d has the lowest " : "Design %d has the ", best + 1);
@@ -130,20 +155,6 @@ static void close_figure(post_buffer *out) {
   post_put(out, "</span></dd></div>\n");
 }
 
-/* "A to B at 95 % confidence". A bound that so few samples cannot give is left out; false: both. */
-static bool put_bounds(const design_study *s, double low, double high, double confidence,
-                       post_buffer *out) {
-  const int  objective = study_objective(s);
-  const bool has_low = isfinite(low), has_high = isfinite(high);
-  if (!has_low && !has_high) return false;
-  if (!has_low || !has_high) post_put(out, has_low ? "above " : "below ");
-  if (has_low) put_output(s, objective, low, out);
-  if (has_low && has_high) post_put(out, " to ");
-  if (has_high) put_output(s, objective, high, out);
-  post_put(out, " at %g\u00a0%% confidence", 100 * confidence);
-  return true;
-}
-
 static void put_uncertain_figures(const design_study *s, int objective, post_buffer *out) {
   const study_uncertainty *u = &s->uncertainty;
   int                      q = last_percentile(u), i = objective * u->n_percentiles + q;
@@ -157,7 +168,7 @@ static void put_uncertain_figures(const design_study *s, int objective, post_buf
   post_put(out, "<div class=\"figure\"><dt>%g %% stay below</dt><dd><b>", u->level[q]);
   put_output(s, objective, u->percentile[i], out);
   between(out);
-  put_bounds(s, u->percentile_low[i], u->percentile_high[i], u->confidence, out);
+  put_bounds(s, u->percentile_low[i], u->percentile_high[i], u->confidence, u->n_samples, out);
   close_figure(out);
 }
 
@@ -202,8 +213,8 @@ static void put_robust_figures(const design_study *s, int group, int level, post
   post_put(out, "<div class=\"figure\"><dt>%g %% stay below</dt><dd><b>", r->level[level]);
   put_output(s, study_objective(s), r->percentile[i], out);
   between(out);
-  if (!put_bounds(s, r->percentile_low[i], r->percentile_high[i], r->confidence, out))
-    post_put(out, "%d samples are too few for an interval", r->n_samples[group]);
+  put_bounds(s, r->percentile_low[i], r->percentile_high[i], r->confidence, r->n_samples[group],
+             out);
   close_figure(out);
   for (int k = 0; k < r->n_varied && k < 2; k++) {
     open_figure("at ", s->key[k].name, out);
@@ -352,6 +363,36 @@ static void put_search(const design_study *s, post_buffer *out) {
   put_notes(o->note, out);
 }
 
+/* End of a key's range at which the choice lies: -1 lower, 1 upper, 0 inside. */
+static int end_of_range(double chosen, double low, double high) {
+  if (!(high > low)) return 0;
+  return (chosen >= high) - (chosen <= low);
+}
+
+/* The choice of a grid or table at the end of what was tried: of designs, or of the groups of a
+ * robust study. Optimisations tell of their bounds, samples have no choice. */
+static void put_edges(const design_study *s, int best, int group, post_buffer *out) {
+  const study_robust *r = &s->robust;
+  const int n = group >= 0 ? r->n_groups : s->n, keys = group >= 0 ? r->n_varied : s->n_keys;
+  if (s->optimum.n_history > 0 || (group < 0 && best < 0)) return;
+  for (int k = 0; k < keys; k++) {
+    double low = INFINITY, high = -INFINITY;
+    for (int i = 0; i < n; i++) {
+      const double at = group >= 0 ? r->key[i * keys + k] : s->design[i].key[k];
+      low             = fmin(low, at);
+      high            = fmax(high, at);
+    }
+    const double chosen = group >= 0 ? r->key[group * keys + k] : s->design[best].key[k];
+    const int    end    = end_of_range(chosen, low, high);
+    if (!end) continue;
+    open_item(true, out);
+    post_put(out, "The choice lies at the %s end of the values of ", end < 0 ? "lower" : "upper");
+    put_bold(s->key[k].name, out);
+    post_put(out, ": further values may hold a better one.");
+    close_item(out);
+  }
+}
+
 static void put_spread(const design_study *s, int objective, post_buffer *out) {
   const study_uncertainty *u = &s->uncertainty;
   char                     ratio[POST_NUMBER];
@@ -446,7 +487,7 @@ static void put_fates(const design_study *s, post_buffer *out) {
 }
 
 void study_findings(const design_study *s, post_buffer *out) {
-  int objective = study_objective(s), best = study_best(s);
+  int objective = study_objective(s), best = study_best(s), level;
   post_put(out, "<ul class=\"findings\">\n");
   if (objective >= 0) {
     put_robust(s, out);
@@ -455,6 +496,7 @@ void study_findings(const design_study *s, post_buffer *out) {
   }
   bool chosen = is_uncertain(s, objective) || s->optimum.n_history > 0;
   if (!chosen) put_equals(s, best, out);
+  if (!is_uncertain(s, objective)) put_edges(s, best, study_best_group(s, &level), out);
   put_stability(s, best, out);
   put_search(s, out);
   put_fates(s, out);

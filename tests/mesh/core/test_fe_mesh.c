@@ -355,6 +355,9 @@ static void nearest_node_is_found(void **state) {
   for (int i = 0; i < 3 * mesh.n_nodes; i++) mesh.coordinates[i] *= 1e3;
   assert_int_equal(mesh_fe_near(&mesh, (double[3]){0, 0, -1e3}, "probe.tip", &node), SHB_ERR_INPUT);
   assert_non_null(strstr(shb_message(), "; are its coordinates in mm? Say so with mesh.unit"));
+  mesh.unit_given = true; /* nothing is asked that the case says */
+  assert_int_equal(mesh_fe_near(&mesh, (double[3]){0, 0, -1e3}, "probe.tip", &node), SHB_ERR_INPUT);
+  assert_null(strstr(shb_message(), "mesh.unit"));
   mesh_fe_free(&mesh);
 }
 

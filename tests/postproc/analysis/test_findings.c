@@ -69,10 +69,10 @@ static void points_above_the_tolerance_are_no_headline(void **state) {
   free(text);
   text = marked_text(-1, post_summary);
   assert_has(text, "above mhb.tolerance, no peak is told from them");
-  assert_null(strstr(text, "lowest"));
+  assert_null(strstr(text, "lowest ("));
   free(text);
   text = marked_text(-1, post_key_figures);
-  assert_null(strstr(text, "Lowest peak"));
+  assert_has(text, "<dt>Lowest peak</dt><dd><b>not known</b>");
   free(text);
 }
 
@@ -150,6 +150,123 @@ static void summary_is_plain(void **state) {
   free(text);
 }
 
+/* Text of a response in which every peak of the preloads from `first` on, by rank, is doubtful. */
+static char *doubted(int first, void (*put)(const post_analysis *, post_buffer *)) {
+  fixture_options o   = fixture_usual();
+  mhb_response   *r   = fixture_response(&o);
+  post_buffer     out = {0};
+  post_analysis  *a;
+  assert_ok(post_analysis_create(r, &a));
+  for (int i = first; i < a->tracking.n; i++) {
+    const post_track_point *p = &a->tracking.point[i];
+    r->branch[p->branch].mark[p->point] |= MHB_ABOVE_TOLERANCE;
+  }
+  post_analysis_destroy(a);
+  assert_ok(post_analysis_create(r, &a));
+  put(a, &out);
+  post_analysis_destroy(a);
+  mhb_response_destroy(r);
+  return out.text;
+}
+
+/* The lowest peak, at 100 N, is the fourth of seven. */
+static void doubtful_peaks_are_no_headline(void **state) {
+  (void)state;
+  char *text = doubted(3, post_key_figures);
+  assert_has(text, "<dt>Lowest peak, n₀ = 50\u00a0N</dt>");
+  free(text);
+  text = doubted(3, post_findings);
+  assert_has(text, "<b>Marked:</b> at 4 of ");
+  assert_has(text, "Of 7 preloads 4 have the highest peak among them.");
+  assert_has(text, "It is the highest preload whose peak is known");
+  free(text);
+  text = doubted(0, post_key_figures);
+  assert_has(text, "<dt>Lowest peak</dt><dd><b>not known</b>");
+  free(text);
+  text = doubted(0, post_summary);
+  assert_has(text, "; lowest peak not known: the estimated errors are above the tolerance");
+  free(text);
+  text = doubted(7, post_findings);
+  assert_has_not(text, "above the tolerance");
+  free(text);
+}
+
+static void modes_without_damping_are_told(void **state) {
+  (void)state;
+  double          damping[2] = {0, 0.001};
+  fixture_options o          = fixture_usual();
+  mhb_response   *r          = fixture_response(&o);
+  const int       n          = r->n_modes;
+  double         *kept       = r->mode_damping;
+  post_analysis  *a;
+  assert_ok(post_analysis_create(r, &a));
+  r->mode_damping = damping;
+  for (r->n_modes = 1; r->n_modes <= 2; r->n_modes++) {
+    post_buffer out = {0}, line = {0};
+    post_findings(a, &out);
+    post_summary(a, &line);
+    assert_has(out.text, r->n_modes == 1 ? "<b>No mode has damping</b>"
+                                         : "<b>1 of 2 modes has no damping</b>");
+    assert_has(line.text, "no damping: heights where nothing slips are those of the grid");
+    post_buffer_free(&out);
+    post_buffer_free(&line);
+  }
+  r->mode_damping = kept;
+  r->n_modes      = n;
+  post_analysis_destroy(a);
+  mhb_response_destroy(r);
+}
+
+/* A curve of a single preload moves nowhere, and limits at the ends of the range are no peaks. */
+static void what_does_not_move_is_not_said_to(void **state) {
+  (void)state;
+  fixture_options o = fixture_usual();
+  o.n_preloads      = 1;
+  o.incomplete      = false;
+  char *text        = text_of(&o, post_findings);
+  assert_has_not(text, "peaks move");
+  assert_has(text, "With sticking shrouds the highest peak moves from ");
+  free(text);
+  mhb_response  *r   = fixture_response(&o);
+  post_buffer    out = {0};
+  post_analysis *a;
+  assert_ok(post_analysis_create(r, &a));
+  a->tracking.stuck.at = a->tracking.open.at * (1 + 1e-9);
+  post_findings(a, &out);
+  assert_has(out.text, "With sticking shrouds the highest peak stays at ");
+  post_buffer_free(&out);
+  a->tracking.open.edge = true;
+  post_findings(a, &out);
+  assert_has_not(out.text, "With sticking shrouds");
+  post_buffer_free(&out);
+  post_analysis_destroy(a);
+  mhb_response_destroy(r);
+}
+
+/* The 95 % quantile of 20 samples has no upper bound at 97.5 %: 0.95^20 = 0.36. */
+static void a_bound_that_samples_lack_is_said(void **state) {
+  (void)state;
+  fixture_options o   = fixture_usual();
+  mhb_response   *r   = fixture_response(&o);
+  post_buffer     out = {0};
+  post_analysis  *a;
+  assert_ok(post_analysis_create(r, &a));
+  assert_ok(mhb_samples_create(20, 1, 3, &r->samples));
+  for (int i = 0; i < 20; i++) r->samples->factor[i] = 1.1 + 0.01 * i;
+  r->samples->n0[0]                 = 100;
+  r->branch[2].amplification.factor = 1.2;
+  r->ring                           = 6;
+  post_findings(a, &out);
+  r->ring = 0;
+  assert_has(out.text, "20 random rings, n0 = 100\u00a0N: the factor's median is 1.195 (");
+  assert_has(out.text, ", its 95\u00a0% quantile 1.2");
+  assert_has(out.text,
+             " with 97.5\u00a0% confidence; 20 samples give no upper bound); the largest");
+  post_buffer_free(&out);
+  post_analysis_destroy(a);
+  mhb_response_destroy(r);
+}
+
 int main(void) {
   const struct CMUnitTest tests[] = {cmocka_unit_test(points_above_the_tolerance_are_no_headline),
                                      cmocka_unit_test(response_is_told),
@@ -157,6 +274,10 @@ int main(void) {
                                      cmocka_unit_test(limits_may_be_absent),
                                      cmocka_unit_test(figures_are_four),
                                      cmocka_unit_test(rest_is_told),
-                                     cmocka_unit_test(summary_is_plain)};
+                                     cmocka_unit_test(summary_is_plain),
+                                     cmocka_unit_test(doubtful_peaks_are_no_headline),
+                                     cmocka_unit_test(a_bound_that_samples_lack_is_said),
+                                     cmocka_unit_test(modes_without_damping_are_told),
+                                     cmocka_unit_test(what_does_not_move_is_not_said_to)};
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

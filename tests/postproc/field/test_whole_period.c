@@ -143,10 +143,31 @@ static void extremes_are_those_of_the_instants(void **state) {
   post_period_free(&p);
 }
 
+/* Finite numbers whose sums are not; no single number is beyond a double. */
+static void what_is_not_finite_is_refused(void **state) {
+  (void)state;
+  example          e;
+  post_blade_field field = make(&e, 1);
+  post_period      p;
+  e.shape[4] = 1.7e308;
+  assert_refused(post_period_create(&field, &e.response, 0, 0, MESH_AXIS_X, &p), SHB_ERR_INPUT,
+                 "the displacement, in m, of node 2 of the mesh is ");
+  post_period_free(&p);
+  assert_refused(post_period_of_mode(&field, 1, -1, 100, 1e-3, MESH_AXIS_X, &p), SHB_ERR_INPUT,
+                 "the shape of mode 1 is not finite");
+  post_period_free(&p);
+  e.shape[4]  = 0.3;
+  e.stress[7] = 1e300;
+  assert_refused(post_period_create(&field, &e.response, 0, 0, MESH_AXIS_X, &p), SHB_ERR_INPUT,
+                 "the stress, in Pa, of node 2 of the mesh is ");
+  post_period_free(&p);
+}
+
 int main(void) {
   const struct CMUnitTest tests[] = {cmocka_unit_test(every_blade_is_the_first_turned_at_its_phase),
                                      cmocka_unit_test(a_wave_that_does_not_close_is_told),
                                      cmocka_unit_test(stress_turns_as_a_tensor),
-                                     cmocka_unit_test(extremes_are_those_of_the_instants)};
+                                     cmocka_unit_test(extremes_are_those_of_the_instants),
+                                     cmocka_unit_test(what_is_not_finite_is_refused)};
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -102,8 +102,27 @@ static void wrong_shapes_are_refused(void **state) {
   remove(path);
 }
 
+/* Numbers with a power of ten: blanks between columns, and the same width in characters. */
+static void columns_stay_apart_above_a_megahertz(void **state) {
+  (void)state;
+  write(3, false, false);
+  modal_model model = make(3);
+  post_buffer out   = {0};
+  hid_t       file;
+  frequency[1] = 1.65542e6;
+  damping[1]   = 1.2e-7;
+  assert_ok(h5_open(path, &file));
+  assert_ok(post_mode_table(file, &model, true, &out));
+  assert_ok(h5_close(file));
+  assert_has(out.text, "\n      1          100     0.002\n");
+  assert_has(out.text, "\n      2  1.65542×10⁶  1.2×10⁻⁷\n");
+  post_buffer_free(&out);
+  remove(path);
+}
+
 int main(void) {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(shares_are_of_the_mass),
+  const struct CMUnitTest tests[] = {cmocka_unit_test(columns_stay_apart_above_a_megahertz),
+                                     cmocka_unit_test(shares_are_of_the_mass),
                                      cmocka_unit_test(other_files_have_fewer_columns),
                                      cmocka_unit_test(wrong_shapes_are_refused)};
   return cmocka_run_group_tests(tests, NULL, NULL);

@@ -149,7 +149,8 @@ def check_point(scene, seen, check):
 
 def check_contact(scene, seen, i, check):
     """The text of a contact, its load, its limit and its loops."""
-    branch, pair, text = scene.branch(seen['branch']), scene.names.index(seen['name']), seen['contact']
+    branch, text = scene.branch(seen['branch']), seen['contact']
+    pair = scene.names.index(seen['name'])
     law = scene.law[pair]
     motion, force = complex_of(branch['motion'][i, pair]), complex_of(branch['force'][i, pair])
     fine = np.linspace(0, 1, 4001)

@@ -111,6 +111,7 @@ static void an_uncertain_study_answers_with_mean_and_percentile(void **state) {
   (void)state;
   char *html = page_of(STUDIES_UNCERTAIN);
   assert_has(html, "µm; 95\u00a0% of the samples stay below ");
+  assert_has(html, " samples give no upper bound).");
   assert_has(html, "<b>contact.n0</b> matters most for peak: its total Sobol’ index is 0.78");
   assert_has(html, "\"total\":[[[0.78,0.72,0.84]");
   assert_has(html, "<span>above "); /* so few samples give the 95 % percentile no upper bound */
@@ -123,9 +124,10 @@ static void a_robust_study_answers_with_the_least_percentile(void **state) {
   (void)state;
   char *html = page_of(STUDIES_ROBUST);
   assert_has(html,
-             "95\u00a0% of the samples of peak stay below 18\u00a0µm at "
+             "95\u00a0% of the samples of peak stay below 18\u00a0µm (above 17.1\u00a0µm at "
+             "95\u00a0% confidence; 38 samples give no upper bound) at "
              "contact.n0\u00a0=\u00a0150\u00a0N, the least of 5.");
-  assert_has(html, "<span>above 17.1\u00a0µm at 95\u00a0% confidence</span>");
+  assert_has(html, "<span>above 17.1\u00a0µm at 95\u00a0% confidence; 38 samples give no upper");
   assert_has(html,
              "Percentiles of 40 samples at each of 5 designs of the varied keys; 10 failed "
              "ones are left out.");
