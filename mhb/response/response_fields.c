@@ -37,7 +37,9 @@ const mhb_field mhb_fields[] = {
      "estimated error from the modes left out, their damping with them, relative to the "
      "vibration"},
     {"mark", "", MHB_INT, AT(mark), "-",
-     "what the point is not worth, a sum: 1 error/truncation is above the tolerance asked for; 2 a "
+     "what the point is not worth, a sum: 1 error/truncation, threefold where it is of first "
+     "order, "
+     "is above the tolerance asked for, and beside a fold the curve misses it too; 2 a "
      "contact sticks all the time: nothing determines its mean friction; 4 the error is not "
      "judged"},
     /* N_TRACKED: of tracked flips and Neimark-Sacker points */

@@ -5,7 +5,9 @@
  *   bench_harmonics --quick    12 of them
  *   bench_harmonics FIRST N    N cases from one on, a line each
  *
- * A curve has 300 points at most. Gaps, low and high preloads, soft and stiff contacts, narrow and wide ranges, three tolerances.
+ * A curve has 300 points at most. Gaps, low and high preloads, soft and stiff contacts, narrow and
+ * wide ranges, three tolerances.
+ *
  * The true error is the distance to the solution of 63 harmonics at the same frequency. It is found
  * by Newton's method from the point. A point without such a solution near by is one of no motion,
  * unless the curve of 63 harmonics passes near it (beside a fold). Exit code 1: a point that is not
