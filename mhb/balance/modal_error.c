@@ -36,8 +36,8 @@ static double series_ratio(const modal_model *model, double w) {
 /* Misfit up to which the modes kept have the damping of mass and stiffness (Rayleigh). */
 static const double RAYLEIGH = 0.02;
 
-/* 2 zeta w_e of modes left out near w_e: by Rayleigh's alpha + beta w^2 where the modes kept have
- * that, else with the damping ratio of the highest. */
+/* 2 zeta w_e of modes left out near w_e. It is Rayleigh's alpha + beta w^2 where the modes kept
+ * have that. Else the damping ratio is that of the highest. */
 static double damping_beyond(const modal_model *model, double w_e) {
   const int n    = model->n_modes;
   double    s[3] = {0}, t[2] = {0}, misfit = 0;

@@ -12,9 +12,9 @@
  * slowly the error falls with m: delta is the difference of two errors, of m and of 2m harmonics.
  * The part of delta up to m is divided by 1 - rho, rho the ratio of these errors.
  *
- * Two cases save the factors with 2m harmonics. With many pairs, or many harmonics, Broyden's method
- * finds the step (truncation_step.h). In a ring of different blades GMRES does (doubled_ring.h); there harmonics
- * above 2m are not looked at. */
+ * Two cases save the factors with 2m harmonics. With many pairs or harmonics Broyden's method finds
+ * the step (truncation_step.h). In a ring of different blades GMRES does (doubled_ring.h). There
+ * harmonics above 2m are not looked at. */
 #ifndef MHB_BALANCE_TRUNCATION_ERROR_H
 #define MHB_BALANCE_TRUNCATION_ERROR_H
 
@@ -56,17 +56,16 @@ typedef struct {
   double                *step;       /* [doubled->n] delta, -r or 0 of the last estimate */
   double                *r, *trial, *feedback; /* [doubled->n] */
   double                *before;               /* [doubled->n] residual at x */
-  double                *power;   /* [highest + 1] of harmonics of solution and estimate, m^2 */
-  int                    n_times; /* of a period */
-  double                *basis;   /* [n_times][doubled->nb] */
-  double                *motion;  /* [3 pairs][n_times] */
-  double                 higher_size;          /* |u_k|, k > 2m, of the last estimate */
-  double                 largest;              /* the largest error within the period, as estimated
-                                                * last: |e(t)| over all axes, as mhb_truncation_error */
-  double                 order;                /* p of the tail |u_k| ~ k^-p seen there */
-  mhb_truncation_kind    kind;                 /* of the last estimate */
-  bool                   by_broyden;           /* its step; the system is not factored there */
-  bool                   by_gmres;             /* its step, from the ring; nor here */
+  double                *power;       /* [highest + 1] of harmonics of solution and estimate, m^2 */
+  int                    n_times;     /* of a period */
+  double                *basis;       /* [n_times][doubled->nb] */
+  double                *motion;      /* [3 pairs][n_times] */
+  double                 higher_size; /* |u_k|, k > 2m, of the last estimate */
+  double                 largest; /* largest |e(t)| over all axes, of the last estimate, relative */
+  double                 order;   /* p of the tail |u_k| ~ k^-p seen there */
+  mhb_truncation_kind    kind;    /* of the last estimate */
+  bool                   by_broyden; /* its step; the system is not factored there */
+  bool                   by_gmres;   /* its step, from the ring; nor here */
   shb_arena              arena;
 } mhb_truncation;
 
@@ -77,9 +76,9 @@ int mhb_truncation_highest(int m);
 shb_status mhb_truncation_create(const mhb_balance *balance, mhb_truncation **truncation);
 void       mhb_truncation_destroy(mhb_truncation *truncation);
 
-/* Estimated error of the solution x[n], the point of the balance's evaluation in use, relative to
- * its vibration: the root-mean-square error in a period over that of the motion. `largest` is the
- * largest error within the period, relative to the same amplitude. Of first order also where the
+/* Estimated error of the solution x[n], the point of the balance's evaluation in use. It is the
+ * root-mean-square error in a period over that of the vibration. `largest` is the largest error
+ * within the period, relative to the same amplitude. Of first order also where the
  * Newton step does not exist (at a fold). */
 double mhb_truncation_error(mhb_truncation *truncation, const double *x);
 

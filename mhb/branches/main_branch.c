@@ -78,13 +78,13 @@ static bool go_on(void *context) {
 
 /* Why there is none. */
 static void note_no_start(main_branch *m, int fewer) {
-  const mhb_balance *b  = mhb_tracer_balance(m->tracer);
-  int                at = snprintf(m->no_start, sizeof m->no_start,
-                                   "no first solution with %d harmonic%s at %.6g %s", b->m, b->m == 1 ? "" : "s",
-                                   mhb_parameter_shown(b->parameter, m->sought), mhb_parameter_unit(b->parameter));
+  const mhb_balance *b        = mhb_tracer_balance(m->tracer);
+  const double       value    = mhb_parameter_shown(b->parameter, m->sought);
+  char               more[64] = "";
   if (fewer > 0)
-    snprintf(m->no_start + at, sizeof m->no_start - (size_t)at,
-             "; %d have one: give mhb.harmonics no more, or auto", fewer);
+    snprintf(more, sizeof more, "; %d have one: give mhb.harmonics no more, or auto", fewer);
+  snprintf(m->no_start, sizeof m->no_start, "no first solution with %d harmonic%s at %.6g %s%s",
+           b->m, b->m == 1 ? "" : "s", value, mhb_parameter_unit(b->parameter), more);
   m->other_reason = m->no_start;
 }
 

@@ -1,7 +1,7 @@
 /* The tail of a spectrum from its last two octaves.
  *
  * Where a motion has a kink its harmonics fall like k^-p: p = 2 for a jump of the velocity, 3 for
- * one of the acceleration, and so on. The sums of the squares over two neighbouring octaves have
+ * one of the acceleration. The sums of the squares over two neighbouring octaves have
  * the ratio 2^(1-2p). It gives p, and the geometric series of all octaves that follow. */
 #ifndef MHB_NUMERICS_TAIL_H
 #define MHB_NUMERICS_TAIL_H

@@ -10,8 +10,8 @@
  * and the probes by the same with their own shapes. |L_i| is at most 1e8/w_i^2: without damping, at
  * a resonance, it is that of a frequency 5e-9 beside it.
  *
- * A mode may be at 0 Hz. Its mean is then held by a spring of (1e-3 w)^2, w the lowest frequency
- * asked for: a steady load along it needs a contact that carries it.
+ * A mode may be at 0 Hz. A spring of (1e-3 w)^2 then holds its mean, w the lowest frequency asked
+ * for. A steady load along it needs a contact that carries it.
  *
  * Coriolis terms (modes/coriolis of the model) couple the modes:
  *   L = (diag(w_i^2 - w^2 + 2 j zeta_i w_i w) + j w G_k)^-1,   [modes][modes]

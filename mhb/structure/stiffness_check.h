@@ -7,9 +7,9 @@
 /* Largest ratio of contact stiffness to that of the blade, with its inertia, at the contact. */
 #define MHB_STIFFNESS_LIMIT 1e7
 
-/* Compares a pair's share of kuu, kww and kv with the blade's own stiffness 1/R there, to which the
- * inertia of each mode at the lowest frequency asked for is added: m w^2 of a free body. A stiffness
- * that is followed counts with the highest value of its range.
+/* Compares a pair's share of kuu, kww and kv with the blade's own stiffness 1/R there. The inertia
+ * of each mode at the lowest frequency asked for counts as stiffness, m w^2 of a free body. A
+ * contact stiffness that is followed counts with the highest value of its range.
  *
  * The law is as exact and as fast at any stiffness. Its force tends to that of a rigid contact,
  * with an error of 1/(k R). But a curve then bends within motions of mu n/k. It has to be followed

@@ -140,8 +140,8 @@ static void slipping(void **state) {
   compare("slip, 4 modes", 4, USUAL, 100, 60, 600, 900, 1e-5, 3);
 }
 
-/* Far below the modes left out the residual terms are good to 1e-9 and better, but for damping. Near
- * the stuck peak that alone is the error. */
+/* Far below the modes left out the residual terms are good to 1e-9, but for damping. Near the
+ * stuck peak that alone is the error. */
 static void damping_beyond_the_modes(void **state) {
   (void)state;
   compare("modal damping, 10 modes", 10, (damping){0.02, false}, 1, 1e5, 800, 1000, 1e-5, 100);

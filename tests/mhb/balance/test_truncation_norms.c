@@ -19,7 +19,7 @@
 #include "tests/support/settings.h"
 #include "tests/support/three_degree.h"
 
-enum { FINE = 127, TIMES = 1024, CONTACTS = 5, MOST = 40 };
+enum { FINE = 127, TIMES = 1024, CONTACTS = 6 };
 
 typedef enum { SOFT, RIGID, SEPARATING } kind;
 
@@ -38,8 +38,8 @@ static double between(unsigned long long *seed, double low, double high) {
 
 /* Contact and frequency, rad/s. */
 static mhb_settings random_contact(kind of, unsigned long long *seed, double *omega) {
-  const double mu = between(seed, 0.2, 0.8), n0 = between(seed, 0.03, 0.2);
-  *omega = between(seed, 0.7, 2);
+  const double mu = between(seed, 0.2, 0.8), n0 = between(seed, 0.02, 0.09);
+  *omega = between(seed, 0.85, 1.7);
   if (of == SOFT) return ground_settings(mu, 0.8, pow(10, between(seed, -0.5, 0.7)), n0, 1);
   if (of == RIGID) return ground_settings(mu, 0.8, pow(10, between(seed, 2, 3.5)), n0, 1);
   return ground_settings(mu, pow(10, between(seed, -0.3, 1)), pow(10, between(seed, -0.5, 0.7)),

@@ -110,7 +110,7 @@ static bool count(void *context) {
   return ++c->calls < c->last || c->last == 0;
 }
 
-/* Friction 400 to 40,000 times as stiff as the blade: Newton's method from the limits fails at some
+/* Friction 400 to 40,000 times as stiff as the blade. From the limits Newton's method fails at some
  * frequencies, and fewer harmonics or a softer contact lead on. A search takes no more than its
  * share of work, and is told of all along. */
 static void nearly_rigid_friction_has_one_or_an_end(void **state) {
