@@ -76,10 +76,10 @@ shb_status mhb_truncation_create(const mhb_balance *balance, mhb_truncation **ou
     t->before              = shb_arena_take(&t->arena, n, sizeof(double));
     t->n_times             = most(TIMES_A_HARMONIC * t->doubled->m, LEAST_TIMES);
     size_t times           = (size_t)t->n_times;
-    t->power               = shb_arena_take(&t->arena, (size_t)top + 1, sizeof(double));
+    t->power               = shb_arena_take(&t->arena, (size_t)t->doubled->m + 1, sizeof(double));
     t->basis  = shb_arena_take(&t->arena, times * (size_t)t->doubled->nb, sizeof(double));
     t->motion = shb_arena_take(&t->arena, times * 3 * (size_t)balance->n_pairs, sizeof(double));
-    t->force = shb_arena_take(&t->arena, 3 * (size_t)mhb_real_size(top), sizeof(double));
+    t->force  = shb_arena_take(&t->arena, 3 * (size_t)mhb_real_size(top), sizeof(double));
     if (t->arena.failed) status = shb_fail(SHB_ERR_IO, __FILE__, __LINE__, "out of memory");
   }
   if (status == SHB_OK && !balance->receptance->ring)
@@ -265,19 +265,15 @@ static void set_step(mhb_truncation *t, bool by_broyden) {
   t->doubled->eval->near = false;
 }
 
-/* Squares of the sizes of the harmonics: of solution and step up to 2m, of the estimate above.
- * Returns the highest. */
-static int set_powers(mhb_truncation *t) {
-  const mhb_balance *b   = t->doubled;
-  const int          top = t->higher && b->m < MHB_LEAST_OF_TAIL ? t->higher->last : b->m;
-  memset(t->power, 0, sizeof(double) * (size_t)(top + 1));
+/* Squares of the sizes of harmonics 1..2m of solution and step. With fewer than 8 of them the tail
+ * is not known; those above 2m, estimated one by one, do for it. */
+static void set_powers(mhb_truncation *t) {
+  const mhb_balance *b = t->doubled;
+  memset(t->power, 0, sizeof(double) * (size_t)(b->m + 1));
   for (int row = 0; row < 3 * b->n_pairs; row++) {
     const double *x = t->x + row * b->nb, *step = t->step + row * b->nb;
-    for (int i = 1; i < b->nb; i++)
-      t->power[(i + 1) / 2] += (x[i] + step[i]) * (x[i] + step[i]);
+    for (int i = 1; i < b->nb; i++) t->power[(i + 1) / 2] += (x[i] + step[i]) * (x[i] + step[i]);
   }
-  for (int k = b->m + 1; k <= top; k++) t->power[k] = mhb_truncation_power(t, k);
-  return top;
 }
 
 static void set_basis(mhb_truncation *t) {
@@ -308,14 +304,15 @@ static double largest_in_period(mhb_truncation *t, const double *e) {
 /* Both norms of the error, from the step and the tail; t->trial <- the error up to 2m. size: of the
  * vibration. Returns the first. */
 static double set_errors(mhb_truncation *t, double size) {
-  const mhb_balance *b       = t->doubled;
-  const int          low     = t->balance->nb;
-  const bool         knows   = t->kind == MHB_TRUNCATION_NEWTON;
-  const mhb_tail     tail    = knows ? mhb_tail_of(set_powers(t), t->power, ORDER_MARGIN)
-                                     : (mhb_tail){.order = INFINITY};
-  const double       ratio   = fmin(SLOWEST, exp2(2 - (tail.order - ORDER_MARGIN)));
-  double             highest = 0;
-  t->order                   = tail.order;
+  const mhb_balance *b     = t->doubled;
+  const int          low   = t->balance->nb;
+  const bool         knows = t->kind == MHB_TRUNCATION_NEWTON;
+  set_powers(t);
+  const mhb_tail tail =
+      knows ? mhb_tail_of(b->m, t->power, ORDER_MARGIN) : (mhb_tail){.order = INFINITY};
+  const double ratio   = fmin(SLOWEST, exp2(2 - (tail.order - ORDER_MARGIN)));
+  double       highest = 0;
+  t->order             = tail.order;
   for (int i = 0; i < b->n; i++) t->trial[i] = t->step[i] * (i % b->nb < low ? 1 / (1 - ratio) : 1);
   for (int k = b->m + 1; t->higher && k <= t->higher->last; k++)
     highest += sqrt(mhb_truncation_power(t, k));

@@ -56,7 +56,7 @@ typedef struct {
   double                *step;       /* [doubled->n] delta, -r or 0 of the last estimate */
   double                *r, *trial, *feedback; /* [doubled->n] */
   double                *before;               /* [doubled->n] residual at x */
-  double                *power;       /* [highest + 1] of harmonics of solution and estimate, m^2 */
+  double                *power;       /* [2m + 1] of harmonics of solution and estimate, m^2 */
   int                    n_times;     /* of a period */
   double                *basis;       /* [n_times][doubled->nb] */
   double                *motion;      /* [3 pairs][n_times] */

@@ -103,7 +103,7 @@ static void whole(void **state) {
   r->branch[3].lasting_offset[5] = -0.041;
   post_csv(r, &text);
   const char *at = record(text.text, names, name, &n);
-  assert_int_equal(n, 4 + 2 * 11 + 15 + 19);
+  assert_int_equal(n, 4 + 2 * 11 + 15 + 20);
   for (int b = 0; b < r->n_branches; b++)
     for (int p = 0; p < r->branch[b].n_points; p++, rows++) {
       at = record(at, room, cell, &m);
@@ -163,7 +163,7 @@ static void run_up(void **state) {
   post_csv(r, &text);
   const char *at = record(text.text, names, name, &n);
   record(at, room, cell, &m);
-  assert_int_equal(n, 5 + 2 * 11 + 15 + 19);
+  assert_int_equal(n, 5 + 2 * 11 + 15 + 20);
   assert_near(value(cell[column(name, n, "speed_rpm")]), 60 * r->branch[0].frequency[0] / 5, 1e-8);
   post_buffer_free(&text);
   mhb_response_destroy(r);
@@ -180,7 +180,7 @@ static void many_contacts(void **state) {
   assert_non_null(r);
   post_csv(r, &text);
   record(text.text, names, name, &n);
-  assert_int_equal(n, 4 + 3 * 15 + 19);
+  assert_int_equal(n, 4 + 3 * 15 + 20);
   column(name, n, "contact3_w_peak_to_peak_m");
   post_buffer_free(&text);
   mhb_response_destroy(r);
