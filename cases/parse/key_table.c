@@ -32,6 +32,10 @@ static const case_key table[] = {
     {"mesh.size", CASE_NUMBER, "m", 0, 100, .fallback = "0 m", AT(source.size), .stages = CASE_MESH,
      .when = CASE_IF_SIZE,
      .help = "element size of a solid; 0: as a .geo file says"},
+    {"mesh.curvature", CASE_NUMBER, "", 0, 100, .fallback = "0", AT(source.curvature),
+     .stages = CASE_MESH, .when = CASE_IF_SIZE,
+     .help = "elements that a full turn of a curved face of a solid would have, such as 8: smaller "
+             "ones there, down to a twentieth of mesh.size; 0: mesh.size everywhere"},
     {"mesh.groups", CASE_GROUPS, "", .fallback = "{}", AT(source.rules), .stages = CASE_MESH,
      .when = CASE_IF_MESH_FILE,
      .help = "groups by rule: {GROUP: {plane: point, normal: vector} | {radius: r} | {nearest: "

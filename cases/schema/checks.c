@@ -341,6 +341,10 @@ static void check_extension(case_reader *r) {
     case_reader_issue(r, "mesh.size", "missing; the element size of a solid, in m");
   if (format != MESH_FORMAT_UNKNOWN && !solid && case_reader_given(r, "mesh.size"))
     case_reader_issue(r, "mesh.size", "leave it out: '%s' is a mesh already", file->mesh_file);
+  if (format != MESH_FORMAT_UNKNOWN && !solid && case_reader_given(r, "mesh.curvature"))
+    case_reader_issue(r, "mesh.curvature", "leave it out: '%s' is a mesh already", file->mesh_file);
+  if (solid && !sized && file->source.curvature > 0 && case_reader_good(r, "mesh.size"))
+    case_reader_issue(r, "mesh.curvature", "needs mesh.size, the largest size");
   char *own = case_output(file, ".msh");
   if (own && case_mesh_is_made(file) && strcmp(own, file->mesh_file) == 0)
     case_reader_issue(r, "mesh.file",

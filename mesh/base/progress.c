@@ -54,6 +54,17 @@ void shb_progress_note(shb_progress *progress, const char *format, ...) {
   va_end(args);
 }
 
+void shb_progress_warn(shb_progress *progress, const char *format, ...) {
+  if (!progress || progress->quiet) return;
+  shb_progress_clear(progress);
+  va_list args;
+  va_start(args, format);
+  fputs("shroudhb: warning: ", stderr);
+  vfprintf(stderr, format, args);
+  fputc('\n', stderr);
+  va_end(args);
+}
+
 void shb_progress_phase(shb_progress *progress, const char *name, const char *format, ...) {
   if (!progress) return;
   shb_phase phase = shb_phases_lap(&progress->phases, name);

@@ -34,6 +34,10 @@ void shb_progress_clear(shb_progress *progress);
 void shb_progress_note(shb_progress *progress, const char *format, ...)
     __attribute__((format(printf, 2, 3)));
 
+/* Without --quiet: print "shroudhb: warning: text" on a line of its own. */
+void shb_progress_warn(shb_progress *progress, const char *format, ...)
+    __attribute__((format(printf, 2, 3)));
+
 /* End the current phase, record it and, with --verbose, print it:
  * "stage: name: text: 1.20 s, CPU 1.19 s, peak 210 MB". On several ranks see modal/common/phases.h.
  *   progress  in  NULL: nothing is done */

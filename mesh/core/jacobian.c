@@ -4,6 +4,8 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "mesh/core/inversion.h"
+
 enum { POINTS = 43 };
 
 /* Gradients of the shape functions at the points where J is checked. */
@@ -126,21 +128,54 @@ void mesh_jacobian_straighten(mesh_fe *mesh, char *moved) {
   }
 }
 
-shb_status mesh_jacobian_check(const mesh_fe *mesh, const char *name) {
+/* The place of an element: the mean of its corners. */
+static void middle_of(const mesh_fe *mesh, int element, double at[3]) {
+  const mesh_topology *topology = mesh_topology_of(mesh->kind);
+  const int           *node     = mesh->connectivity + topology->nodes * (size_t)element;
+  for (int d = 0; d < 3; d++) {
+    at[d] = 0;
+    for (int c = 0; c < topology->corners; c++)
+      at[d] += mesh->coordinates[3 * (size_t)node[c] + d] / topology->corners;
+  }
+}
+
+/* The inverted elements by cause. */
+typedef struct {
+  int  bad, n[MESH_N_INVERSIONS], first[MESH_N_INVERSIONS];
+  char tags[160];
+} inverted;
+
+static inverted find_inverted(const mesh_fe *mesh) {
+  inverted      found = {.bad = 0};
+  size_t        used  = 0;
   sample_points p;
-  char          tags[160] = "";
-  size_t        used      = 0;
-  int           bad       = 0;
   make_points(mesh->kind, &p);
   for (int e = 0; e < mesh->n_elements; e++) {
     if (smallest(mesh, e, &p) > 0) continue;
-    if (bad++ < 5)
-      used += (size_t)snprintf(tags + used, sizeof tags - used, "%s%ld", used ? ", " : "",
-                               mesh->element_tag[e]);
+    const mesh_inversion cause = mesh_inversion_of(mesh, e);
+    if (found.n[cause]++ == 0) found.first[cause] = e;
+    if (found.bad++ < 5)
+      used += (size_t)snprintf(found.tags + used, sizeof found.tags - used, "%s%ld",
+                               used ? ", " : "", mesh->element_tag[e]);
   }
-  SHB_CHECK(bad == 0, SHB_ERR_INPUT,
-            "%s: %d of %d elements inverted (det J <= 0): element%s %s%s; mesh finer or straighten "
-            "the curved edges there",
-            name, bad, mesh->n_elements, bad > 1 ? "s" : "", tags, bad > 5 ? ", ..." : "");
-  return SHB_OK;
+  return found;
+}
+
+shb_status mesh_jacobian_check(const mesh_fe *mesh, const char *name) {
+  const inverted found = find_inverted(mesh);
+  if (found.bad == 0) return SHB_OK;
+  char   why[MESH_INVERSION_TEXT];
+  double at[3];
+  int    most = 0;
+  for (int cause = 1; cause < MESH_N_INVERSIONS; cause++)
+    if (found.n[cause] > found.n[most]) most = cause;
+  const int example = found.first[most];
+  middle_of(mesh, example, at);
+  SHB_FAIL(
+      SHB_ERR_INPUT,
+      "%s: %d of %d elements inverted (det J <= 0): element%s %s%s; %d of them as element %ld, "
+      "about (%.4g, %.4g, %.4g): %s",
+      name, found.bad, mesh->n_elements, found.bad > 1 ? "s" : "", found.tags,
+      found.bad > 5 ? ", ..." : "", found.n[most], mesh->element_tag[example], at[0], at[1], at[2],
+      mesh_inversion_describe(mesh, example, why));
 }

@@ -22,7 +22,8 @@ double mesh_jacobian_worst_corner(const mesh_fe *mesh, double x[3]);
  *   moved  in/out  [n_nodes] set to 1 for these nodes */
 void mesh_jacobian_straighten(mesh_fe *mesh, char *moved);
 
-/* SHB_ERR_INPUT if any element has det J <= 0; the message names up to five tags.
+/* SHB_ERR_INPUT if any element has det J <= 0. The message names up to five tags, and the most
+ * frequent cause (mesh/core/inversion.h) with the place of an element, as the mesh has it.
  *   name  in  heads the message */
 shb_status mesh_jacobian_check(const mesh_fe *mesh, const char *name);
 

@@ -123,3 +123,31 @@ shb_status mesh_session_log_check(const char *what) {
   gmshFree(line);
   return status;
 }
+
+/* The text of an error in the log, without blanks at its end; NULL: the line is none. */
+static const char *error_of(char *line) {
+  static const char head[] = "Error: ";
+  if (strncmp(line, head, strlen(head)) != 0) return NULL;
+  size_t n = strlen(line);
+  while (n > strlen(head) && isspace((unsigned char)line[n - 1])) line[--n] = '\0';
+  return n > strlen(head) ? line + strlen(head) : NULL;
+}
+
+void mesh_session_log_errors(char *text, size_t size) {
+  char **line = NULL;
+  size_t n = 0, used = 0;
+  int    ierr = 0;
+  unmute_stdout();
+  gmshLoggerGet(&line, &n, &ierr);
+  gmshLoggerStop(&ierr);
+  *text = '\0';
+  for (size_t i = 0; i < n; i++) {
+    const char *said = error_of(line[i]);
+    if (said && !strstr(text, said) && used + strlen(said) + 3 < size)
+      used += (size_t)snprintf(text + used, size - used, "%s%s", used ? "; " : "", said);
+    gmshFree(line[i]);
+  }
+  gmshFree(line);
+  for (char *c = text; *c; c++)
+    if (iscntrl((unsigned char)*c)) *c = ' ';
+}

@@ -4,6 +4,7 @@
 #define MESH_GMSH_SESSION_H
 
 #include <signal.h>
+#include <stddef.h>
 
 #include "mesh/base/status.h"
 
@@ -24,11 +25,14 @@ void       mesh_session_close(mesh_session *session);
 shb_status mesh_session_fail(shb_status code, const char *file, int line, const char *what);
 
 /* gmsh continues after some errors in a file, such as those of a script, or an element that lacks
- * nodes. Call log_start before reading and log_check after it, which ends the log and fails with
- * the first error in it, "what: gmsh: error" on one line. SHB_ERR_INPUT.
+ * nodes. Call log_start before reading and log_check after it. log_check ends the log and fails
+ * with the first error in it, "what: gmsh: error" on one line. SHB_ERR_INPUT.
  *   what  in  heads the message, also that about Exit in a script */
 void       mesh_session_log_start(const char *what);
 shb_status mesh_session_log_check(const char *what);
+
+/* End the log; text <- its errors on one line, each once, as many as fit. */
+void mesh_session_log_errors(char *text, size_t size);
 
 /* Call gmsh with &ierr as its last argument; return the error. */
 #define GMSH_TRY(what, ...)                                                        \

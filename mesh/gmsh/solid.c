@@ -11,7 +11,6 @@
 #include "mesh/base/vec3.h"
 #include "mesh/core/face_match.h"
 #include "mesh/core/file_format.h"
-#include "mesh/core/jacobian.h"
 #include "mesh/gmsh/api.h"
 #include "mesh/gmsh/import.h"
 #include "mesh/gmsh/reading.h"
@@ -23,7 +22,6 @@ static shb_status set_options(const mesh_source *source) {
     double      value;
   } option[] = {{"Mesh.Algorithm3D", 1},
                 {"Mesh.Optimize", 1},
-                {"Mesh.OptimizeNetgen", 1},
                 {"Mesh.RandomSeed", 1}, /* same case, same mesh */
                 {"Mesh.ElementOrder", 1}};
   for (size_t i = 0; i < sizeof option / sizeof *option; i++)
@@ -68,15 +66,26 @@ void mesh_solid_close(mesh_solid *solid) {
   mesh_session_close(&solid->session);
 }
 
+/* Elements a turn. The tip of a cone has curvature without bound: the size has a least one. */
+static shb_status refine_curved(const mesh_source *source, double size) {
+  double least = 0;
+  GMSH_TRY(source->path, gmshOptionGetNumber("Mesh.MeshSizeMin", &least, &ierr));
+  least = fmax(least, size / MESH_FINEST);
+  GMSH_TRY(source->path, gmshOptionSetNumber("Mesh.MeshSizeMin", least, &ierr));
+  GMSH_TRY(source->path,
+           gmshOptionSetNumber("Mesh.MeshSizeFromCurvature", source->curvature, &ierr));
+  return SHB_OK;
+}
+
 /* A script may set smaller sizes of its own: ours is the maximum. */
 static shb_status set_size(const mesh_source *source) {
   if (!(source->size > 0)) return SHB_OK;
   double size = source->size / source->unit;
   GMSH_TRY(source->path, gmshOptionSetNumber("Mesh.MeshSizeMax", size, &ierr));
-  return SHB_OK;
+  return source->curvature > 0 ? refine_curved(source, size) : SHB_OK;
 }
 
-static shb_status generate(mesh_solid *solid) {
+static shb_status generate_dimensions(mesh_solid *solid) {
   const char *path = solid->source->path;
   mesh_extent extent;
   GMSH_TRY(path, gmshModelMeshClear(NULL, 0, &ierr));
@@ -93,23 +102,22 @@ static shb_status generate(mesh_solid *solid) {
   return SHB_OK;
 }
 
-static shb_status straighten(mesh_solid *solid, mesh_fe *mesh) {
-  int bad = mesh_jacobian_inverted(mesh);
-  if (bad == 0 || bad > mesh->n_elements / 100)
-    return mesh_jacobian_check(mesh, solid->source->path);
-  char *moved = calloc((size_t)mesh->n_nodes, 1);
-  SHB_CHECK(moved, SHB_ERR_IO, "no memory to straighten elements");
-  mesh_jacobian_straighten(mesh, moved);
-  free(moved);
-  shb_progress_note(solid->progress, "%d inverted elements straightened", bad);
-  return mesh_jacobian_check(mesh, solid->source->path);
+/* gmsh continues where it cannot mesh a face or a solid. */
+static shb_status generate(mesh_solid *solid) {
+  mesh_session_log_start(solid->source->path);
+  const shb_status status = generate_dimensions(solid);
+  mesh_session_log_errors(solid->faults.errors, sizeof solid->faults.errors);
+  SHB_TRY(status);
+  return mesh_solid_check_filled(solid->source, solid->faults.errors);
 }
 
 shb_status mesh_solid_mesh(mesh_solid *solid, mesh_fe *mesh) {
   mesh_names names = mesh_rules_names(&solid->source->rules, solid->source->unit);
+  solid->faults    = (mesh_solid_faults){.solid = 0};
   SHB_TRY(generate(solid));
   SHB_TRY(mesh_import(solid->source->path, &names, mesh));
-  shb_status status = straighten(solid, mesh);
+  shb_status status = mesh_solid_straighten(solid->source, mesh, &solid->faults);
+  if (status == SHB_OK) status = mesh_solid_compare(solid->source, mesh, &solid->faults);
   if (status != SHB_OK) mesh_fe_free(mesh);
   return status;
 }

@@ -4,6 +4,7 @@
 
 #include "mesh/base/progress.h"
 #include "mesh/gmsh/session.h"
+#include "mesh/gmsh/solid_check.h"
 #include "mesh/gmsh/source_settings.h"
 
 /* An open gmsh session that holds the solid. */
@@ -11,6 +12,7 @@ typedef struct {
   const mesh_source *source;
   shb_progress      *progress;
   mesh_session       session;
+  mesh_solid_faults  faults; /* of the last mesh */
 } mesh_solid;
 
 /* Start gmsh and load the solid; after success call mesh_solid_close.
@@ -20,8 +22,8 @@ void       mesh_solid_close(mesh_solid *solid);
 
 /* Mesh the solid, again if called again, and copy the mesh. Coordinates are in the source's unit,
  * groups those of the file. Inverted elements are straightened.
- * Errors: SHB_ERR_INPUT if more than 1 % of the elements are inverted, or there are too many
- * nodes. */
+ * Errors: SHB_ERR_INPUT if a solid got no elements, more than 1 % of the elements are inverted, or
+ * there are too many nodes. */
 shb_status mesh_solid_mesh(mesh_solid *solid, mesh_fe *mesh);
 
 /* Prepare matching contact faces and cyclic sides for the next mesh. Nothing is done if the faces

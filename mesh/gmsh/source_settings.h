@@ -4,11 +4,14 @@
 
 #include "mesh/core/group_rules.h"
 
+enum { MESH_FINEST = 20 }; /* curvature refines to this part of the size at most */
+
 typedef struct {
   const char *path;
   double      unit;       /* m: length of one unit of the file; STEP files are read in mm */
   bool        unit_given; /* by the case or by a STEP file; else it is m by default */
   double      size;       /* m, element size of a solid; 0: as in the file (.geo) */
+  double      curvature;  /* elements that a full turn of a curved face would have; 0: no matter */
   mesh_axis   axis;
   int         blades; /* periodic contact faces of a solid; 0: contact to ground */
   mesh_rules  rules;

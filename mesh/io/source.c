@@ -39,6 +39,7 @@ shb_status mesh_source_read(const mesh_source *source, shb_progress *progress, m
     status = mesh_solid_mesh(&solid, mesh);
     if (status == SHB_OK) status = finish(source, mesh);
   }
+  if (status == SHB_OK) mesh_solid_tell(source, &solid.faults, progress);
   mesh_solid_close(&solid);
   shb_progress_clear(progress);
   if (status != SHB_OK) mesh_fe_free(mesh);

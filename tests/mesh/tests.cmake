@@ -7,7 +7,7 @@ shb_test(mesh/core UNIT fe_mesh regions PROGRAM test_mesh_core_gmsh
   LIBRARIES tests_box ${GMSH_LIBRARY})
 shb_test(mesh/io UNIT source_files inp_read msh_check msh_read write INTEGRATION source
   LIBRARIES tests_box ${GMSH_LIBRARY})
-shb_test(mesh/gmsh UNIT reading LIBRARIES tests_box)
+shb_test(mesh/gmsh UNIT reading solid_check LIBRARIES tests_box)
 target_include_directories(test_mesh_core_gmsh PRIVATE ${GMSH_INCLUDE})
 target_include_directories(test_mesh_io PRIVATE ${GMSH_INCLUDE})
 shb_test(mesh/blade UNIT airfoil section_smoothing INTEGRATION disc hex_sweep shroud_angle

@@ -1,6 +1,8 @@
 /* Inverted elements found, straightened and told. */
 #include "mesh/core/jacobian.h"
 
+#include "mesh/core/inversion.h"
+
 #include "tests/support/box.h"
 #include "tests/support/check.h"
 
@@ -64,9 +66,62 @@ static void curved_edges_are_straightened(void **state) {
   }
 }
 
+static void swap(int *a, int *b) {
+  const int was = *a;
+  *a            = *b;
+  *b            = was;
+}
+
+static void assert_cause(mesh_fe *mesh, mesh_inversion cause, const char *words) {
+  assert_int_equal(mesh_inversion_of(mesh, 0), cause);
+  assert_refused(mesh_jacobian_check(mesh, "box"), SHB_ERR_INPUT, words);
+  assert_has(shb_message(), ", about (");
+  mesh_fe_free(mesh);
+}
+
+/* Every cause of det J <= 0 by a fault of its own. */
+static void the_cause_of_an_inverted_element_is_told(void **state) {
+  (void)state;
+  for (int kind = MESH_TET10; kind <= MESH_HEX20; kind++) {
+    mesh_fe   mesh    = box((mesh_kind)kind);
+    const int corners = mesh_topology_of(mesh.kind)->corners;
+    int      *node    = mesh.connectivity;
+    swap(&node[corners + 1], &node[corners + 2]);
+    assert_cause(&mesh, MESH_MIDDLE_ORDER, "its middle nodes are in another order: node ");
+    mesh                 = box((mesh_kind)kind);
+    mesh.connectivity[1] = mesh.connectivity[0];
+    assert_cause(&mesh, MESH_REPEATED, " twice; every node of an element must be another one");
+    mesh = box((mesh_kind)kind);
+    for (int d = 0; d < 3; d++)
+      mesh.coordinates[3 * mesh.connectivity[1] + d] =
+          mesh.coordinates[3 * mesh.connectivity[0] + d];
+    assert_cause(&mesh, MESH_REPEATED, " are at one place; every node needs its own");
+    mesh = box((mesh_kind)kind);
+    for (int i = 0; i < mesh.n_nodes; i++) mesh.coordinates[3 * i] *= -1;
+    assert_cause(&mesh, MESH_MIRRORED, "its corners go round the other way");
+    mesh = box((mesh_kind)kind);
+    for (int i = 0; i < mesh.n_nodes; i++) { /* along a direction in which no node hides another */
+      double *at = mesh.coordinates + 3 * i;
+      at[0] += 0.37 * at[2];
+      at[1] += 0.21 * at[2];
+      at[2] = 2 * at[0] + at[1];
+    }
+    assert_cause(&mesh, MESH_FLAT, "its corners lie in one plane");
+    mesh            = box((mesh_kind)kind);
+    double       *x = mesh.coordinates + 3 * mesh.connectivity[corners];
+    const double *a = mesh.coordinates + 3 * mesh.connectivity[0];
+    for (int d = 0; d < 3; d++) x[d] = a[d] + 0.4 * (x[d] - a[d]);
+    assert_cause(&mesh, MESH_CURVED, "its edges are too curved");
+  }
+  mesh_fe mesh = box(MESH_HEX20);
+  swap(&mesh.connectivity[2], &mesh.connectivity[3]);
+  assert_cause(&mesh, MESH_FOLDED, "its corners are in another order, or it is folded");
+}
+
 int main(void) {
   const struct CMUnitTest tests[] = {cmocka_unit_test(determinants_of_a_brick),
                                      cmocka_unit_test(the_worst_corner_of_a_sheared_brick),
-                                     cmocka_unit_test(curved_edges_are_straightened)};
+                                     cmocka_unit_test(curved_edges_are_straightened),
+                                     cmocka_unit_test(the_cause_of_an_inverted_element_is_told)};
   return cmocka_run_group_tests(tests, NULL, NULL);
 }
