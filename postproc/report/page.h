@@ -6,7 +6,7 @@
 #include "postproc/draw/text_buffer.h"
 
 extern const char post_page_css[];
-extern const char post_plot_js[]; /* numbers, axes and panels; comes before a page's own script */
+extern const char post_plot_js[];  /* numbers, axes and panels; comes before a page's own script */
 extern const char post_blade_js[]; /* the blade in motion */
 extern const char post_page_js[];  /* the report of a case */
 
