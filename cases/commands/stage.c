@@ -24,8 +24,8 @@ shb_status stage_run(const char *stage, const command_options *options, subproce
   return status;
 }
 
-/* A modal file that is damaged, or of another program, is not replaced: the balance tells of it. One
- * that is missing is made. */
+/* A modal file that is damaged, or of another program, is not replaced: the balance tells of it.
+ * One that is missing is made. */
 static bool may_be_made(const case_file *file) {
   char *path = case_modal_path(file), *settings = NULL;
   bool  made = path != NULL;

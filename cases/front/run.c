@@ -88,8 +88,7 @@ static shb_status run_stages(const case_file *file, const command_options *optio
   return SHB_OK;
 }
 
-/* All stages have the case as it is now, also where it is edited meanwhile. */
-static shb_status run_kept(const command_options *options) {
+shb_status run_case(const command_options *options) {
   case_file file;
   SHB_TRY(command_read(options, RUN_ALL | CASE_OR_MODES, &file));
   int               claim, code = SHB_OK;
@@ -106,16 +105,6 @@ static shb_status run_kept(const command_options *options) {
   if (claim >= 0) close(claim);
   if (status != SHB_OK) return status;
   return code == SHB_OK ? SHB_OK : shb_fail((shb_status)code, __FILE__, __LINE__, "%s", "");
-}
-
-shb_status run_case(const command_options *options) {
-  command_options kept = *options;
-  int             copy;
-  char            path[SUBPROCESS_COPY];
-  SHB_TRY(command_keep_text(&kept, &copy, path));
-  const shb_status status = run_kept(&kept);
-  close(copy);
-  return status;
 }
 
 static void describe_source(const case_file *file, FILE *out) {
