@@ -10,6 +10,10 @@
 
 static const double degree = SHB_PI / 180;
 
+/* Most that a face may be turned against its patch, degrees. A part sin^2 of the normal stiffness
+ * acts along it then: 0.8 %. */
+enum { FLAT = 5 };
+
 /* Shared data of the builders. */
 typedef struct {
   const mesh_fe       *mesh;
@@ -111,6 +115,34 @@ static shb_status finish_patch(const builder *b, int patch, const double normal[
   return SHB_OK;
 }
 
+/* Largest angle between the normals of facets and the mean normal of their patch, and where. */
+typedef struct {
+  double angle; /* rad */
+  int    facet;
+} spread;
+
+static void widen(const builder *b, int facet, const double mean[3], spread *s) {
+  double own[3] = {0}, dot = 0;
+  for (int i = 0; i < b->facets.nodes; i++)
+    for (int d = 0; d < 3; d++) own[d] += b->facets.normal[facet][i][d];
+  for (int d = 0; d < 3; d++) dot += own[d] * mean[d];
+  const double angle = acos(fmax(-1, fmin(1, dot / (norm(own) * norm(mean)))));
+  if (angle <= s->angle) return;
+  *s = (spread){angle, facet};
+}
+
+/* The contact law has one normal a patch. */
+static shb_status check_flat(const builder *b, const spread *s) {
+  const double *at = b->facets.centroid[s->facet];
+  SHB_CHECK(s->angle <= FLAT * degree, SHB_ERR_INPUT,
+            "group contact_right: its face at (%.4g, %.4g, %.4g) m is turned by %.3g deg against "
+            "the mean of its contact patch, which the contact law takes as flat (at most %d deg); "
+            "give every flat face an interface of its own (contact.interfaces), or a curved one "
+            "more contact.points",
+            at[0], at[1], at[2], s->angle / degree, FLAT);
+  return SHB_OK;
+}
+
 /* Entries of a right node, at most. */
 static int entries_each(const builder *b) {
   return b->pairing && b->pairing->projected ? b->facets.nodes : 1;
@@ -133,7 +165,11 @@ static shb_status build_patch(builder *b, int patch, modal_patches *out) {
       add_entry(b, patch, i, b->node_area[i] / out->area[patch], out);
     b->node_area[i] = 0;
   }
-  return finish_patch(b, patch, normal, out);
+  SHB_TRY(finish_patch(b, patch, normal, out));
+  spread s = {.angle = 0};
+  for (int f = 0; f < b->facets.n; f++)
+    if (b->facets.patch[f] == patch) widen(b, f, normal, &s);
+  return check_flat(b, &s);
 }
 
 /* points = 0: a patch for each node with more than a thousandth of the largest nodal area. Corner
@@ -185,6 +221,19 @@ static shb_status measure_face(const builder *b, modal_patches *out) {
   return SHB_OK;
 }
 
+/* A node on the edge of two faces has facets of both. Only nodes with a patch count. */
+static shb_status check_nodes(const builder *b, double (*normal)[3]) {
+  spread s       = {.angle = 0};
+  double largest = 0;
+  for (int i = 0; i < b->mesh->n_nodes; i++) largest = fmax(largest, b->node_area[i]);
+  for (int f = 0; f < b->facets.n; f++)
+    for (int i = 0; i < b->facets.nodes; i++) {
+      const int node = b->right->nodes[b->facets.nodes * f + i];
+      if (b->node_area[node] > 1e-3 * largest) widen(b, f, normal[node], &s);
+    }
+  return check_flat(b, &s);
+}
+
 static shb_status build(builder *b, int points, modal_patches *out) {
   SHB_TRY(modal_facets_create(b->mesh, b->right, &b->facets));
   SHB_TRY(measure_face(b, out));
@@ -192,6 +241,7 @@ static shb_status build(builder *b, int points, modal_patches *out) {
     double(*normal)[3] = calloc((size_t)b->mesh->n_nodes, sizeof *normal);
     SHB_CHECK(normal, SHB_ERR_IO, "out of memory for the contact nodes");
     shb_status status = build_nodes(b, normal, out);
+    if (status == SHB_OK) status = check_nodes(b, normal);
     free(normal);
     return status;
   }

@@ -43,7 +43,8 @@ typedef struct {
  *           about equal area
  *
  * Errors: SHB_ERR_INPUT group contact_right or, to the neighbour, contact_left is missing, faces do
- * not match, more patches than facets; SHB_ERR_IO no memory. */
+ * not match, more patches than facets; SHB_ERR_IO no memory. SHB_ERR_INPUT too if a facet is turned
+ * by more than 5 degrees against its patch. */
 shb_status modal_patches_create(const mesh_fe *mesh, mesh_axis axis, int blades, bool to_ground,
                                 int points, modal_patches *out);
 

@@ -233,12 +233,41 @@ static void faces_that_do_not_match_are_projected(void **state) {
   mesh_fe_free(&mesh);
 }
 
+/* A side and the root in one group: they meet at a right angle. Each alone is flat. */
+static void a_patch_of_two_faces_is_refused_with_the_angle(void **state) {
+  (void)state;
+  mesh_fe       mesh = make_sector(size, inner, BLADES, cells);
+  mesh_face_set own = mesh.set[MESH_CONTACT_RIGHT], other = mesh.set[MESH_ROOT], both;
+  const size_t  each = (size_t)mesh_topology_of(mesh.kind)->face_nodes;
+  both.n             = own.n + other.n;
+  both.nodes         = malloc(each * (size_t)both.n * sizeof *both.nodes);
+  memcpy(both.nodes, own.nodes, each * (size_t)own.n * sizeof *own.nodes);
+  memcpy(both.nodes + each * (size_t)own.n, other.nodes,
+         each * (size_t)other.n * sizeof *own.nodes);
+  mesh.set[MESH_CONTACT_RIGHT] = both;
+  for (int points = 0; points < 2; points++) {
+    modal_patches face;
+    assert_int_equal(modal_patches_create(&mesh, MESH_AXIS_X, BLADES, true, points, &face),
+                     SHB_ERR_INPUT);
+    print_message("points %d: %s\n", points, shb_message());
+    assert_non_null(strstr(shb_message(), "group contact_right: its face at ("));
+    assert_non_null(strstr(shb_message(), " deg against the mean of its contact patch"));
+    assert_non_null(strstr(shb_message(), "contact.interfaces"));
+  }
+  mesh.set[MESH_CONTACT_RIGHT] = own;
+  modal_patches face           = create(&mesh, true, 1);
+  modal_patches_free(&face);
+  free(both.nodes);
+  mesh_fe_free(&mesh);
+}
+
 int main(int argc, char **argv) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(any_division_keeps_the_totals),
       cmocka_unit_test(all_nodes),
       cmocka_unit_test(patch_is_the_mean_of_its_face),
       cmocka_unit_test(angles_must_agree_with_the_faces),
+      cmocka_unit_test(a_patch_of_two_faces_is_refused_with_the_angle),
       cmocka_unit_test(angles_of_a_skewed_face),
       cmocka_unit_test(faces_that_do_not_match_are_projected),
       cmocka_unit_test(bad_faces_are_one_line),
