@@ -26,10 +26,11 @@ enum { MAX_STATES = 600, FINEST = 32 };
  * more the largest multipliers of 237 points of the example of 40 blades change by 3e-3.
  *
  * The lowest mode that answers statically is at least STATIC times as fast as the excitation, or
- * the multipliers are not judged. Its compliance is then within 1/STATIC^2. A ring of 96 blades
+ * the multipliers are not judged. With a mode at 2.12 times left out, of six, the largest
+ * multiplier is 2e-4 off (tests/mhb/floquet/test_floquet.c). A ring of 96 blades
  * with EO 88 has 0.94 with one mode of twelve, where the next one lies below the excitation. It has
  * 1.004 with two, 1.025 with four, 1.074 with seven and 1.066 with all. */
-static const double REACH = 5, STATIC = 3;
+static const double REACH = 5, STATIC = 2;
 
 /* Contacts from which on stuck ones are springs of the structure. Measured, see
  * docs/theory/stability.md. */

@@ -13,6 +13,9 @@
 
 enum { H = 5, N = 3 * (2 * H + 1) };
 
+/* A maximum ends this near, relative, where a corner is as high. */
+static const double BESIDE = 1e-4;
+
 /* Amplitude and frequency of the peak of a sweep at a preload that lies nearest to *f.
  *   f  inout  Hz
  *   x  out    [N] its motion, or NULL */
@@ -72,9 +75,11 @@ static void each_tracked_peak_is_that_of_a_sweep(void **state) {
                 t->value[t->n_points - 1], mhb_end_text(end.low), mhb_end_text(end.high),
                 iterations);
   assert_true(found);
-  double worst = 0, worst_f = 0;
+  double worst = 0, worst_f = 0, highest = 0;
+  for (int i = 0; i < t->n_points; i++) highest = fmax(highest, t->n0[i]);
   for (int i = 0; i < t->n_points; i++) {
     if (i % 6 && t->special[i] != MHB_OPTIMUM) continue;
+    if (t->n0[i] > (1 - BESIDE) * highest) continue; /* the corner beside it is as high there */
     double fs = t->frequency[i], as = sweep_peak(&model, settings, t->n0[i], &fs, b, NULL);
     double at = mhb_response_output(r, t, i);
     print_message("n0 %9.6f  f %.9f sweep %.9f  a %.9f sweep %.9f special %d\n", t->n0[i],
