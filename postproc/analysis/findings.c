@@ -157,7 +157,11 @@ static void put_optimum(const post_analysis *analysis, post_buffer *out) {
   }
   const post_track_point *best   = &t->point[t->best];
   char                    of[96] = ", the only preload computed, has its highest peak";
-  if (t->n > 1) snprintf(of, sizeof of, " of the %d preloads computed gives the lowest peak", t->n);
+  int                     known  = 0;
+  for (int i = 0; i < t->n; i++) known += !t->point[i].doubtful;
+  if (t->n > 1)
+    snprintf(of, sizeof of, " of the %d preloads %s gives the lowest peak", known,
+             known < t->n ? "whose peak is known" : "computed");
   post_put(out, "<li><b>%s</b>%s, %s at %s", preload(n0, best->n0), of,
            post_measure(a, best->amplitude, post_unit_length(best->amplitude), 3),
            place(analysis, best, at));

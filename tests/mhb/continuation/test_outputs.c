@@ -2,6 +2,7 @@
 #include "mhb/continuation/outputs.h"
 
 #include "mhb/continuation/balance_curve.h"
+#include "mhb/numerics/extent.h"
 #include "tests/support/check.h"
 #include "tests/support/random_model.h"
 
@@ -58,8 +59,8 @@ static void squares(fixture *f, mhb_curve_point *point, double *square) {
   double complex q[3 * PROBES], unused[3 * PROBES];
   mhb_probe_change(f->balance, point, 1, q, unused);
   for (int o = 0; o < PROBES; o++) {
-    square[o] = 0;
-    for (int axis = 0; axis < 3; axis++) square[o] += pow(cabs(q[3 * o + axis]), 2);
+    double complex w[3];
+    square[o] = pow(mhb_semi_major_weight(q + 3 * o, w), 2);
   }
   for (int row = 0; row < 3 * PAIRS; row++) {
     const double *a      = point->x + (size_t)row * (2 * H + 1);
