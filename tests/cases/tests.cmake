@@ -9,13 +9,13 @@ shb_python_test(cases.schema.key_schema UNIT cases/schema/test_key_schema.py
 shb_test(cases/contact UNIT hysteresis_picture LIBRARIES shb_cases_contact)
 shb_test(cases/commands UNIT up_to_date modal_changes balance_run INTEGRATION contact_points
   LIBRARIES shb_cases_commands tests_models)
-shb_shell_test(cases.commands.commands UNIT cases/commands/test_commands.sh
+shb_shell_test(cases.commands.commands INTEGRATION cases/commands/test_commands.sh
   $<TARGET_FILE:shroudhb>)
 if(NOT SHROUDHB_INSTRUMENTED) # they reserve more
   shb_shell_test(cases.commands.address_space UNIT cases/commands/test_address_space.sh
     ${PROGRAMS_FOLDER})
 endif()
-shb_shell_test(cases.commands.modes_alone UNIT cases/commands/test_modes_alone.sh
+shb_shell_test(cases.commands.modes_alone INTEGRATION cases/commands/test_modes_alone.sh
   $<TARGET_FILE:shroudhb> ${CASES}/z_notch_blade/case.yaml)
 shb_shell_test(cases.commands.stale INTEGRATION cases/commands/test_stale.sh
   $<TARGET_FILE:shroudhb> ${CASES}/z_notch_blade/case.yaml)
@@ -41,11 +41,11 @@ shb_test(cases/study UNIT line_minimum optimiser optimisation dakota_files desig
   SOURCES ../cases/study/crew.c ../cases/study/study_run.c ../cases/study/study_summary.c)
 
 # What is installed, by `cmake --install` and as a Debian package, works on its own.
-shb_shell_test(cases.install.install INTEGRATION cases/install/test_install.sh ${CMAKE_COMMAND}
+shb_shell_test(cases.install.install NIGHTLY cases/install/test_install.sh ${CMAKE_COMMAND}
   ${PROJECT_BINARY_DIR} ${CMAKE_CURRENT_BINARY_DIR}/cases_install)
 
 # Speed against error, from end to end.
-shb_test(cases/converge UNIT resized_case compare INTEGRATION points_ladder SLOW converge
+shb_test(cases/converge UNIT resized_case compare INTEGRATION points_ladder NIGHTLY converge
   LIBRARIES shb_post shb_cases_converge tests_models
   DEFINITIONS SHROUDHB="$<TARGET_FILE:shroudhb>")
 add_dependencies(test_cases_converge programs)
@@ -58,7 +58,7 @@ shb_python_test(cases.study.study INTEGRATION cases/study/test_study.py ${PROGRA
   ${CASES}/bring_your_own)
 shb_python_test(cases.study.samples INTEGRATION cases/study/test_samples.py ${PROGRAMS_FOLDER}
   ${CASES}/bring_your_own)
-shb_python_test(cases.study.ring_samples INTEGRATION cases/study/test_ring_samples.py
+shb_python_test(cases.study.ring_samples NIGHTLY cases/study/test_ring_samples.py
   ${PROGRAMS_FOLDER} ${CASES}/mistuned_ring)
 shb_python_test(cases.study.eval INTEGRATION cases/study/test_eval.py ${PROGRAMS_FOLDER}
   ${CASES}/bring_your_own)
@@ -79,18 +79,21 @@ endfunction()
 target_compile_definitions(tests_responses PRIVATE SHROUDHB="$<TARGET_FILE:shroudhb>")
 shb_scene_test(z_notch INTEGRATION z_notch_blade/case.yaml)
 shb_scene_test(slip_onset INTEGRATION z_notch_blade)
-shb_scene_test(run_up INTEGRATION z_notch_blade)
-foreach(figure paper_fig7 paper_fig8 paper_fig9 paper_fig10)
+shb_scene_test(run_up NIGHTLY z_notch_blade)
+foreach(figure paper_fig7 paper_fig8)
   shb_scene_test(${figure} INTEGRATION ${figure})
 endforeach()
-shb_scene_test(paper_fig8_direct INTEGRATION paper_fig8)
-shb_scene_test(lost_curves INTEGRATION paper_fig8)
+foreach(figure paper_fig9 paper_fig10)
+  shb_scene_test(${figure} NIGHTLY ${figure})
+endforeach()
+shb_scene_test(paper_fig8_direct NIGHTLY paper_fig8)
+shb_scene_test(lost_curves NIGHTLY paper_fig8)
 shb_scene_test(mistuned_ring NIGHTLY mistuned_ring)
 shb_scene_test(bladed_disc NIGHTLY bladed_disc)
-shb_scene_test(snubber_blade INTEGRATION snubber_blade)
+shb_scene_test(snubber_blade NIGHTLY snubber_blade)
 shb_scene_test(optimum_preload INTEGRATION optimum_preload)
 shb_scene_test(tracked_peaks NIGHTLY "")
-shb_scene_test(shroud_angle INTEGRATION shroud_angle)
+shb_scene_test(shroud_angle NIGHTLY shroud_angle)
 shb_scene_test(robust_preload NIGHTLY robust_preload)
 shb_scene_test(soft_contact INTEGRATION z_notch_blade)
 add_dependencies(test_cases_scenes programs)
@@ -102,6 +105,6 @@ shb_python_test(cases.scenes.disc_vary NIGHTLY cases/scenes/test_disc_vary.py
 
 # The example of cases/bring_your_own; skipped where python3 has no h5py.
 if(SHROUDHB_PYTHON)
-  shb_test(cases/scenes UNIT bring_your_own LIBRARIES shb_mhb_response
+  shb_test(cases/scenes INTEGRATION bring_your_own LIBRARIES shb_mhb_response
     ARGUMENTS ${SHROUDHB_PYTHON} ${CASES}/bring_your_own $<TARGET_FILE:shroudhb-mhb>)
 endif()

@@ -1,13 +1,13 @@
-shb_test(mesh/base UNIT arena memory axes crash_guard phases progress publish root shortest
-  LIBRARIES shb_mesh_base)
+shb_test(mesh/base UNIT arena axes crash_guard phases progress publish root shortest
+  INTEGRATION memory LIBRARIES shb_mesh_base)
 shb_test(mesh/table UNIT csv LIBRARIES shb_mesh_table)
 shb_test(mesh/core UNIT face_match group_checks group_rules jacobian triangle face_pairing
   file_format cyclic_sides LIBRARIES tests_fem)
 shb_test(mesh/core UNIT fe_mesh regions PROGRAM test_mesh_core_gmsh
   LIBRARIES tests_box ${GMSH_LIBRARY})
-shb_test(mesh/io UNIT source_files inp_read msh_check msh_read write INTEGRATION source
+shb_test(mesh/io UNIT source_files inp_read msh_check write INTEGRATION msh_read source
   LIBRARIES tests_box ${GMSH_LIBRARY})
-shb_test(mesh/gmsh UNIT reading solid_check LIBRARIES tests_box)
+shb_test(mesh/gmsh UNIT reading INTEGRATION solid_check LIBRARIES tests_box)
 target_include_directories(test_mesh_core_gmsh PRIVATE ${GMSH_INCLUDE})
 target_include_directories(test_mesh_io PRIVATE ${GMSH_INCLUDE})
 shb_test(mesh/blade UNIT airfoil section_smoothing INTEGRATION disc hex_sweep shroud_angle

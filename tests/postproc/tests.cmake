@@ -1,16 +1,16 @@
 shb_test(postproc/draw UNIT colour number_format text_buffer plot LIBRARIES shb_post)
 shb_test(postproc/analysis UNIT outputs abscissa curves curve_distance convergence response_analysis
   campbell file_origin findings resonances stability_findings LIBRARIES tests_responses)
-shb_test(postproc/report UNIT csv ring_charts publish page_data tables picture safe_diagram
-  contact_points point_numbers INTEGRATION report blade_view
+shb_test(postproc/report UNIT csv ring_charts page_data tables picture safe_diagram
+  contact_points INTEGRATION publish point_numbers report blade_view
   LIBRARIES tests_responses tests_models tests_box)
 # The program itself: exit codes and the one line of an error.
 shb_test(postproc/report UNIT command LIBRARIES tests_responses tests_studies)
 add_dependencies(test_postproc_report shroudhb-post)
 set_property(TEST postproc.report.command APPEND PROPERTY ENVIRONMENT
   "SHROUDHB_POST=$<TARGET_FILE:shroudhb-post>")
-shb_test(postproc/inspect UNIT diameter_table inspect mac mode_table phase_table value_range
-  value_table LIBRARIES tests_responses)
+shb_test(postproc/inspect UNIT diameter_table inspect mac mode_table phase_table value_table
+  INTEGRATION value_range LIBRARIES tests_responses)
 shb_test(postproc/field UNIT peak_stress whole_period stress_section strain_gauge
   LIBRARIES shb_post tests_models tests_box)
 shb_test(postproc/study UNIT study_file study_effects study_page LIBRARIES tests_studies)

@@ -42,7 +42,7 @@ if(SHROUDHB_INSTRUMENTED) # libraries come too early, the heap is another, the s
 endif()
 
 add_library(locale MODULE robust/locale.c)
-shb_robust_test(surroundings SLOW surroundings $<TARGET_FILE:locale> ${SCENE})
+shb_robust_test(surroundings NIGHTLY surroundings $<TARGET_FILE:locale> ${SCENE})
 
 add_executable(repeated_sweep robust/repeated_sweep.c ${COMMANDS}/shroudhb_mhb.c)
 target_link_libraries(repeated_sweep PRIVATE shb_cases_commands)
@@ -65,9 +65,9 @@ shb_fail_test("" NIGHTLY 2 mhb post)
 shb_fail_test(_integrate NIGHTLY 2 integrate)
 shb_fail_test(_study NIGHTLY 1 study)
 shb_fail_test(_mesh NIGHTLY 12 mesh)
-shb_fail_test(_open UNIT 25 mhb:open)
-shb_fail_test(_plan UNIT 40 mesh:malloc)
-shb_fail_test(_case UNIT -110 mhb:malloc) # while the case and its defaults are read
+shb_fail_test(_open INTEGRATION 25 mhb:open)
+shb_fail_test(_plan NIGHTLY 40 mesh:malloc)
+shb_fail_test(_case NIGHTLY -110 mhb:malloc) # while the case and its defaults are read
 shb_fail_test(_motion NIGHTLY -64 integrate:malloc) # while the time integration runs
-shb_fail_test(_modal UNIT 2 modal:malloc)
+shb_fail_test(_modal INTEGRATION 2 modal:malloc)
 shb_fail_test(_all NIGHTLY)

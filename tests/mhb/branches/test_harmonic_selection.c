@@ -194,10 +194,11 @@ static void jumps(void **state) {
   }
 }
 
-/* Off resonance a blade bounces over a gap. Motions of one harmonic are none of many there: their
+/* The last row takes a minute: state is not NULL where it is wanted.
+ *
+ * Off resonance a blade bounces over a gap. Motions of one harmonic are none of many there: their
  * estimates are 0.4 to 28. None of their points is kept, and those kept are exact. */
 static void a_curve_of_few_harmonics_is_left_where_it_is_none_of_many(void **state) {
-  (void)state;
   static const double tolerance = 1e-2;
   static const double rows[][4] = {/* kv, force, from, to */
                                    {9, 0.6, 0.5, 0.52},
@@ -205,7 +206,8 @@ static void a_curve_of_few_harmonics_is_left_where_it_is_none_of_many(void **sta
                                    {30, 0.2, 0.8, 0.82},
                                    {30, 0.6, 0.5, 0.52},
                                    {60, 0.06, 0.35, 0.36}};
-  for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
+  const size_t        n         = sizeof rows / sizeof *rows - (*state ? 0 : 1);
+  for (size_t i = 0; i < n; i++) {
     modal_model   model;
     mhb_response *r;
     one_degree_model(0.02, 0, rows[i][1], &model);
@@ -307,14 +309,15 @@ static void ladders(void **state) {
   }
 }
 
-int main(void) {
+int main(int argc, char **argv) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(ladders),
       cmocka_unit_test(three_degrees),
       cmocka_unit_test(beam),
       cmocka_unit_test(jumps),
       cmocka_unit_test(static_parts_do_not_count),
-      cmocka_unit_test(a_curve_of_few_harmonics_is_left_where_it_is_none_of_many),
+      cmocka_unit_test_prestate(a_curve_of_few_harmonics_is_left_where_it_is_none_of_many,
+                                argc > 1 ? argv[1] : NULL),
       cmocka_unit_test(what_no_level_keeps_is_marked),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
