@@ -112,8 +112,7 @@ const char *mesh_inversion_describe(const mesh_fe *mesh, int element,
   static const char *const fixed[MESH_N_INVERSIONS] = {
       [MESH_FLAT] = "its corners lie in one plane; remove it, or mesh anew there",
       [MESH_MIRRORED] =
-          "its corners go round the other way; exchange them, or mirror the mesh "
-          "with its elements",
+          "its corners go round the other way; exchange them, or mirror mesh and elements",
       [MESH_FOLDED] = "its corners are in another order, or it is folded",
       [MESH_CURVED] = "its edges are too curved; mesh finer or straighten them there"};
   const shape          s    = shape_of(mesh, element);

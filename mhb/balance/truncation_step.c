@@ -94,7 +94,7 @@ static int factor_above(mhb_truncation_step *t) {
 static void solve_above(mhb_truncation_step *t, double *x) {
   const int n = t->doubled->receptance->n, nb = t->doubled->nb;
   for (int k = t->balance->m + 1; k <= t->doubled->m; k++, x += 2) {
-    const size_t at = place_of(t, k), first = (size_t)(2 * t->balance->m + 1);
+    const size_t at = place_of(t, k), first = 2 * (size_t)t->balance->m + 1;
     for (int i = 0; i < n; i++) t->u[i] = CMPLX(x[i * nb + (int)first], x[i * nb + (int)first + 1]);
     mhb_solve_complex(n, t->A + at * (size_t)(n * n), t->pivot + at * (size_t)n, 1, t->u);
     for (int i = 0; i < n; i++) {

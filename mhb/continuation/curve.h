@@ -23,8 +23,8 @@ typedef struct {
   double          residual;    /* |r|/|x| */
   double          truncation;  /* relative error of the harmonics left out */
   double          miss;        /* the same, beside a fold the distance to the curve itself */
-  double          truncation_max; /* the largest within the period, over the same amplitude */
-  double          modal;       /* relative error of the modes left out */
+  double          truncation_max;  /* the largest within the period, over the same amplitude */
+  double          modal;           /* relative error of the modes left out */
   int             truncation_kind; /* mhb_truncation_kind */
 } mhb_curve_point;
 

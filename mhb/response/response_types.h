@@ -210,9 +210,9 @@ typedef struct {
   double complex *multipliers; /* [point][n_multipliers] the largest, by falling modulus; 0: none */
   int            *at_limit;    /* [point] pairs that stick and reach the friction limit */
   int            *harmonics;   /* [point] of the balance, at most n_harmonics; 0: not known */
-  int            *truncation_kind; /* [point] mhb_truncation_kind */
-  double *error_truncation_max; /* [point] largest error in the period; -1: not known */
-  double         *error_spatial;   /* [point] by the number of contact pairs; -1: not judged */
+  int            *truncation_kind;      /* [point] mhb_truncation_kind */
+  double         *error_truncation_max; /* [point] largest error in the period; -1: not known */
+  double         *error_spatial;        /* [point] by the number of contact pairs; -1: not judged */
   /* motion that lasts; 0: not computed */
   double *lasting_mean, *lasting_worst;   /* [point] a period's peak over the wave's */
   double *lasting_error;                  /* [point] standard error of the mean */

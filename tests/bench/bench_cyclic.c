@@ -26,8 +26,8 @@
 #include "mesh/io/inp_write.h"
 #include "modal/common/session.h"
 #include "modal/cyclic/wave_modes.h"
-#include "tests/support/z_notch.h"
 #include "tests/support/read_mesh.h"
+#include "tests/support/z_notch.h"
 
 enum { MODES = 6 };
 

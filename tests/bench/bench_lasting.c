@@ -34,8 +34,8 @@
 #include "mhb/ring/ring_output.h"
 #include "mhb/ring/ring_statistics.h"
 #include "modal/model/model.h"
-#include "tests/support/z_notch_settings.h"
 #include "tests/support/random_model.h"
+#include "tests/support/z_notch_settings.h"
 
 enum { BLOCK = 25, BLOCKS = 40, LEVELS = 3 };
 

@@ -36,9 +36,9 @@
 #include "mhb/mistuning/deviations.h"
 #include "mhb/mistuning/mistuned_ring.h"
 #include "mhb/numerics/random.h"
-#include "tests/support/z_notch_settings.h"
 #include "tests/support/main_curve.h"
 #include "tests/support/random_model.h"
+#include "tests/support/z_notch_settings.h"
 
 static const double GOAL = 1e-10;
 enum { HARMONICS = 7 };

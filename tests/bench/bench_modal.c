@@ -24,8 +24,8 @@
 #include "mesh/io/inp_write.h"
 #include "modal/common/session.h"
 #include "modal/eigen/eigen.h"
-#include "tests/support/z_notch.h"
 #include "tests/support/read_mesh.h"
+#include "tests/support/z_notch.h"
 
 enum { MODES = 20 };
 

@@ -29,9 +29,9 @@
 #include "mhb/continuation/balance_curve.h"
 #include "mhb/continuation/first_solution.h"
 #include "precision.h"
-#include "tests/support/shroud_face.h"
 #include "stiff_faces.h"
 #include "tests/support/main_curve.h"
+#include "tests/support/shroud_face.h"
 #include "tests/support/three_degree.h"
 
 enum { REPEATS = 3, MAX_POINTS = 4000 };

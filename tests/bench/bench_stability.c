@@ -21,8 +21,8 @@
 #include "mesh/base/progress.h"
 #include "mhb/branches/forced_response.h"
 #include "modal/model/model.h"
-#include "tests/support/z_notch_settings.h"
 #include "tests/support/random_model.h"
+#include "tests/support/z_notch_settings.h"
 
 typedef struct {
   double seconds[3]; /* never, auto, always */

@@ -25,8 +25,8 @@
 #include "mhb/branches/forced_response.h"
 #include "modal/model/model.h"
 #include "postproc/analysis/outputs.h"
-#include "tests/support/z_notch_settings.h"
 #include "tests/support/random_model.h"
+#include "tests/support/z_notch_settings.h"
 
 enum { PRELOADS = 5, FRICTIONS = 3, OUTPUTS = 2 };
 

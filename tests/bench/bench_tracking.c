@@ -22,9 +22,9 @@
 #include "mhb/branches/forced_response.h"
 #include "mhb/tracking/tracked_response.h"
 #include "modal/model/model.h"
-#include "tests/support/z_notch_settings.h"
 #include "tests/support/settings.h"
 #include "tests/support/three_degree.h"
+#include "tests/support/z_notch_settings.h"
 
 /* Goal of the errors of amplitude and frequency, relative. */
 static const double GOAL = 1e-6;

@@ -15,11 +15,11 @@
 #include "mhb/balance/newton.h"
 #include "mhb/balance/truncation_error.h"
 #include "mhb/numerics/fourier.h"
-#include "tests/support/shroud_face.h"
 #include "tests/hard/power.h"
 #include "tests/hard/verdict.h"
 #include "tests/support/periodic.h"
 #include "tests/support/random_model.h"
+#include "tests/support/shroud_face.h"
 
 enum { PAIRS = 20, M = 3 };
 

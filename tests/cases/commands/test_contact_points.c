@@ -10,9 +10,9 @@
 #include <cmocka.h>
 
 #include "mhb/branches/forced_response.h"
-#include "tests/support/shroud_face.h"
 #include "tests/support/check.h"
 #include "tests/support/random_disc.h"
+#include "tests/support/shroud_face.h"
 
 enum { PAIRS = 16 };
 

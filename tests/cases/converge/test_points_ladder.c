@@ -12,9 +12,9 @@
 
 #include "modal/hdf5/h5.h"
 #include "postproc/analysis/convergence.h"
-#include "tests/support/shroud_face.h"
 #include "tests/support/check.h"
 #include "tests/support/scratch.h"
+#include "tests/support/shroud_face.h"
 
 enum { PAIRS = 4 };
 

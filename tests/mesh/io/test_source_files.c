@@ -51,8 +51,9 @@ static void a_file_that_includes_nothing_has_its_own_fingerprint(void **state) {
 
 static void what_a_script_includes_counts(void **state) {
   (void)state;
-  write_text("box.geo", "Include \"par.geo\";\nMerge \"part.step\"; // \"lonely\nh = \"a\";\n"
-                        "Include \"more.txt\";");
+  write_text("box.geo",
+             "Include \"par.geo\";\nMerge \"part.step\"; // \"lonely\nh = \"a\";\n"
+             "Include \"more.txt\";");
   write_text("deep.txt", "w = 1;");
   write_text("more.txt", "Include \"deep.txt\";");
   assert_true(watches("box.geo", "par.geo", "h = 1;", "h = 2;"));
@@ -66,8 +67,9 @@ static void what_a_script_includes_counts(void **state) {
 
 static void what_a_deck_includes_counts(void **state) {
   (void)state;
-  write_text("deck.inp", "*NODE, NSET=ALL\n*include , Input = nodes.nam \r\n"
-                         "*INCLUDE, INPUT=\"faces.inc\"\n** *INCLUDE, INPUT=comment.inc\n");
+  write_text("deck.inp",
+             "*NODE, NSET=ALL\n*include , Input = nodes.nam \r\n"
+             "*INCLUDE, INPUT=\"faces.inc\"\n** *INCLUDE, INPUT=comment.inc\n");
   write_text("nodes.nam", "1, 0, 0, 0\n*INCLUDE,INPUT=rest.nam\n");
   write_text("rest.nam", "2, 1, 0, 0\n");
   assert_true(watches("deck.inp", "nodes.nam", "1, 0, 0, 0\n*INCLUDE,INPUT=rest.nam\n",

@@ -17,10 +17,10 @@
 #include "mhb/branches/main_branch.h"
 #include "mhb/continuation/balance_curve.h"
 #include "mhb/continuation/first_solution.h"
-#include "tests/support/shroud_face.h"
 #include "tests/support/allocations.h"
 #include "tests/support/check.h"
 #include "tests/support/random_model.h"
+#include "tests/support/shroud_face.h"
 #include "tests/support/three_degree.h"
 
 /* ---------------------------------------------------------------- the same solution */

@@ -5,9 +5,9 @@
 
 #include "mesh/base/constants.h"
 #include "mhb/balance/newton.h"
-#include "tests/support/shroud_face.h"
 #include "tests/support/check.h"
 #include "tests/support/random_disc.h"
+#include "tests/support/shroud_face.h"
 
 enum { PAIRS = 12, BLADES = 6, HARMONICS = 3 };
 

@@ -13,8 +13,8 @@
 
 #include "mesh/base/constants.h"
 #include "mhb/continuation/first_solution.h"
-#include "tests/support/shroud_face.h"
 #include "tests/support/check.h"
+#include "tests/support/shroud_face.h"
 
 enum { PAIRS = 16, HARMONICS = 5 };
 static const double FORCE = 150, HERTZ = 232;

@@ -6,8 +6,8 @@
 #include "mesh/base/constants.h"
 #include "mhb/balance/balance.h"
 #include "mhb/numerics/lu.h"
-#include "tests/support/shroud_face.h"
 #include "tests/support/check.h"
+#include "tests/support/shroud_face.h"
 
 enum { PAIRS = 20, N = 3 * PAIRS };
 

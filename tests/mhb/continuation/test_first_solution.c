@@ -2,10 +2,10 @@
 #include "mhb/continuation/first_solution.h"
 
 #include "mhb/continuation/balance_curve.h"
-#include "tests/support/shroud_face.h"
 #include "tests/support/check.h"
 #include "tests/support/random_model.h"
 #include "tests/support/settings.h"
+#include "tests/support/shroud_face.h"
 #include "tests/support/three_degree.h"
 
 static double relative_residual(mhb_balance *b, const double *x, double value) {

@@ -16,10 +16,10 @@
 #include "mhb/low_rank/lone_harmonics.h"
 #include "mhb/low_rank/woodbury.h"
 #include "mhb/numerics/vector.h"
-#include "tests/support/shroud_face.h"
 #include "tests/support/check.h"
 #include "tests/support/random_disc.h"
 #include "tests/support/random_model.h"
+#include "tests/support/shroud_face.h"
 
 enum { M = 3, NB = 2 * M + 1 };
 

@@ -61,9 +61,9 @@ static void fill_point(mhb_response *response, int branch) {
   b->error_newton[point]     = 1e-12 * point;
   b->error_truncation[point] = 1e-5 * point;
   if (b->error_truncation_max) b->error_truncation_max[point] = 2e-5 * point;
-  b->error_sampling[point]   = 1e-9 * point;
-  b->error_modal[point]      = 1e-4 * point;
-  b->mark[point]             = (point + branch) % (MHB_ALL_MARKS + 1);
+  b->error_sampling[point] = 1e-9 * point;
+  b->error_modal[point]    = 1e-4 * point;
+  b->mark[point]           = (point + branch) % (MHB_ALL_MARKS + 1);
 }
 
 static double *list(int n, double step) {
