@@ -64,7 +64,7 @@ static void faults_are_told_at_their_place(void **state) {
       {"vary: {contact.n0: [1 N]}\noutputs: [peak]\nsamples: 16\n", "uncertain"},
       {"uncertain: {contact.mu: {uniform: [0.1, 0.3]}}\noutputs: [peak]\n", "needs samples"},
       {"vary: {contact.mu: [0.3, -2]}\noutputs: [peak]\n", "design 2: "},
-      {"vary: {contact.n0: [1 N]}\noutputs: [peak]\nname: a/b\n", "name of a file"},
+      {"vary: {contact.n0: [1 N]}\noutputs: [peak]\nname: a/b\n", "cannot be a file name"},
       {"vary: {contact.n0: {from: 1 N, to: 2 N}}\nplan: grid\noptimise: {minimise: peak}\n",
        "makes its own designs"},
   };

@@ -138,7 +138,7 @@ def check_faults():
         said = run(program('shroudhb-study'), 'bad.yaml', code=2)
         assert fault in said, said
     said = run(program('shroudhb-study'), 'bad.yaml', code=2)
-    assert 'stress, safety, tip, g1, modes[I].frequency' in said, said
+    assert 'stress, safety, rss, tip, g1, modes[I].frequency' in said, said
 
 
 def main():

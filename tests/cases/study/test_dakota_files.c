@@ -89,8 +89,8 @@ static void faults_are_told(void **state) {
   static const char *const faults[][2] = {
       {"", "no parameters file"},
       {"2 variables\n1 a\n", "no parameters file"},
-      {"0 variables\n", "expected 1 to 64"},
-      {"65 variables\n", "expected 1 to 64"},
+      {"0 variables\n", "expected a whole number from 1 to 64"},
+      {"65 variables\n", "expected a whole number from 1 to 64"},
       {"1 variables\nabc a\n1 functions\n", "'abc' is no number"},
       {"1 variables\nnan a\n1 functions\n", "is no number"},
       {"1 variables\n1 a\n1 functions\n1 ASV_1\n", "names no response"},

@@ -38,13 +38,18 @@ static shb_status compute(void *context, const double *value, char **bytes, size
   return status;
 }
 
+static shb_status manage(void *context, const crew_work *work) {
+  return crew_manage(work, context);
+}
+
 /* Run; returns how many designs were computed. */
 static int run(const study_spec *spec, bool force, double fails, shb_status wanted,
                design_study *s) {
-  closed_form         c        = {.fails = fails};
-  const crew_computer computer = {&c, 4, compute};
-  shb_progress        progress = shb_progress_start("study", true, false);
-  assert_int_equal(study_run(spec, force, &computer, &progress, s), wanted);
+  closed_form      c        = {.fails = fails};
+  crew_computer    computer = {&c, 4, compute};
+  const crew_staff alone    = {&computer, 1, manage};
+  shb_progress     progress = shb_progress_start("study", true, false);
+  assert_int_equal(study_run(spec, force, &alone, &progress, s), wanted);
   return c.calls;
 }
 
