@@ -16,6 +16,7 @@ import tempfile
 from pathlib import Path
 
 sys.path.insert(0, str(Path(__file__).resolve().parent.parent / 'support'))
+from browser import OFFLINE
 from programs import ENVIRONMENT
 
 CASE = Path(__file__).resolve().parents[2] / 'cases/z_notch_blade/case.yaml'
@@ -44,7 +45,7 @@ def load_time(chromium, page, folder):
     at, times = page.rindex('</body>'), []
     watched.write_text(page[:at] + WATCH + page[at + len('</body>'):])
     for _ in range(5):
-        said = subprocess.run([chromium, *BROWSER, f'--user-data-dir={folder}/user',
+        said = subprocess.run([chromium, *BROWSER, *OFFLINE, f'--user-data-dir={folder}/user',
                                f'--screenshot={folder}/page.png', watched.as_uri()],
                               capture_output=True, text=True, timeout=120, check=False).stderr
         times.append(float(re.search(r'LOADED ([\d.]+)', said).group(1)) / 1e3)

@@ -163,10 +163,14 @@ says "mesh.groups.root.nearest: is a second rule for its group"
 says "mesh.groups.rot: unknown group"
 says "mesh.groups.load: lacks normal"
 
-# Coordinates in mm taken as m.
-solid "$(echo "$rules" | sed -e 's/unit: mm/unit: m/' -e 's/12 mm/12 m/' \
-  -e 's/300 mm/300 m/' -e 's/ mm/ m/g' -e '/load:/d')"
+# Coordinates in mm taken as m: told, but not where the case says that they are in m.
+in_metres=$(echo "$rules" | sed -e 's/unit: mm/unit: m/' -e 's/12 mm/12 m/' \
+  -e 's/300 mm/300 m/' -e 's/ mm/ m/g' -e '/load:/d')
+solid "$in_metres"
 run 0 solid.yaml
+lines 0
+solid "$(echo "$in_metres" | sed '/unit:/d')"
+run 0 --force solid.yaml
 lines 1
 says "shroudhb: warning: sector.geo: the body measures "
 says "are its coordinates in mm? Say so with mesh.unit"

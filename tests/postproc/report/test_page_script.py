@@ -14,6 +14,9 @@ import tempfile
 from html import unescape
 from pathlib import Path
 
+sys.path.insert(0, str(Path(__file__).resolve().parents[2] / 'support'))
+from browser import OFFLINE
+
 # Acts on a page as a reader does, then leaves what it saw in the document.
 ACTIONS = (Path(__file__).parent / 'page_actions.js').read_text()
 
@@ -27,7 +30,8 @@ def visit(chromium, folder, name, page, script):
     acted = folder / f'acted_{name}.html'
     acted.write_text(page.replace('</body>', script))
     run = subprocess.run(
-        [chromium, '--headless', '--no-sandbox', '--disable-gpu', '--use-angle=swiftshader',
+        [chromium, '--headless', '--no-sandbox', '--disable-gpu', *OFFLINE,
+         '--use-angle=swiftshader',
          '--enable-unsafe-swiftshader', f'--user-data-dir={folder}/user',
          '--enable-logging=stderr', '--window-size=1200,900', '--virtual-time-budget=6000',
          '--dump-dom', acted.as_uri()], capture_output=True, text=True, timeout=120, check=False)

@@ -16,6 +16,9 @@ import tempfile
 from html import unescape
 from pathlib import Path
 
+sys.path.insert(0, str(Path(__file__).resolve().parents[2] / 'support'))
+from browser import OFFLINE
+
 try:
     import h5py
     import numpy as np
@@ -204,7 +207,7 @@ def visit(chromium, folder, name):
         '</body>', f'<script>{ACTIONS}</script></body>')
     (folder / f'acted_{name}.html').write_text(page)
     run = subprocess.run(
-        [chromium, '--headless', '--no-sandbox', '--disable-gpu',
+        [chromium, '--headless', '--no-sandbox', '--disable-gpu', *OFFLINE,
          f'--user-data-dir={folder}/user', '--enable-logging=stderr', '--window-size=1200,900',
          '--virtual-time-budget=6000', '--dump-dom', (folder / f'acted_{name}.html').as_uri()],
         capture_output=True, text=True, timeout=120, check=False)

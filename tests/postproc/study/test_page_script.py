@@ -15,6 +15,9 @@ import tempfile
 from html import unescape
 from pathlib import Path
 
+sys.path.insert(0, str(Path(__file__).resolve().parents[2] / 'support'))
+from browser import OFFLINE
+
 # Acts on a page as a reader does, then leaves what it saw in the document.
 ACTIONS = """
 <script>
@@ -124,7 +127,8 @@ def faults(kind, page, chromium, folder):
     acted = folder / f'acted_{kind}.html'
     acted.write_text(page.read_text().replace('</body>', ACTIONS))
     run = subprocess.run(
-        [chromium, '--headless', '--no-sandbox', '--disable-gpu', f'--user-data-dir={folder}/user',
+        [chromium, '--headless', '--no-sandbox', '--disable-gpu', *OFFLINE,
+         f'--user-data-dir={folder}/user',
          '--enable-logging=stderr', '--window-size=1200,900', '--virtual-time-budget=4000',
          '--dump-dom', acted.as_uri()], capture_output=True, text=True, timeout=120, check=False)
     found = [line for line in run.stderr.splitlines() if 'CONSOLE' in line]
