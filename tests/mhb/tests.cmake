@@ -2,7 +2,8 @@
 set(COUNTS_ALLOCATIONS SOURCES support/allocations.c
   LINK LINKER:--wrap=malloc,--wrap=calloc,--wrap=realloc,--wrap=aligned_alloc)
 
-shb_test(mhb/numerics UNIT block_cyclic extent fourier lu tail thin_product LIBRARIES shb_mhb_numerics)
+shb_test(mhb/numerics UNIT block_cyclic extent fourier lu tail thin_product
+  LIBRARIES shb_mhb_numerics)
 shb_test(mhb/contact UNIT transitions slip slip_onset static_friction slider sensitivity
   dense_output time_history INTEGRATION contact reference_law accuracy continuity random
   LIBRARIES tests_motions)
