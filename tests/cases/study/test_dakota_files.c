@@ -94,8 +94,9 @@ static void faults_are_told(void **state) {
       {"1 variables\nabc a\n1 functions\n", "'abc' is no number"},
       {"1 variables\nnan a\n1 functions\n", "is no number"},
       {"1 variables\n1 a\n1 functions\n1 ASV_1\n", "names no response"},
-      {"1 variables\n1 a\n2 functions\n1 ASV_1:peak\n", "1 responses"},
-      {"1 variables\n1 a\n1 functions\n1 ASV_1:peak\n2 DVV_1:a\n", "no variable 2"}};
+      {"1 variables\n1 a\n2 functions\n1 ASV_1:peak\n", "2 functions are announced, 1 stand there"},
+      {"1 variables\n1 a\n1 functions\n1 ASV_1:peak\n2 DVV_1:a\n",
+       "2 DVV_1:a: expected a whole number from 1 to 1"}};
   for (size_t i = 0; i < sizeof faults / sizeof *faults; i++) {
     dakota_parameters p;
     char              why[256] = "";
