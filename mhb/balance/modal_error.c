@@ -143,19 +143,27 @@ static double norm_of(int n, const double complex *e) {
   return sqrt(sum);
 }
 
-/* |du| by the condensed balance with twice the harmonics, for e[k][n]. */
-static double solve_by_system(const mhb_balance *b, mhb_truncation *t, double size,
-                              const double complex *e) {
+/* du <- what the condensed balance with twice the harmonics answers to e[k][n]. Returns |du|; 0: it
+ * failed. */
+static double answer(const mhb_balance *b, mhb_truncation *t, const double complex *e, double *du) {
   const mhb_balance *larger = t->doubled;
   const int          n      = 3 * b->n_pairs;
-  double            *du     = calloc((size_t)larger->n, sizeof *du);
-  double             length = 0;
-  for (int k = 1; du && k <= b->m; k++)
+  memset(du, 0, sizeof *du * (size_t)larger->n);
+  for (int k = 1; k <= b->m; k++)
     for (int i = 0; i < n; i++) {
       du[(size_t)i * (size_t)larger->nb + (size_t)(2 * k - 1)] = creal(e[k * n + i]);
       du[(size_t)i * (size_t)larger->nb + (size_t)(2 * k)]     = cimag(e[k * n + i]);
     }
-  if (du && mhb_truncation_solve(t, du)) length = mhb_norm(du, larger->n);
+  return mhb_truncation_solve(t, du) ? mhb_norm(du, larger->n) : 0;
+}
+
+/* |du|. A long one is shortened, in steps of the linearisation that shortens it: at a fold the
+ * balance of m harmonics is singular, that of 2m is not. */
+static double solve_by_system(const mhb_balance *b, mhb_truncation *t, double size,
+                              const double complex *e) {
+  double *du     = calloc((size_t)t->doubled->n, sizeof *du);
+  double  length = du ? answer(b, t, e, du) : 0;
+  if (length > LONG * size && mhb_truncation_linearise(t)) length = answer(b, t, e, du);
   if (length > LONG * size) length *= fmin(1, mhb_truncation_part(t, du));
   free(du);
   return length;

@@ -371,8 +371,13 @@ double mhb_truncation_across(mhb_truncation *t, double value, const double *tang
   return mhb_norm(change, n) * unit / size;
 }
 
+bool mhb_truncation_linearise(mhb_truncation *t) {
+  if (!t->by_broyden) return false;
+  set_step(t, false);
+  return t->kind == MHB_TRUNCATION_NEWTON;
+}
+
 double mhb_truncation_part(mhb_truncation *t, const double *step) {
-  if (t->by_broyden) set_step(t, false);
   return t->kind == MHB_TRUNCATION_NEWTON ? first_root(bend(t, step)) : 1;
 }
 

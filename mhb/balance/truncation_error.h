@@ -87,6 +87,10 @@ double mhb_truncation_error(mhb_truncation *truncation, const double *x);
  * the factors must be those of the estimate. */
 bool mhb_truncation_solve(mhb_truncation *truncation, double *change);
 
+/* The solutions that follow are by Newton's linearisation with 2m harmonics, where the last estimate
+ * was Broyden's. false: they were, or it failed. */
+bool mhb_truncation_linearise(mhb_truncation *truncation);
+
 /* Distance across the curve to that of 2m harmonics, relative to the vibration. Beside a fold the
  * solution at the same value may be far off, or not exist, while the curve passes near by. The last
  * estimate must be of the point, the balance's evaluation in use.
@@ -99,7 +103,7 @@ double mhb_truncation_across(mhb_truncation *truncation, double value, const dou
 
 /* How much of a change of the solution, step[doubled->n], is left by the curvature of the residual:
  * 1 for a small one. A linearised change is far too long near a fold. The last estimate must be of
- * the present solution. One by Broyden's step is made anew by Newton's. */
+ * the present solution, and the step by mhb_truncation_solve, not by Broyden's. */
 double mhb_truncation_part(mhb_truncation *truncation, const double *step);
 
 /* Sum of squares of harmonic k > 0 of the last estimate, m^2. */

@@ -7,6 +7,9 @@ import sys
 from pathlib import Path
 
 
+MARKED = "points have an estimated error above mhb.tolerance 0.01"
+
+
 def printed(page):
     """{n0: (peak um, Hz)} of the page."""
     rows = re.findall(r"^ +(\d+) N +([\d.]+) um at +([\d.]+) Hz$", page, re.M)
@@ -30,8 +33,11 @@ def main():
     shutil.rmtree(folder, ignore_errors=True)  # nothing is up to date
     folder.mkdir(parents=True)
     shutil.copy(root / "cases/first_case/case.yaml", folder / "case.yaml")
-    subprocess.run([program, "run", "--quiet", str(folder / "case.yaml")], check=True)
-    page = printed((root / "docs/user/first_case.md").read_text(encoding="utf-8"))
+    run = subprocess.run([program, "run", "--quiet", str(folder / "case.yaml")], check=False,
+                         capture_output=True, text=True)
+    text = (root / "docs/user/first_case.md").read_text(encoding="utf-8")
+    assert run.returncode == 3 and MARKED in run.stderr and MARKED in text, run  # n0 = 10 N
+    page = printed(text)
     found = computed(folder / "first_case.csv")
     assert len(page) == 7 and sorted(page) == sorted(found), (page, found)
     for n0, (a, f) in page.items():

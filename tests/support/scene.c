@@ -1,6 +1,7 @@
 #include "tests/support/scene.h"
 
 #include <stdlib.h>
+#include <sys/wait.h>
 
 #include "postproc/analysis/curves.h"
 #include "postproc/analysis/outputs.h"
@@ -10,7 +11,10 @@ void scene_run(const char *folder, const char *source, const char *case_file, co
   char line[6 * SCRATCH_PATH];
   snprintf(line, sizeof line, "cp '%s/%s' '%s/' && '%s' run --quiet '%s/%s'", source, case_file,
            folder, SHROUDHB, folder, case_file);
-  if (system(line) != 0) fail_msg("failed: %s", line);
+  const int code = system(line);
+  /* 3: some points are above the tolerance, which the response marks */
+  if (!WIFEXITED(code) || (WEXITSTATUS(code) != 0 && WEXITSTATUS(code) != 3))
+    fail_msg("failed: %s", line);
   snprintf(line, sizeof line, "%s/%s.response.h5", folder, name);
   if (mhb_response_read(line, response) != SHB_OK) fail_msg("%s", shb_message());
 }

@@ -99,7 +99,7 @@ static void test_sectors(void **state) {
     double          n0, amplitude, at; /* N, m, Hz */
     int             stable;
   } rows[] = {{MHB_BRANCH_OPEN, 0, 15.102, 0.071164, 1},
-              {MHB_BRANCH_NONLINEAR, 0.5, 1.1248, 0.100200, 0},
+              {MHB_BRANCH_NONLINEAR, 0.5, 1.1248, 0.100216, 0},
               {MHB_BRANCH_NONLINEAR, 2, 2.9083, 0.104482, 0},
               {MHB_BRANCH_STUCK, 0, 4.6856, 0.105790, 1}};
   char line[2048];
