@@ -157,8 +157,8 @@ static double answer(const mhb_balance *b, mhb_truncation *t, const double compl
   return mhb_truncation_solve(t, du) ? mhb_norm(du, larger->n) : 0;
 }
 
-/* |du|. A long one is shortened, in steps of the linearisation that shortens it: at a fold the
- * balance of m harmonics is singular, that of 2m is not. */
+/* |du|. A long one is solved anew by the linearisation that shortens it. At a fold the balance of m
+ * harmonics is singular, that of 2m is not. */
 static double solve_by_system(const mhb_balance *b, mhb_truncation *t, double size,
                               const double complex *e) {
   double *du     = calloc((size_t)t->doubled->n, sizeof *du);

@@ -87,8 +87,8 @@ double mhb_truncation_error(mhb_truncation *truncation, const double *x);
  * the factors must be those of the estimate. */
 bool mhb_truncation_solve(mhb_truncation *truncation, double *change);
 
-/* The solutions that follow are by Newton's linearisation with 2m harmonics, where the last estimate
- * was Broyden's. false: they were, or it failed. */
+/* The solutions that follow are by Newton's linearisation with 2m harmonics, where the last
+ * estimate was Broyden's. false: they were, or it failed. */
 bool mhb_truncation_linearise(mhb_truncation *truncation);
 
 /* Distance across the curve to that of 2m harmonics, relative to the vibration. Beside a fold the

@@ -222,13 +222,12 @@ def main():
     with tempfile.TemporaryDirectory() as name:
         folder = Path(name)
         subprocess.run([Path(maker).resolve(), 'point_numbers', 'keep'], cwd=folder, check=True)
-        loads = {}
         for scene_name in SCENES:
             check, scene = Check(), Scene(folder, scene_name)
             check.faults, seen = visit(chromium, folder, scene_name)
             for at in seen:
                 i = check_point(scene, at, check)
-                loads.setdefault(scene_name, []).append(check_contact(scene, at, i, check))
+                check_contact(scene, at, i, check)
             if len({at['point'] for at in seen}) < 4:
                 check.faults.append('fewer than four points')
             worst = sorted(check.worst.items(), key=lambda w: -w[1])[:3]
@@ -237,7 +236,6 @@ def main():
             for fault in check.faults[:8]:
                 print('  ' + fault)
             bad += bool(check.faults)
-        bad += any(abs(a - b) > 1e-6 for a, b in zip(loads['wave'][0], loads['equal'][0]))
     return 1 if bad else 0
 
 
