@@ -10,7 +10,7 @@ libcmocka-dev openmpi-bin"
 # The tests also read files with h5dump and python3, compare frequencies with CalculiX, check case
 # files by the JSON Schema, make a Debian package, and open the pages in a browser.
 packages_test="hdf5-tools python3 python3-h5py python3-matplotlib python3-jsonschema python3-yaml
-calculix-ccx dpkg-dev chromium"
+calculix-ccx dpkg-dev chromium-headless-shell"
 
 # continuous integration also checks the sources, and tries random inputs
 packages_check="clang-format clang-tidy clang-14 libclang-rt-14-dev python3"

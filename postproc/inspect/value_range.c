@@ -9,7 +9,8 @@
 #include "mesh/base/clock.h"
 #include "postproc/draw/number_format.h"
 
-enum { PIECE = 1 << 18, MAX_STRINGS = 64, SHOWN_STRINGS = 4 };
+/* Numbers and chunks that are read at once; HDF5 needs some 40 us a chunk. */
+enum { PIECE = 1 << 18, CHUNKS = 1 << 12, MAX_STRINGS = 64, SHOWN_STRINGS = 4 };
 
 typedef struct {
   double             lo, hi;
@@ -119,10 +120,20 @@ static void widen(extent *e, const double *values, size_t n, int parts) {
   }
 }
 
-/* Size of a piece: as many whole trailing dimensions as fit, a part of the next, one of the
- * rest. */
-static void piece_of(int rank, const hsize_t *dim, hsize_t *piece) {
-  hsize_t room = PIECE;
+/* Numbers that are read at once. */
+static hsize_t piece_room(hid_t dataset) {
+  hsize_t chunk[H5S_MAX_RANK], numbers = 1;
+  hid_t   list = H5Dget_create_plist(dataset);
+  int     rank =
+      list >= 0 && H5Pget_layout(list) == H5D_CHUNKED ? H5Pget_chunk(list, H5S_MAX_RANK, chunk) : 0;
+  if (list >= 0) H5Pclose(list);
+  for (int d = 0; d < rank && numbers < PIECE; d++) numbers *= chunk[d];
+  return rank > 0 && numbers < PIECE / CHUNKS ? numbers * CHUNKS : PIECE;
+}
+
+/* Size of a piece: as many whole trailing dimensions as fit into room, a part of the next, one of
+ * the rest. */
+static void piece_of(hsize_t room, int rank, const hsize_t *dim, hsize_t *piece) {
   for (int d = rank - 1; d >= 0; d--) {
     piece[d] = dim[d] < room ? dim[d] : room;
     room     = piece[d] == dim[d] ? room / dim[d] : 1;
@@ -161,7 +172,7 @@ static bool read_extent(hid_t dataset, hid_t space, hid_t type, int parts, doubl
   int     rank   = H5Sget_simple_extent_dims(space, dim, NULL);
   double *values = malloc((size_t)PIECE * (size_t)parts * sizeof *values);
   bool    good   = values && rank >= 0;
-  piece_of(rank, dim, piece);
+  piece_of(piece_room(dataset), rank, dim, piece);
   do {
     hsize_t count[H5S_MAX_RANK], total = 1;
     for (int d = 0; d < rank; d++) {

@@ -16,7 +16,7 @@ import tempfile
 from pathlib import Path
 
 sys.path.insert(0, str(Path(__file__).resolve().parent.parent / 'support'))
-from browser import OFFLINE
+from browser import OFFLINE, WEBGL
 from programs import ENVIRONMENT
 
 CASE = Path(__file__).resolve().parents[2] / 'cases/z_notch_blade/case.yaml'
@@ -24,9 +24,8 @@ PRELOADS = [round(5 * 1.16 ** i, 3) for i in range(36)]
 WATCH = """<script>addEventListener('load', () => requestAnimationFrame(() =>
 requestAnimationFrame(() => console.log('LOADED ' + performance.now()))));</script></body>"""
 EMPTY = '<!DOCTYPE html><html><body><p>empty</p></body></html>'
-BROWSER = ['--headless', '--no-sandbox', '--disable-gpu', '--use-angle=swiftshader',
-           '--enable-unsafe-swiftshader', '--enable-logging=stderr', '--window-size=1200,900',
-           '--timeout=10000']
+BROWSER = ['--headless', '--no-sandbox', '--disable-gpu', *WEBGL, '--enable-logging=stderr',
+           '--window-size=1200,900', '--timeout=10000']
 
 
 def report(shroudhb, size, folder):

@@ -300,7 +300,7 @@ int main(int argc, char **argv) {
   };
   if (argc > 1 && strcmp(argv[1], "keep") == 0) {
     keep_page("blade", false, (const int[]){4, 1, 10});
-    keep_page("large", false, (const int[]){40, 4, 65});
+    keep_page("large", false, (const int[]){20, 4, 32});
     keep_page("disc", true, (const int[]){4, 1, 10});
     return 0;
   }

@@ -6,16 +6,13 @@
 MAKER NOUN keep writes page_KIND.html into the folder (test_contact_points.c,
 test_blade_view.c).
 """
-import json
-import re
 import subprocess
 import sys
 import tempfile
-from html import unescape
 from pathlib import Path
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[2] / 'support'))
-from browser import OFFLINE
+from browser import visit
 
 # Acts on a page as a reader does, then leaves what it saw in the document.
 ACTIONS = (Path(__file__).parent / 'page_actions.js').read_text()
@@ -23,22 +20,6 @@ ACTIONS = (Path(__file__).parent / 'page_actions.js').read_text()
 KINDS = ('usual', 'contacts', 'friction', 'free', 'many', 'blade', 'large', 'disc')
 BLADES = ('blade', 'large', 'disc')
 LOOPS = {'loop-u', 'loop-w', 'path', 'period'}
-
-
-def visit(chromium, folder, name, page, script):
-    """What the script saw on a page, and the console's lines."""
-    acted = folder / f'acted_{name}.html'
-    acted.write_text(page.replace('</body>', script))
-    run = subprocess.run(
-        [chromium, '--headless', '--no-sandbox', '--disable-gpu', *OFFLINE,
-         '--use-angle=swiftshader',
-         '--enable-unsafe-swiftshader', f'--user-data-dir={folder}/user',
-         '--enable-logging=stderr', '--window-size=1200,900', '--virtual-time-budget=6000',
-         '--dump-dom', acted.as_uri()], capture_output=True, text=True, timeout=120, check=False)
-    console = [line for line in run.stderr.splitlines()  # the test itself reads pixels
-               if 'CONSOLE' in line and 'due to ReadPixels' not in line]
-    match = re.search(r'<title>seen (.*?)</title>', run.stdout, re.S)
-    return console, json.loads(unescape(match.group(1))) if match else None
 
 
 # The motion of sectors on the page against that of `shroudhb field --ring`.
@@ -57,14 +38,14 @@ queueMicrotask(() => {
     }
   document.title = "seen " + JSON.stringify({off: off / size, left: wanted.u.length - at});
 });
-</script></body>"""
+</script>"""
 
 
 def motion_faults(chromium, folder):
     """Sectors of a disc in motion: forward and backward waves."""
     wanted = (folder / 'motion.json').read_text()
     page = (folder / 'page_disc.html').read_text()
-    console, seen = visit(chromium, folder, 'motion', page,
+    console, seen = visit(chromium, folder, page,
                           f'<script>const wanted = {wanted};</script>' + MOTION)
     if not seen:
         return console + ['the motion did not end']
@@ -77,7 +58,7 @@ def motion_faults(chromium, folder):
 def faults(kind, chromium, folder):
     """What is wrong with the page of a kind."""
     page = (folder / f'page_{kind}.html').read_text()
-    found, seen = visit(chromium, folder, kind, page, f'<script>{ACTIONS}</script></body>')
+    found, seen = visit(chromium, folder, page, f'<script>{ACTIONS}</script>')
     if not seen:
         return found + ['the actions did not end']
     found += seen['faults']

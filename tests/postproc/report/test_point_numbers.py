@@ -13,11 +13,10 @@ import re
 import subprocess
 import sys
 import tempfile
-from html import unescape
 from pathlib import Path
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[2] / 'support'))
-from browser import OFFLINE
+from browser import visit
 
 try:
     import h5py
@@ -202,20 +201,6 @@ def by_state(text, panel):
     return np.concatenate([lines(text, panel, [f'line {s}']) for s in ('stick', 'slip', 'gap')])
 
 
-def visit(chromium, folder, name):
-    page = (folder / f'{name}.html').read_text().replace(
-        '</body>', f'<script>{ACTIONS}</script></body>')
-    (folder / f'acted_{name}.html').write_text(page)
-    run = subprocess.run(
-        [chromium, '--headless', '--no-sandbox', '--disable-gpu', *OFFLINE,
-         f'--user-data-dir={folder}/user', '--enable-logging=stderr', '--window-size=1200,900',
-         '--virtual-time-budget=6000', '--dump-dom', (folder / f'acted_{name}.html').as_uri()],
-        capture_output=True, text=True, timeout=120, check=False)
-    found = re.search(r'<title>seen (.*?)</title>', run.stdout, re.S)
-    console = [line for line in run.stderr.splitlines() if 'CONSOLE' in line]
-    return console, json.loads(unescape(found.group(1))) if found else []
-
-
 def main():
     maker, chromium = sys.argv[1:]
     bad = 0
@@ -224,14 +209,15 @@ def main():
         subprocess.run([Path(maker).resolve(), 'point_numbers', 'keep'], cwd=folder, check=True)
         for scene_name in SCENES:
             check, scene = Check(), Scene(folder, scene_name)
-            check.faults, seen = visit(chromium, folder, scene_name)
-            for at in seen:
+            page = (folder / f'{scene_name}.html').read_text()
+            check.faults, seen = visit(chromium, folder, page, f'<script>{ACTIONS}</script>')
+            for at in seen or []:
                 i = check_point(scene, at, check)
                 check_contact(scene, at, i, check)
-            if len({at['point'] for at in seen}) < 4:
+            if len({at['point'] for at in seen or []}) < 4:
                 check.faults.append('fewer than four points')
             worst = sorted(check.worst.items(), key=lambda w: -w[1])[:3]
-            print(f'{scene_name}: {check.numbers} numbers of {len(seen)} views; worst of their '
+            print(f'{scene_name}: {check.numbers} numbers of {len(seen or [])} views; worst of their '
                   f'tolerance: {", ".join(f"{w} {x:.2f}" for w, x in worst)}')
             for fault in check.faults[:8]:
                 print('  ' + fault)

@@ -7,16 +7,14 @@ MAKER keep writes page_KIND.study.html of every kind of study into the folder (t
 """
 import csv
 import io
-import json
 import re
 import subprocess
 import sys
 import tempfile
-from html import unescape
 from pathlib import Path
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[2] / 'support'))
-from browser import OFFLINE
+from browser import visit
 
 # Acts on a page as a reader does, then leaves what it saw in the document.
 ACTIONS = """
@@ -104,7 +102,7 @@ ACTIONS = """
     document.title = "seen " + JSON.stringify(seen);
   });
 })();
-</script></body>"""
+</script>"""
 
 USUAL = {'parallel-chart', 'tornado-chart', 'curves-chart', 'map-chart'}
 CHARTS = {
@@ -124,18 +122,9 @@ DESIGNS = {'grid': 81, 'pair': 40, 'optimise': 60, 'uncertain': 256, 'robust': 2
 
 def faults(kind, page, chromium, folder):
     """What is wrong with the page of a kind."""
-    acted = folder / f'acted_{kind}.html'
-    acted.write_text(page.read_text().replace('</body>', ACTIONS))
-    run = subprocess.run(
-        [chromium, '--headless', '--no-sandbox', '--disable-gpu', *OFFLINE,
-         f'--user-data-dir={folder}/user',
-         '--enable-logging=stderr', '--window-size=1200,900', '--virtual-time-budget=4000',
-         '--dump-dom', acted.as_uri()], capture_output=True, text=True, timeout=120, check=False)
-    found = [line for line in run.stderr.splitlines() if 'CONSOLE' in line]
-    match = re.search(r'<title>seen (\{.*?\})</title>', run.stdout)
-    if not match:
+    found, seen = visit(chromium, folder, page.read_text(), ACTIONS)
+    if not seen:
         return found + ['the actions did not end']
-    seen = json.loads(unescape(match.group(1)))
     charts = set(filter(None, seen['charts'].split(',')))
     if charts != CHARTS[kind]:
         found.append(f'charts {sorted(charts)}')
