@@ -11,7 +11,7 @@ trap 'rm -rf "$work"' EXIT
 failed=0
 export HOME="$work/home" # gmsh must leave it alone (its FLTK makes an empty preferences file)
 mkdir "$work/home" "$work/dir"
-sed 's/^    size: .*/    size: 6.5 mm\n    shroud_size: 4 mm\n    elements: tet10/' \
+sed 's/^    size: .*/    size: 12 mm\n    shroud_size: 7 mm\n    elements: tet10/' \
   "$scene" >"$work/dir/case.yaml"
 mesh=$work/dir/z_notch_blade.msh
 
