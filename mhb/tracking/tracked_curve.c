@@ -33,7 +33,7 @@ enum { MOST_KINKS = 12, MOST_REFINEMENTS = 2 };
 static const double AT_INFLECTION = 1e-4;
 
 /* Residual of points, relative to the motion. An amplitude differs by less from that of its peak
- * (docs/evidence.md). */
+ * (docs/evidence). */
 static const double SETTLED = 1e-9;
 
 /* A peak is that of a seed whose frequency and amplitude it has to within this: the first in units

@@ -211,13 +211,14 @@ def main():
             check, scene = Check(), Scene(folder, scene_name)
             page = (folder / f'{scene_name}.html').read_text()
             check.faults, seen = visit(chromium, folder, page, f'<script>{ACTIONS}</script>')
-            for at in seen or []:
+            seen = seen or []
+            for at in seen:
                 i = check_point(scene, at, check)
                 check_contact(scene, at, i, check)
-            if len({at['point'] for at in seen or []}) < 4:
+            if len({at['point'] for at in seen}) < 4:
                 check.faults.append('fewer than four points')
             worst = sorted(check.worst.items(), key=lambda w: -w[1])[:3]
-            print(f'{scene_name}: {check.numbers} numbers of {len(seen or [])} views; worst of their '
+            print(f'{scene_name}: {check.numbers} numbers of {len(seen)} views; worst of their '
                   f'tolerance: {", ".join(f"{w} {x:.2f}" for w, x in worst)}')
             for fault in check.faults[:8]:
                 print('  ' + fault)
