@@ -5,8 +5,8 @@
 
 MAKER point_numbers keep writes pages, response files and NAME.json with areas and settings
 (test_point_numbers.c): a wave, a disc, rings of equal and of different blades, several pairs,
-several interfaces, gaps. Shares of pairs, loads and limits are computed here once more. Loads of equal
-blades are also those of the wave, at the ends of the range.
+several interfaces, gaps. Shares of pairs, loads and limits are computed here once more. Loads of
+equal blades are also those of the wave, at the ends of the range.
 """
 import csv
 import json
@@ -147,7 +147,8 @@ def check_point(scene, seen, check):
     ring = 'ring' in branch
     each = probe.shape[0] // (len(branch['ring/energy'][i]) if ring else 1)
     places = range(0, probe.shape[0], each) if ring else [0]
-    check.near('amplitude', a, max(semi_major(probe[q, :, scene.order]) for q in places), half + 1e-6 * a)
+    most = max(semi_major(probe[q, :, scene.order]) for q in places)
+    check.near('amplitude', a, most, half + 1e-6 * a)
     shares = re.search(rf'open ({NUMBER}) · ({NUMBER}) · ({NUMBER})\xa0%', text).groups()
     for got, wanted in zip(shares, branch['state'][i].mean(axis=0)):
         check.shown('share', got, '%', wanted)
