@@ -221,10 +221,11 @@ shb_status contact_points_choose(modal_model *model, modal_nodal_diameters *disc
   for (int patches = 1; patches < all;) {
     double error = 0;
     SHB_TRY(contact_points_join(model, disc, patches, out));
-    s.other_pairs = &(*out)->pairs;
-    SHB_TRY(judge(model, &s, &error));
+    const bool flat = (*out)->joining.spread <= MODAL_FLAT;
+    s.other_pairs   = &(*out)->pairs;
+    if (flat) SHB_TRY(judge(model, &s, &error));
     (*out)->estimate = error;
-    if (error <= tolerance) return SHB_OK;
+    if (flat && error <= tolerance) return SHB_OK;
     undo(model, disc, *out);
     *out = NULL;
     patches *= error > FAR * tolerance ? 4 : 2;

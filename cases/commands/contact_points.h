@@ -25,7 +25,8 @@ shb_status contact_points_join(modal_model *model, modal_nodal_diameters *disc, 
 
 /* Join them to the fewest patches, 1, 2, 4, ... or all pairs, for which the estimated spatial error
  * keeps the tolerance at nine of ten points of curves in outline. The points are those that slip or
- * open, evenly along the curves of every preload.
+ * open, evenly along the curves of every preload. No face is turned by more than MODAL_FLAT against
+ * its patch.
  *
  * Errors: as contact_points_join, mhb_forced_response. */
 shb_status contact_points_choose(modal_model *model, modal_nodal_diameters *disc,

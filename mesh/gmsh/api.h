@@ -30,6 +30,7 @@
   F(ModelGetBoundingBox) \
   F(ModelGetClosestPoint) \
   F(ModelGetCurrent) \
+  F(ModelGetDerivative) \
   F(ModelGetEntities) \
   F(ModelGetEntitiesForPhysicalGroup) \
   F(ModelGetParametrizationBounds) \
@@ -108,6 +109,7 @@ const mesh_gmsh_functions *mesh_gmsh(void);
 #define gmshModelGetBoundingBox (mesh_gmsh()->ModelGetBoundingBox)
 #define gmshModelGetClosestPoint (mesh_gmsh()->ModelGetClosestPoint)
 #define gmshModelGetCurrent (mesh_gmsh()->ModelGetCurrent)
+#define gmshModelGetDerivative (mesh_gmsh()->ModelGetDerivative)
 #define gmshModelGetEntities (mesh_gmsh()->ModelGetEntities)
 #define gmshModelGetEntitiesForPhysicalGroup (mesh_gmsh()->ModelGetEntitiesForPhysicalGroup)
 #define gmshModelGetParametrizationBounds (mesh_gmsh()->ModelGetParametrizationBounds)

@@ -9,6 +9,7 @@
 
 #include "mesh/core/file_format.h"
 #include "mesh/gmsh/api.h"
+#include "mesh/gmsh/script_files.h"
 
 static const char ending[] = ".opt";
 
@@ -53,30 +54,12 @@ static shb_status refuse_options(const char *script, const char *path) {
   return SHB_OK;
 }
 
-/* What stands between quotes on a line of a script, as names of files beside it. What stands
- * outside is tried too, and names none. */
-static shb_status check_line(const char *script, char *line) {
-  static const char quotes[] = "\"'\n";
-  char              path[LENGTH], *rest = NULL;
-  const char       *slash  = strrchr(script, '/');
-  const int         folder = slash ? (int)(slash + 1 - script) : 0;
-  for (char *name = strtok_r(line, quotes, &rest); name; name = strtok_r(NULL, quotes, &rest)) {
-    snprintf(path, sizeof path, "%.*s%s", *name == '/' ? 0 : folder, script, name);
-    SHB_TRY(refuse_options(script, path));
-  }
-  return SHB_OK;
-}
-
+/* Each file that the script reads, at any depth. */
 static shb_status check_script(const char *path) {
-  SHB_TRY(refuse_options(path, path));
-  char      *line   = NULL;
-  size_t     size   = 0;
-  shb_status status = SHB_OK;
-  FILE      *file   = fopen(path, "rb");
-  SHB_CHECK(file, SHB_ERR_IO, "%s: cannot be read: %s", path, strerror(errno));
-  while (status == SHB_OK && getline(&line, &size, file) > 0) status = check_line(path, line);
-  free(line);
-  fclose(file);
+  mesh_file_list list   = {0};
+  shb_status     status = mesh_script_files(path, &list);
+  for (int i = 0; i < list.n && status == SHB_OK; i++) status = refuse_options(path, list.path[i]);
+  mesh_files_free(&list);
   return status;
 }
 

@@ -14,7 +14,7 @@ typedef struct {
   int              straightened;              /* elements that got straight edges */
   int              moved;                     /* nodes that moved for that */
   double           farthest, at[3];           /* the largest move, and where */
-  int              solid, n_solids;           /* the solid whose surface is farthest off, from 1 */
+  int              solid, n_solids;           /* the solid that is farthest off, from 1 */
   mesh_surface_gap gap;                       /* its own */
 } mesh_solid_faults;
 

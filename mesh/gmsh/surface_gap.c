@@ -8,6 +8,7 @@
 #include "mesh/base/vec3.h"
 #include "mesh/gmsh/api.h"
 #include "mesh/gmsh/session.h"
+#include "mesh/gmsh/solid_volume.h"
 
 /* Elements on curved faces that are measured: with three points each, 1.3 s on splines. */
 enum { MEASURED = 1000, POINTS = 4 };
@@ -159,12 +160,12 @@ shb_status mesh_surface_gap_of(const mesh_source *source, const mesh_fe *mesh, i
   const shb_status status = add_faces(&s, tags, (int)(n / 2));
   gmshFree(tags);
   SHB_TRY(status);
-  double       exact = 0;
-  int          ierr  = 0;
+  mesh_solid_volume exact;
+  SHB_TRY(mesh_solid_volume_of(source->path, mesh->kind, solid, &exact));
   const double unit = source->unit, cubic = unit * unit * unit;
-  gmshModelOccGetMass(3, solid, &exact, &ierr);
   gap->volume   = cubic * fabs(s.cone) / 3;
-  gap->of_solid = ierr == 0 && exact > 0 ? cubic * exact : 0;
+  gap->missing  = cubic * (exact.volume - fabs(s.cone) / 3);
+  gap->error    = cubic * exact.error;
   gap->farthest = unit * s.farthest;
   for (int d = 0; d < 3; d++) gap->at[d] = unit * s.at[d];
   return SHB_OK;

@@ -8,16 +8,13 @@
 
 typedef struct {
   double volume;          /* m3, inside the mesh of the solid */
-  double of_solid;        /* m3, from OpenCASCADE; 0: not known, as of gmsh's own geometry */
+  double missing, error;  /* m3, by which the solid is larger, and how far that may be off; NAN */
   double farthest, at[3]; /* m, the largest distance of the surfaces that was found, and where */
 } mesh_surface_gap;
 
 /* Gap between the faces of a solid and its mesh, which may have straightened elements. Of many
- * elements on curved faces every k-th is measured, since a point on a spline takes 0.4 ms.
- *
- * OpenCASCADE's volume is exact on simple faces. It was 5e-3 too large where a spline was cut by
- * other faces: three finer meshes agreed to 2e-4 on another one.
- *
+ * elements on curved faces every k-th is measured, since a point on a spline takes 0.4 ms. The
+ * volume of the solid is that of mesh_solid_volume_of.
  *   mesh   in  in the unit of the file, as imported, with the tags of gmsh
  *   solid  in  gmsh's tag
  * Errors: SHB_ERR_INPUT; SHB_ERR_IO no memory. */

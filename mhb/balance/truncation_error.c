@@ -290,16 +290,12 @@ static double largest_in_period(mhb_truncation *t, const double *e) {
   set_basis(t);
   cblas_dgemm(CblasRowMajor, CblasNoTrans, CblasTrans, rows, n, nb, 1, e, nb, t->basis, nb, 0,
               t->motion, n);
-  for (int i = 0; i < n; i++) {
-    double sum = 0;
-    for (int row = 0; row < rows; row++) {
-      const double x = t->motion[row * n + i];
-      sum += x * x;
-    }
-    top = fmax(top, sum);
-  }
-  return sqrt(top);
+  for (int i = 0; i < n; i++) top = fmax(top, cblas_dnrm2(rows, t->motion + i, n));
+  return top;
 }
+
+/* Told of an error without a bound, as at a resonance without damping: a file holds numbers. */
+static const double NO_BOUND = 1e30;
 
 /* Both norms of the error, from the step and the tail; t->trial <- the error up to 2m. size: of the
  * vibration. Returns the first. */
@@ -316,8 +312,8 @@ static double set_errors(mhb_truncation *t, double size) {
   for (int i = 0; i < b->n; i++) t->trial[i] = t->step[i] * (i % b->nb < low ? 1 / (1 - ratio) : 1);
   for (int k = b->m + 1; t->higher && k <= t->higher->last; k++)
     highest += sqrt(mhb_truncation_power(t, k));
-  t->largest = (largest_in_period(t, t->trial) + fmax(highest, tail.sum)) / size;
-  return hypot(mhb_norm(t->trial, b->n), fmax(t->higher_size, tail.rms)) / size;
+  t->largest = fmin(NO_BOUND, (largest_in_period(t, t->trial) + fmax(highest, tail.sum)) / size);
+  return fmin(NO_BOUND, hypot(mhb_norm(t->trial, b->n), fmax(t->higher_size, tail.rms)) / size);
 }
 
 double mhb_truncation_error(mhb_truncation *t, const double *x) {

@@ -7,12 +7,9 @@
 #include "mesh/base/constants.h"
 #include "mesh/core/face_pairing.h"
 #include "modal/condense/face_partition.h"
+#include "modal/model/joined_pairs.h"
 
 static const double degree = SHB_PI / 180;
-
-/* Most that a face may be turned against its patch, degrees. A part sin^2 of the normal stiffness
- * acts along it then: 0.8 %. */
-enum { FLAT = 5 };
 
 /* Shared data of the builders. */
 typedef struct {
@@ -134,12 +131,12 @@ static void widen(const builder *b, int facet, const double mean[3], spread *s) 
 /* The contact law has one normal a patch. */
 static shb_status check_flat(const builder *b, const spread *s) {
   const double *at = b->facets.centroid[s->facet];
-  SHB_CHECK(s->angle <= FLAT * degree, SHB_ERR_INPUT,
+  SHB_CHECK(s->angle <= MODAL_FLAT * degree, SHB_ERR_INPUT,
             "group contact_right: its face at (%.4g, %.4g, %.4g) m is turned by %.3g deg against "
             "the mean of its contact patch, which the contact law takes as flat (at most %d deg); "
             "give every flat face an interface of its own (contact.interfaces), or a curved one "
             "more contact.points",
-            at[0], at[1], at[2], s->angle / degree, FLAT);
+            at[0], at[1], at[2], s->angle / degree, MODAL_FLAT);
   return SHB_OK;
 }
 

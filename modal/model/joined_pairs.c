@@ -4,6 +4,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "mesh/base/constants.h"
+
 void modal_shroud_axes(double psi, double phi, double T0[3][3]) {
   double cs = cos(psi), ss = sin(psi), cf = cos(phi), sf = sin(phi);
   double T[3][3] = {{cs * cf, -ss, cs * sf}, {ss * cf, cs, ss * sf}, {-sf, 0, cf}};
@@ -119,6 +121,17 @@ static void mean_normals(const modal_model *model, const modal_joining *j, doubl
   }
 }
 
+/* Of the normals of pairs, in their own cylindrical axes as the motion of a patch. */
+static double spread_of(const modal_model *model, const modal_joining *j, const double *normal) {
+  double least = 1;
+  for (int i = 0; i < j->n_pairs; i++) {
+    const double *a = model->normal + 3 * (size_t)i, *b = normal + 3 * (size_t)j->patch[i];
+    const double  length = sqrt(a[0] * a[0] + a[1] * a[1] + a[2] * a[2]);
+    least                = fmin(least, (a[0] * b[0] + a[1] * b[1] + a[2] * b[2]) / length);
+  }
+  return acos(fmax(-1, least)) * 180 / SHB_PI;
+}
+
 /* turn = T0_patch T0_pair^T; the identity without normals, where all pairs have the same axes. */
 static shb_status set_turns(const modal_model *model, modal_joining *j) {
   for (int i = 0; i < j->n_pairs; i++)
@@ -127,6 +140,7 @@ static shb_status set_turns(const modal_model *model, modal_joining *j) {
   double *normal = malloc(3 * (size_t)j->n_patches * sizeof *normal);
   SHB_CHECK(normal, SHB_ERR_IO, "out of memory for %d patches", j->n_patches);
   mean_normals(model, j, normal);
+  j->spread = spread_of(model, j, normal);
   for (int i = 0; i < j->n_pairs; i++) {
     double to[3][3], from[3][3], psi, phi;
     modal_normal_angles(normal + 3 * j->patch[i], &psi, &phi);

@@ -11,11 +11,16 @@
 
 #include "modal/model/nodal_diameters.h"
 
+/* Most that a face may be turned against its patch, degrees. The contact law has one normal a
+ * patch, and a part sin^2 of the normal stiffness acts along the face then: 0.8 %. */
+enum { MODAL_FLAT = 5 };
+
 typedef struct {
   int     n_pairs, n_patches;
   int    *patch;  /* [pair] */
   double *weight; /* [pair] share of its patch's area */
   double *turn;   /* [pair][3][3] */
+  double  spread; /* degrees, largest angle between the normals of a pair and of its patch */
 } modal_joining;
 
 /* Columns v, u, w of eq. 2 in (tangential, axial, radial), for the angles of a face. */

@@ -30,6 +30,7 @@ shb_bench(mistuning NIGHTLY LIBRARIES tests_models
 shb_bench(optimisers NIGHTLY LIBRARIES shb_cases_study)
 shb_bench(elements NIGHTLY LIBRARIES shb_modal tests_box)
 shb_bench(residuals NIGHTLY LIBRARIES shb_modal tests_box)
+shb_bench(solid_volume NIGHTLY LIBRARIES tests_box)
 shb_bench(solver NIGHTLY LIBRARIES shb_modal tests_box)
 shb_bench(modal NIGHTLY LIBRARIES shb_modal tests_box
   ARGUMENTS "$<$<BOOL:${SHROUDHB_CCX}>:${SHROUDHB_CCX}>")

@@ -1,5 +1,6 @@
 #!/bin/sh
-# A limit of the address space below what OpenBLAS takes: one line and exit code 4, no endless wait.
+# A limit of the address space below what OpenBLAS takes, or of open files: one line and exit code
+# 4, no endless wait.
 # usage: test_address_space.sh FOLDER_OF_THE_PROGRAMS
 set -u
 programs=$1
@@ -20,4 +21,9 @@ done
 (ulimit -v 180000; OPENBLAS_NUM_THREADS=1 "$programs/shroudhb" --version) 2>"$err" >/dev/null
 grep -q '1 thread needs 240 MB: raise ulimit -v$' "$err" || { cat "$err"; failed=1; }
 (ulimit -v 8000000; "$programs/shroudhb" --version) >/dev/null 2>"$err" || { cat "$err"; failed=1; }
+(ulimit -n 20; timeout 60 "$programs/shroudhb-mhb" --version) 2>"$err" >/dev/null
+[ $? -eq 4 ] &&
+  grep -q 'open files is limited to 20; [0-9]* are asked for: raise ulimit -n$' "$err" &&
+  [ "$(wc -l <"$err")" -eq 1 ] || { echo "FAILED: open files:"; cat "$err"; failed=1; }
+(ulimit -n 256; "$programs/shroudhb-mhb" --version) >/dev/null 2>"$err" || { cat "$err"; failed=1; }
 exit $failed

@@ -6,9 +6,11 @@
 #include <stdarg.h>
 #include <stddef.h>
 #include <stdlib.h>
+#include <string.h>
 
 #include <cmocka.h>
 
+#include "mesh/base/constants.h"
 #include "mhb/branches/forced_response.h"
 #include "tests/support/check.h"
 #include "tests/support/random_disc.h"
@@ -89,6 +91,35 @@ static void points_of_a_disc(void **state) {
   }
 }
 
+/* Normals from -15 to 15 deg along the face: a patch is flat to 5 deg, also where any number keeps
+ * the tolerance. */
+static void patches_of_a_curved_face_are_flat(void **state) {
+  (void)state;
+  modal_model     model;
+  contact_points *points;
+  mhb_settings    s = settings_of();
+  smooth_face_model(PAIRS, 150, &model);
+  double least = INFINITY, most = -INFINITY;
+  for (int i = 0; i < PAIRS; i++) {
+    least = fmin(least, model.position[3 * i + 1]);
+    most  = fmax(most, model.position[3 * i + 1]);
+  }
+  model.normal = malloc(sizeof(double[3]) * PAIRS);
+  for (int i = 0; i < PAIRS; i++) {
+    const double part = (model.position[3 * i + 1] - least) / (most - least);
+    const double a    = s.psi + (part - .5) * 30 * SHB_PI / 180;
+    memcpy(model.normal + 3 * (size_t)i, (double[]){cos(a), sin(a), 0}, sizeof(double[3]));
+  }
+  assert_ok(contact_points_choose(&model, NULL, &s, 50, &points));
+  assert_non_null(points);
+  print_message("a face curved by 30 deg: %d of %d, off by up to %.3g deg\n", model.n_pairs, PAIRS,
+                points->joining.spread);
+  assert_in_range(model.n_pairs, 3, PAIRS - 1);
+  assert_true(points->joining.spread > 1 && points->joining.spread <= MODAL_FLAT);
+  contact_points_free(points);
+  modal_model_free(&model);
+}
+
 /* Every point of a response carries the estimate that the choice rests on. */
 static void points_carry_the_error(void **state) {
   (void)state;
@@ -140,9 +171,8 @@ static void half_as_many_judge_a_fixed_number(void **state) {
 
 int main(void) {
   const struct CMUnitTest tests[] = {
-      cmocka_unit_test(fewest_that_keep_the_tolerance),
-      cmocka_unit_test(points_of_a_disc),
-      cmocka_unit_test(points_carry_the_error),
+      cmocka_unit_test(fewest_that_keep_the_tolerance),    cmocka_unit_test(points_of_a_disc),
+      cmocka_unit_test(patches_of_a_curved_face_are_flat), cmocka_unit_test(points_carry_the_error),
       cmocka_unit_test(half_as_many_judge_a_fixed_number),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);

@@ -120,6 +120,11 @@ static void a_script_with_options_beside_it_is_refused(void **state) {
   source = source_of("merge.geo");
   assert_source_refused(&source, "block.step.opt: gmsh would run this file with ");
   assert_false(sprung());
+  put("inner.geo", "Merge 'block.step';\n");
+  put("outer.geo", "SetFactory(\"OpenCASCADE\"); Include \"inner.geo\";\n");
+  source = source_of("outer.geo");
+  assert_source_refused(&source, "block.step.opt: gmsh would run this file with ");
+  assert_false(sprung());
   put("computed.geo", "SetFactory(\"OpenCASCADE\"); Merge StrCat(\"block\", \".step\");\n");
   source = source_of("computed.geo");
   assert_source_refused(&source,

@@ -65,6 +65,16 @@ static void what_a_script_includes_counts(void **state) {
   assert_true(watches("box.geo", "deep.txt", "w = 1;", "w = 2;"));
 }
 
+/* gmsh takes both kinds of quotes. A file has many names, which would be a list without end. */
+static void other_quotes_and_other_names_count_once(void **state) {
+  (void)state;
+  write_text("quotes.geo",
+             "/* don't */ Include 'single.geo'; s = Sprintf('a \"b\"'); // don't\n"
+             "Include\n 'next.geo';\n");
+  assert_true(watches("quotes.geo", "next.geo", "h = 1;", "h = 2;"));
+  assert_true(watches("quotes.geo", "single.geo", "// \"./single.geo\"", "// \"././single.geo\""));
+}
+
 static void what_a_deck_includes_counts(void **state) {
   (void)state;
   write_text("deck.inp",
@@ -83,6 +93,7 @@ int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(a_file_that_includes_nothing_has_its_own_fingerprint),
       cmocka_unit_test(what_a_script_includes_counts),
+      cmocka_unit_test(other_quotes_and_other_names_count_once),
       cmocka_unit_test(what_a_deck_includes_counts)};
   return cmocka_run_group_tests(tests, scratch_make, scratch_remove);
 }

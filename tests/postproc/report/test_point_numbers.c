@@ -21,11 +21,18 @@ typedef enum { WAVE, EQUAL_RING, RING, DISC } kind;
 typedef struct {
   const char *name;
   kind        kind;
-  int         sides; /* contact interfaces */
+  int         sides;   /* contact interfaces */
+  int         order;   /* periods of the excitation in one of the motion */
+  double      n0;      /* N; 0: that of the settings */
+  bool        pressed; /* the preload is an interference */
 } scene;
 
-static const scene scenes[] = {{"wave", WAVE, 1},  {"equal", EQUAL_RING, 1}, {"ring", RING, 1},
-                               {"sides", WAVE, 2}, {"parted", RING, 2},      {"disc", DISC, 1}};
+static const scene scenes[] = {
+    {"wave", WAVE, 1, 1, 0, false},   {"equal", EQUAL_RING, 1, 1, 0, false},
+    {"ring", RING, 1, 1, 0, false},   {"sides", WAVE, 2, 1, 0, false},
+    {"parted", RING, 2, 1, 0, false}, {"disc", DISC, 1, 1, 0, false},
+    {"gap", WAVE, 1, 1, -0.2, false}, {"pressed", WAVE, 1, 1, 0, true},
+    {"doubled", WAVE, 1, 2, 0, false}};
 
 enum { SCENES = sizeof scenes / sizeof *scenes };
 
@@ -77,6 +84,13 @@ static void set_up(const scene *c, solved *s) {
     s->settings.scale        = 2;
     s->settings.frequency[0] = 1.35 / SHB_TWO_PI;
     s->settings.frequency[1] = 1.45 / SHB_TWO_PI;
+  }
+  if (c->n0 != 0) s->settings.n0[0] = c->n0;
+  if (c->pressed) s->settings.preload = MHB_INTERFERENCE;
+  if (c->order > 1) {
+    s->settings.subharmonics = c->order;
+    s->settings.engine_order = c->order; /* its wave closes around the ring */
+    s->settings.harmonics *= c->order;
   }
   s->settings.tolerance = 1e-8;
   s->settings.stability = MHB_STABILITY_NEVER;
@@ -167,7 +181,8 @@ static void write_modal(const char *path, const solved *s) {
 static void write_case(const char *path, const scene *c, const solved *s) {
   FILE *file = fopen(path, "w");
   assert_non_null(file);
-  fprintf(file, "{\"blades\": %d, \"area\": [", s->ring ? BLADES : 1);
+  fprintf(file, "{\"blades\": %d, \"order\": %d, \"pressed\": %s, \"area\": [",
+          s->ring ? BLADES : 1, c->order, c->pressed ? "true" : "false");
   for (int a = 0; a < s->model.n_pairs; a++)
     fprintf(file, "%s%.17g", a ? ", " : "", s->model.area[a]);
   fprintf(file, "], \"interfaces\": [");

@@ -5,7 +5,8 @@
 
 MAKER point_numbers keep writes pages, response files and NAME.json with areas and settings
 (test_point_numbers.c): a wave, a disc, rings of equal and of different blades, several pairs,
-several interfaces. Shares of pairs, loads and limits are computed here once more.
+several interfaces, gaps. Shares of pairs, loads and limits are computed here once more. Loads of
+equal blades are also those of the wave, at the ends of the range.
 """
 import csv
 import json
@@ -26,7 +27,7 @@ except ImportError:
     sys.exit(77)
 
 ACTIONS = (Path(__file__).parent / 'point_actions.js').read_text()
-SCENES = ('wave', 'equal', 'ring', 'sides', 'parted', 'disc')
+SCENES = ('wave', 'equal', 'ring', 'sides', 'parted', 'disc', 'gap', 'pressed', 'doubled')
 UNITS = {'Hz': 1, 'm': 1, 'mm': 1e-3, 'µm': 1e-6, 'N': 1, 'mN': 1e-3, 'µN': 1e-6, 'kN': 1e3,
          'J': 1, 'mJ': 1e-3, 'µJ': 1e-6, 'nJ': 1e-9, '%': 0.01}
 NUMBER = r'−?[\d.]+(?:[e×][-−\d^⁻]+)?'
@@ -48,11 +49,13 @@ class Scene:
         self.file = h5py.File(folder / f'{name}.response.h5')
         case = json.loads((folder / f'{name}.json').read_text())
         self.interfaces = case['interfaces']
-        self.preload = self.file.attrs.get('preload', 'equilibrium')
+        self.pressed = case['pressed']
         pairs = self.branch(2)['motion'].shape[1]
         own = pairs // case['blades']
         areas = case['area'] or [1] * own
         which = self.file['interface'][:] if 'interface' in self.file else np.zeros(pairs, int)
+        self.pairs, self.order = own, case['order']
+        self.ring = case['blades'] > 1
         self.names = []
         self.law = []
         labels = [n.decode() for n in self.file['interface_name'][:]] if len(
@@ -80,6 +83,20 @@ def series(harmonics, time):
 
 def semi_major(a):
     return np.sqrt((np.sum(abs(a) ** 2) + abs(np.sum(a * a))) / 2)
+
+
+def peak_to_peak(a):
+    """Largest distance of two instants of a vector's motion."""
+    time = np.linspace(0, 1, 1001)[:-1]
+    x = np.array([series(row, time) for row in np.atleast_2d(a)])
+    if len(x) == 1:
+        return np.ptp(x)
+    return np.sqrt(max(((x[:, i:i + 1] - x) ** 2).sum(axis=0).max() for i in range(len(time))))
+
+
+def amplitude(a, quantity, order):
+    a = np.atleast_2d(a)
+    return peak_to_peak(a) if quantity == 'peak to peak' else semi_major(a[:, order])
 
 
 def lines(text, panel, names=None):
@@ -129,7 +146,8 @@ def check_point(scene, seen, check):
     ring = 'ring' in branch
     each = probe.shape[0] // (len(branch['ring/energy'][i]) if ring else 1)
     places = range(0, probe.shape[0], each) if ring else [0]
-    check.near('amplitude', a, max(semi_major(probe[q, :, 1]) for q in places), half + 1e-6 * a)
+    most = max(semi_major(probe[q, :, scene.order]) for q in places)
+    check.near('amplitude', a, most, half + 1e-6 * a)
     shares = re.search(rf'open ({NUMBER}) · ({NUMBER}) · ({NUMBER})\xa0%', text).groups()
     for got, wanted in zip(shares, branch['state'][i].mean(axis=0)):
         check.shown('share', got, '%', wanted)
@@ -141,12 +159,42 @@ def check_point(scene, seen, check):
     errors += [branch['error/spatial'][i]]
     if told:
         check.shown('error', told.group(1), '%', max(e for e in errors if np.isfinite(e)))
-    worst = max(places, key=lambda q: semi_major(probe[q, :, 1]))
+    worst = max(places, key=lambda q: semi_major(probe[q, :, scene.order]))
     bars = lines(seen['tables']['spectrum'], 1)
     most = max(semi_major(probe[worst, :, k]) for k in range(probe.shape[2]))
     for k, height in bars:  # a bar begins at 1e-6 of the largest
         check.near('spectrum', height, semi_major(probe[worst, :, round(k)]), 2e-6 * most)
     return i
+
+
+AXES = {'motion': slice(None), 'tangential': 0, 'axial': 1, 'radial': 2,
+        'relative motion': slice(None), 'v, normal': 0, 'u, sliding': 1, 'w, sliding': 2}
+
+
+def wanted(scene, branch, i, out):
+    """The amplitude of an output at a point of the file."""
+    axis, quantity = AXES[out['axis']], out['quantity']
+    motion, probe = complex_of(branch['motion'][i]), complex_of(branch['probe'][i])
+    names = [n.decode() for n in scene.file['probe/name'][:]]
+    if not scene.ring or ', ' not in out['place']:
+        of = (probe[names.index(out['place'])] if out['place'] in names
+              else motion[scene.names.index(out['place'])])
+        return amplitude(of[axis], quantity, scene.order)
+    blades = len(motion) // scene.pairs
+    each = [probe[b * (len(probe) // blades)] for b in range(blades)]
+    all_of = [amplitude(of[axis], quantity, scene.order) for of in each]
+    if out['place'].endswith('mean of the blades'):
+        return np.mean(all_of)
+    return all_of[int(np.argmax([amplitude(of, 'first harmonic', scene.order) for of in each]))]
+
+
+def check_outputs(scene, seen, i, check):
+    branch = scene.branch(seen['branch'])
+    for out in seen['outputs']:
+        told = re.search(rf"{out['quantity']} ({NUMBER})\xa0(\w+)", out['point']).groups()
+        got, half = value(*told)
+        exact = wanted(scene, branch, i, out)
+        check.near(f"{out['place']} {out['axis']}", got, exact, half + 2e-5 * exact)
 
 
 def check_contact(scene, seen, i, check):
@@ -171,11 +219,12 @@ def check_contact(scene, seen, i, check):
     check.shown("contact's work", *work, branch['dissipation'][i, pair] if slips else 0)
     # the charts
     time, drawn = lines(seen['tables']['period'], 1).T
+    time = time / scene.order
     most = load.max()
     check.near('load drawn', abs(drawn - np.interp(time, fine, load)).max(), 0, DRAWN * most)
     limit = lines(seen['tables']['period'], 2, ['line bound'])[:, 1]
     check.near('limit drawn', abs(limit - law['mu'] * drawn).max(), 0, 1e-4 * most)
-    offset = max(law['n0'], 0)
+    offset = 0 if scene.pressed else max(law['n0'], 0)
     check.near('mean load', coefficient(time, drawn, 0).real, force[0, 0].real + offset,
                DRAWN * most)
     order = np.argsort(by_state(seen['tables']['period'], 2)[:, 0], kind='stable')
@@ -196,6 +245,20 @@ def check_contact(scene, seen, i, check):
     return span
 
 
+def check_equal(ends):
+    """Loads of a ring of equal blades at the ends of the range, and those of the wave."""
+    check, pairs = Check(), len({name for _, name in ends['wave']})
+    for (end, name), span in ends['equal'].items():
+        pair = (int(name.split()[-1]) - 1) % pairs
+        for got, exact in zip(span, ends['wave'][end, f'contact {pair + 1}']):
+            check.near(f'{name}, {end}', got, exact, 1e-6 * ends['wave'][end, 'contact 1'][1])
+    print(f'equal blades and the wave: {check.numbers} loads; worst '
+          f'{max(check.worst.values(), default=0):.2g} of 1e-6 of the load')
+    if check.numbers < 4 * pairs:
+        check.faults.append('fewer than two contacts at both ends')
+    return check.faults
+
+
 def by_state(text, panel):
     """Samples of a chart, a line a state; each sample is in the line of the piece that it ends."""
     return np.concatenate([lines(text, panel, [f'line {s}']) for s in ('stick', 'slip', 'gap')])
@@ -207,6 +270,7 @@ def main():
     with tempfile.TemporaryDirectory() as name:
         folder = Path(name)
         subprocess.run([Path(maker).resolve(), 'point_numbers', 'keep'], cwd=folder, check=True)
+        ends = {}
         for scene_name in SCENES:
             check, scene = Check(), Scene(folder, scene_name)
             page = (folder / f'{scene_name}.html').read_text()
@@ -214,7 +278,11 @@ def main():
             seen = seen or []
             for at in seen:
                 i = check_point(scene, at, check)
-                check_contact(scene, at, i, check)
+                span = check_contact(scene, at, i, check)
+                if at.get('end'):
+                    ends.setdefault(scene_name, {})[at['end'], at['name']] = span
+                if at.get('outputs'):
+                    check_outputs(scene, at, i, check)
             if len({at['point'] for at in seen}) < 4:
                 check.faults.append('fewer than four points')
             worst = sorted(check.worst.items(), key=lambda w: -w[1])[:3]
@@ -223,7 +291,10 @@ def main():
             for fault in check.faults[:8]:
                 print('  ' + fault)
             bad += bool(check.faults)
-    return 1 if bad else 0
+        faults = check_equal(ends)
+        for fault in faults[:8]:
+            print('  ' + fault)
+    return 1 if bad or faults else 0
 
 
 if __name__ == '__main__':

@@ -1,0 +1,93 @@
+#include "mesh/gmsh/script_files.h"
+
+#include <stdbool.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+
+#include "mesh/core/file_format.h"
+
+/* Take over a path, malloc'ed. */
+static void put(mesh_file_list *list, char *path, const struct stat *about) {
+  list->path[list->n]   = path;
+  list->device[list->n] = about->st_dev;
+  list->inode[list->n]  = about->st_ino;
+  list->n++;
+}
+
+shb_status mesh_files_begin(const char *path, mesh_file_list *list) {
+  struct stat about = {0};
+  char       *copy  = strdup(path);
+  list->n           = 0;
+  SHB_CHECK(copy, SHB_ERR_IO, "out of memory");
+  (void)stat(path, &about); /* who reads it tells that it is not there */
+  put(list, copy, &about);
+  return SHB_OK;
+}
+
+void mesh_files_free(mesh_file_list *list) {
+  for (int i = 0; i < list->n; i++) free(list->path[i]);
+  list->n = 0;
+}
+
+static bool is_new(const mesh_file_list *list, const char *path, struct stat *about) {
+  if (stat(path, about) != 0 || !S_ISREG(about->st_mode)) return false;
+  for (int i = 0; i < list->n; i++)
+    if (list->device[i] == about->st_dev && list->inode[i] == about->st_ino) return false;
+  return true;
+}
+
+shb_status mesh_files_add(mesh_file_list *list, const char *from, const char *name, size_t n) {
+  struct stat  about;
+  const char  *slash  = strrchr(from, '/');
+  const int    folder = slash && name[0] != '/' ? (int)(slash + 1 - from) : 0;
+  const size_t size   = (size_t)folder + n + 1;
+  char        *path   = malloc(size);
+  SHB_CHECK(path, SHB_ERR_IO, "out of memory");
+  snprintf(path, size, "%.*s%.*s", folder, from, (int)n, name);
+  const bool added = is_new(list, path, &about), full = list->n == MESH_MOST_FILES;
+  if (added && !full)
+    put(list, path, &about);
+  else
+    free(path);
+  SHB_CHECK(!added || !full, SHB_ERR_INPUT, "%s: includes more than %d files", list->path[0],
+            MESH_MOST_FILES);
+  return SHB_OK;
+}
+
+char *mesh_files_text(const char *path) {
+  struct stat about;
+  FILE       *file = stat(path, &about) == 0 && S_ISREG(about.st_mode) ? fopen(path, "rb") : NULL;
+  char       *text = file ? malloc((size_t)about.st_size + 1) : NULL;
+  if (text) text[fread(text, 1, (size_t)about.st_size, file)] = '\0';
+  if (file) fclose(file);
+  return text;
+}
+
+/* What stands between quotes of either kind on a line. A text outside that names a file counts too,
+ * since an apostrophe in a comment opens none. */
+static shb_status add_quoted(mesh_file_list *list, const char *from, const char *text) {
+  enum { LONGEST = 4096 };
+  static const char quotes[] = "\"'\n";
+  for (const char *at = text; *at;) {
+    const size_t n = strcspn(at, quotes);
+    if (n > 0 && n < LONGEST) SHB_TRY(mesh_files_add(list, from, at, n));
+    at += at[n] ? n + 1 : n;
+  }
+  return SHB_OK;
+}
+
+/* What a script merges with the ending of a mesh or a solid includes nothing. */
+shb_status mesh_script_files(const char *path, mesh_file_list *list) {
+  SHB_TRY(mesh_files_begin(path, list));
+  for (int i = 0; i < list->n; i++) {
+    const mesh_format format = mesh_format_of(list->path[i]);
+    if (format != MESH_FORMAT_GEO && format != MESH_FORMAT_UNKNOWN) continue;
+    char            *text   = mesh_files_text(list->path[i]);
+    const shb_status status = text ? add_quoted(list, list->path[i], text) : SHB_OK;
+    free(text);
+    SHB_TRY(status);
+  }
+  return SHB_OK;
+}

@@ -1,0 +1,36 @@
+/* The files that a script of gmsh (.geo) reads. */
+#ifndef MESH_GMSH_SCRIPT_FILES_H
+#define MESH_GMSH_SCRIPT_FILES_H
+
+#include <stddef.h>
+#include <sys/types.h>
+
+#include "mesh/base/status.h"
+
+enum { MESH_MOST_FILES = 256 };
+
+/* Files in the order in which they were found; the first one has the others. */
+typedef struct {
+  int   n;
+  char *path[MESH_MOST_FILES];   /* malloc'ed */
+  dev_t device[MESH_MOST_FILES]; /* these two tell files apart: ./a is a */
+  ino_t inode[MESH_MOST_FILES];
+} mesh_file_list;
+
+/* Start a list with a file. SHB_ERR_IO: no memory. */
+shb_status mesh_files_begin(const char *path, mesh_file_list *list);
+void       mesh_files_free(mesh_file_list *list);
+
+/* Add the file `name` of n characters, in the folder of the file `from`, if it is a file and not
+ * there yet. Errors: SHB_ERR_INPUT too many files; SHB_ERR_IO no memory. */
+shb_status mesh_files_add(mesh_file_list *list, const char *from, const char *name, size_t n);
+
+/* The text of a file; malloc'ed. NULL: it cannot be read. */
+char *mesh_files_text(const char *path);
+
+/* A list of a script and of all files that it reads, at any depth: those whose name stands in it in
+ * quotes (Include, Merge, ShapeFromFile). Names are taken from the folder of the file that has
+ * them. Errors: as mesh_files_add; free the list in any case. */
+shb_status mesh_script_files(const char *path, mesh_file_list *list);
+
+#endif
