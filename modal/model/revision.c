@@ -7,7 +7,7 @@
 #include "mesh/base/constants.h"
 #include "modal/hdf5/h5.h"
 #include "modal/model/model.h"
-#include "modal/model/sampled_receptance.h"
+#include "modal/model/receptance.h"
 
 /* Datasets [K + 1, ...] that change with the load; of each model that a file holds. */
 static const struct {
@@ -94,7 +94,7 @@ static shb_status sample_again(hid_t file, const char *path) {
   modal_model model = {0};
   if (!h5_exists(file, "/receptance/contact")) return SHB_OK;
   shb_status status = modal_model_read_at(file, path, &model);
-  if (status == SHB_OK) status = modal_sampled_replace(file, &model);
+  if (status == SHB_OK) status = modal_receptance_replace(file, &model);
   modal_model_free(&model);
   return status;
 }

@@ -91,7 +91,7 @@ static herr_t compare_values(comparison *c, const char *name, bool is_set, hid_t
 static herr_t name_of_scale(hid_t set, unsigned dim, hid_t scale, void *name) {
   (void)set;
   (void)dim;
-  return H5Iget_name(scale, name, 256) > 0 ? 1 : -1;
+  return H5DSget_scale_name(scale, name, 256) > 0 ? 1 : -1;
 }
 
 /* References to dimension scales are addresses, which may differ. */
