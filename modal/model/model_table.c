@@ -304,7 +304,7 @@ const modal_size modal_sizes[] = {
      .offset = AT(n_load), .beyond = 1},
     {'q', "probe/name", "probes", 0, MAX_NAMES, .offset = AT(n_probes)},
     {'r', "residual_modes/frequency", "residual modes", 0, MAX_MODES, .offset = AT(n_residual)},
-    {'i', "contact/interface_name", "interfaces", 0, MAX_NAMES, .offset = AT(n_interfaces)},
+    {'i', "contact/interface_name", "contact interfaces", 0, MAX_NAMES, .offset = AT(n_interfaces)},
     {0}};
 
 /* ---------------------------------------------------------------- sizes */
@@ -391,6 +391,48 @@ void modal_dataset_free(const modal_dataset *row, modal_model *model) {
   modal_dataset_set(row, model, NULL);
 }
 
+static char **copy_names(char *const *name, size_t n) {
+  char **copy  = calloc(n + 1, sizeof *copy);
+  bool   whole = copy;
+  for (size_t i = 0; whole && i < n; i++) whole = (copy[i] = strdup(name[i]));
+  for (size_t i = 0; copy && !whole && i < n; i++) free(copy[i]);
+  if (whole) return copy;
+  free(copy);
+  return NULL;
+}
+
+void *modal_dataset_copy(const modal_dataset *row, const modal_model *sizes,
+                         const modal_model *model) {
+  const void  *data  = modal_dataset_get(row, model);
+  const size_t n     = modal_dataset_count(row, sizes);
+  const size_t bytes = n * modal_dataset_width(row);
+  if (!data) return NULL;
+  if (row->kind == MODAL_NAMES) return copy_names((char *const *)data, n);
+  void *copy = malloc(bytes + 1);
+  return copy ? memcpy(copy, data, bytes) : NULL;
+}
+
+modal_model modal_model_sizes(const modal_model *model) {
+  modal_model to = {.has_left = model->has_left, .tail_order = model->tail_order};
+  for (const modal_size *size = modal_sizes; size->path; size++)
+    memcpy((char *)&to + size->offset, (const char *)model + size->offset, sizeof(int));
+  return to;
+}
+
+shb_status modal_model_copy(const modal_model *model, modal_model *copy) {
+  for (const modal_dataset *row = modal_datasets; row->path; row++) {
+    void *data = modal_dataset_copy(row, copy, model);
+    SHB_CHECK(data || !modal_dataset_get(row, model), SHB_ERR_IO,
+              "out of memory for a modal model");
+    modal_dataset_set(row, copy, data);
+  }
+  return SHB_OK;
+}
+
 bool modal_dataset_is_term(const modal_dataset *row) {
   return row->part == MODAL_R || row->part == MODAL_R2 || row->part == MODAL_R3;
+}
+
+bool modal_dataset_is_residual(const modal_dataset *row) {
+  return modal_dataset_is_term(row) || row->part == MODAL_TAIL;
 }

@@ -34,11 +34,6 @@ static modal_model *second_of(const parts *p, const modal_dataset *row) {
   return row->kind == MODAL_SPLIT ? p->im : row->kind == MODAL_LOAD ? p->back : NULL;
 }
 
-static bool is_kept(const modal_dataset *row) {
-  return !modal_dataset_is_term(row) && row->part != MODAL_TAIL &&
-         row->part != MODAL_RESIDUAL_MODES;
-}
-
 static void drop(const modal_dataset *row, const parts *p) {
   modal_dataset_free(row, p->re);
   if (second_of(p, row)) modal_dataset_free(row, second_of(p, row));
@@ -46,7 +41,7 @@ static void drop(const modal_dataset *row, const parts *p) {
 
 static void drop_residuals(const parts *p) {
   for (const modal_dataset *row = modal_datasets; row->path; row++)
-    if (!is_kept(row)) drop(row, p);
+    if (modal_dataset_is_residual(row) || row->part == MODAL_RESIDUAL_MODES) drop(row, p);
   p->re->n_residual = 0;
 }
 
