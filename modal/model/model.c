@@ -78,10 +78,12 @@ static shb_status write_row(hid_t at, const modal_dataset *row, const modal_mode
   return SHB_OK;
 }
 
-/* A single interface has no name in the file. */
+/* A single interface has no name in the file. Names of a dimension are written as its scale. */
 static bool is_written(const modal_dataset *row, const modal_model *model) {
+  const char *scale = modal_scale_of(row->dims[0]);
   if (row->part == MODAL_INTERFACES) return model->n_interfaces > 1;
-  return row->part != MODAL_SIDES && row->kind != MODAL_NAMES; /* names are a scale */
+  if (row->kind == MODAL_NAMES && scale) return strcmp(row->path, scale) != 0;
+  return row->part != MODAL_SIDES;
 }
 
 shb_status modal_model_write_complex_at(hid_t at, const modal_model *model,

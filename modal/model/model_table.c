@@ -310,6 +310,7 @@ const modal_size modal_sizes[] = {
 /* ---------------------------------------------------------------- sizes */
 
 hsize_t modal_size_of(const modal_model *model, char letter) {
+  if (letter >= '1' && letter <= '9') return (hsize_t)(letter - '0');
   switch (letter) {
     case 'l':
       return model->has_left ? (hsize_t)model->n_pairs : 0;
@@ -317,9 +318,6 @@ hsize_t modal_size_of(const modal_model *model, char letter) {
       return (hsize_t)modal_model_contact_dofs(model);
     case 'Q':
       return 3 * (hsize_t)model->n_probes;
-    case '2':
-    case '3':
-      return (hsize_t)(letter - '0');
     default:
       for (const modal_size *size = modal_sizes; size->path; size++)
         if (size->letter == letter)

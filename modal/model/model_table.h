@@ -89,9 +89,9 @@ typedef struct modal_dataset modal_dataset;
 typedef shb_status (*modal_dataset_check)(const modal_dataset *row, const char *path,
                                           const modal_model *model, const modal_model *imaginary);
 
-/* Each letter of dims names a dimension:
+/* Each letter of dims names a dimension, a digit is its size:
  *
- *   m  modes              p  pairs           l  pairs with a left side   2, 3  that number
+ *   m  modes              p  pairs           l  pairs with a left side
  *   k  load harmonics     q  probes          Q  probe dofs, 3 q
  *   r  residual modes     c  contact dofs    i  contact interfaces */
 struct modal_dataset {
