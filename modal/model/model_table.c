@@ -309,6 +309,12 @@ const modal_size modal_sizes[] = {
 
 /* ---------------------------------------------------------------- sizes */
 
+static int number_of(const modal_size *size, const modal_model *model) {
+  int number;
+  memcpy(&number, (const char *)model + size->offset, sizeof number);
+  return number;
+}
+
 hsize_t modal_size_of(const modal_model *model, char letter) {
   if (letter >= '1' && letter <= '9') return (hsize_t)(letter - '0');
   switch (letter) {
@@ -320,8 +326,7 @@ hsize_t modal_size_of(const modal_model *model, char letter) {
       return 3 * (hsize_t)model->n_probes;
     default:
       for (const modal_size *size = modal_sizes; size->path; size++)
-        if (size->letter == letter)
-          return (hsize_t)(*(const int *)((const char *)model + size->offset) + size->beyond);
+        if (size->letter == letter) return (hsize_t)number_of(size, model) + (hsize_t)size->beyond;
       return 0;
   }
 }
@@ -408,6 +413,31 @@ void *modal_dataset_copy(const modal_dataset *row, const modal_model *sizes,
   if (row->kind == MODAL_NAMES) return copy_names((char *const *)data, n);
   void *copy = malloc(bytes + 1);
   return copy ? memcpy(copy, data, bytes) : NULL;
+}
+
+static bool allocate(const modal_dataset *row, const modal_model *sizes, modal_model *of) {
+  const size_t n = modal_dataset_count(row, sizes);
+  if (!of || (n == 0 && strpbrk(row->dims, "plc"))) return true;
+  modal_dataset_set(row, of, calloc(n + 1, modal_dataset_width(row)));
+  return modal_dataset_get(row, of);
+}
+
+static bool is_computed(const modal_dataset *row, const modal_model *model) {
+  if (modal_dataset_is_residual(row)) return model->n_pairs > 0;
+  return row->part == MODAL_KEPT && strchr(row->dims, 'm') && row->offset != AT(coriolis);
+}
+
+shb_status modal_model_allocate(modal_model *model, modal_model *imaginary, modal_model *backward) {
+  bool made = true;
+  for (const modal_dataset *row = modal_datasets; row->path && made; row++) {
+    modal_model *second = row->kind == MODAL_SPLIT  ? imaginary
+                          : row->kind == MODAL_LOAD ? backward
+                                                    : NULL;
+    if (is_computed(row, model)) made = allocate(row, model, model) && allocate(row, model, second);
+  }
+  SHB_CHECK(made, SHB_ERR_IO, "out of memory for a modal model of %d contact dofs",
+            modal_model_contact_dofs(model));
+  return SHB_OK;
 }
 
 modal_model modal_model_sizes(const modal_model *model) {

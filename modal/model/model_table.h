@@ -138,6 +138,16 @@ void  modal_dataset_free(const modal_dataset *row, modal_model *model); /* NULL 
 void *modal_dataset_copy(const modal_dataset *row, const modal_model *sizes,
                          const modal_model *model);
 
+/* Allocate the arrays of the modes and, of a body with contact, those of the modes left out, as
+ * zeros. Coriolis terms, residual modes and arrays of a contact or a side that is not there stay
+ * NULL.
+ *
+ *   model                in out  its sizes
+ *   imaginary, backward  out     of a travelling wave; NULL: real
+ *
+ * SHB_ERR_IO: no memory; the models can then only be freed. */
+shb_status modal_model_allocate(modal_model *model, modal_model *imaginary, modal_model *backward);
+
 /* A model of the same sizes without arrays. */
 modal_model modal_model_sizes(const modal_model *model);
 

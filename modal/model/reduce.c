@@ -130,8 +130,8 @@ static void *widen(void *data, size_t rows, size_t n, size_t more, size_t size) 
 /* Insert more residual modes, zero, before those that exist. The number of them is as before. */
 static bool widen_row(const modal_dataset *row, const modal_model *sizes, size_t more,
                       modal_model *of) {
-  const size_t n = (size_t)sizes->n_residual, columns = row->dims[1] ? 1 : 0;
-  const size_t rows = columns ? (size_t)modal_size_of(sizes, row->dims[0]) : 1;
+  const size_t n    = (size_t)sizes->n_residual;
+  const size_t rows = row->dims[1] ? (size_t)modal_size_of(sizes, row->dims[0]) : 1;
   modal_dataset_set(row, of,
                     widen(modal_dataset_get(row, of), rows, n, more, modal_dataset_width(row)));
   return modal_dataset_get(row, of);
