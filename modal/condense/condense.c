@@ -1,7 +1,6 @@
 #include "modal/condense/condense.h"
 
 #include <math.h>
-#include <stdlib.h>
 #include <string.h>
 
 #include "fem/solver/petsc_error.h"
@@ -11,44 +10,12 @@
 #include "modal/condense/many_columns.h"
 
 static shb_status allocate(const modal_condensation *to, int n_modes, modal_model *model) {
-  const size_t m = (size_t)n_modes, pairs = (size_t)to->n_pairs, nc = (size_t)to->contact.n;
-  const size_t q3 = (size_t)to->probe.n, k = (size_t)to->load.n_harmonics + 1;
-  model->n_modes  = n_modes;
-  model->n_pairs  = to->n_pairs;
-  model->has_left = to->has_left;
-  model->n_probes = to->probe.n / 3;
-  model->n_load   = to->load.n_harmonics;
-  const struct {
-    double **array;
-    size_t   n;
-  } real[]                           = {{&model->frequency, m},
-                                        {&model->damping_ratio, m},
-                                        {&model->eigen_residual, m},
-                                        {&model->right, 3 * pairs * m},
-                                        {&model->left, to->has_left ? 3 * pairs * m : 0},
-                                        {&model->probe, q3 * m + 1},
-                                        {&model->residual_flexibility, nc * nc},
-                                        {&model->residual_inertia, nc * nc},
-                                        {&model->residual_fourth, nc * nc},
-                                        {&model->probe_contact_residual, q3 * nc + 1},
-                                        {&model->probe_contact_inertia, q3 * nc + 1},
-                                        {&model->probe_contact_fourth, q3 * nc + 1},
-                                        {&model->contact_tail, 2 * nc},
-                                        {&model->load_tail, 2 * k}};
-  double complex **const complexes[] = {&model->modal_force,         &model->load_residual,
-                                        &model->load_inertia,        &model->load_fourth,
-                                        &model->probe_load_residual, &model->probe_load_inertia,
-                                        &model->probe_load_fourth};
-  bool                   made        = true;
-  for (size_t i = 0; i < sizeof real / sizeof *real; i++)
-    if (real[i].n > 0) made = (*real[i].array = calloc(real[i].n, sizeof(double))) && made;
-  for (size_t i = 0; i < sizeof complexes / sizeof *complexes; i++) {
-    const size_t n = i == 0 ? m : i < 4 ? nc : q3;
-    *complexes[i]  = calloc(k * n + 1, sizeof(double complex));
-    made           = *complexes[i] && made;
-  }
-  SHB_CHECK(made, SHB_ERR_IO, "out of memory for a modal model of %zu contact dofs", nc);
-  return SHB_OK;
+  *model = (modal_model){.n_modes  = n_modes,
+                         .n_pairs  = to->n_pairs,
+                         .has_left = to->has_left,
+                         .n_probes = to->probe.n / 3,
+                         .n_load   = to->load.n_harmonics};
+  return modal_model_allocate(model, NULL, NULL);
 }
 
 static PetscErrorCode fill_shapes(const fem_system *system, const modal_eigen *eigen,
@@ -77,16 +44,6 @@ static PetscErrorCode fill_shapes(const fem_system *system, const modal_eigen *e
   PetscFunctionReturn(0);
 }
 
-/* Residual terms belong to contact dofs: without contact there are none. */
-static void drop_residual_terms(modal_model *model) {
-  free(model->load_tail);
-  free(model->probe_load_residual);
-  free(model->probe_load_inertia);
-  free(model->probe_load_fourth);
-  model->load_tail           = NULL;
-  model->probe_load_residual = model->probe_load_inertia = model->probe_load_fourth = NULL;
-}
-
 static shb_status fill_modes(const fem_system *system, const modal_eigen *eigen,
                              const modal_condensation *to, modal_model *model) {
   FEM_PETSC(fill_shapes(system, eigen, to, model));
@@ -99,10 +56,7 @@ static shb_status fill_terms(const fem_system *system, const modal_eigen *eigen,
                              const modal_condensation *to, shb_progress *progress,
                              modal_model *model) {
   double left_out = 0;
-  if (to->contact.n == 0) {
-    drop_residual_terms(model);
-    return SHB_OK;
-  }
+  if (to->contact.n == 0) return SHB_OK;
   if (modal_columns_are_few(system, to)) {
     SHB_TRY(modal_few_columns_fill(system, eigen, to, model));
     modal_phase(system->comm, progress, "residuals", "%d contact dofs, %d residual modes",
@@ -119,7 +73,6 @@ static shb_status fill_terms(const fem_system *system, const modal_eigen *eigen,
 shb_status modal_condense(const fem_system *system, const modal_eigen *eigen,
                           const modal_condensation *to, shb_progress *progress,
                           modal_model *model) {
-  memset(model, 0, sizeof *model);
   SHB_TRY(allocate(to, eigen->n, model));
   SHB_TRY(fill_modes(system, eigen, to, model));
   return fill_terms(system, eigen, to, progress, model);

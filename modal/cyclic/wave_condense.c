@@ -76,54 +76,12 @@ static void sample(const workspace *w, const modal_dofs *dofs, const double comp
 /* Allocate the arrays of a model, its imaginary part and the load of the backward wave. */
 static shb_status allocate(const workspace *w) {
   const modal_condensation *to = w->to;
-  modal_model              *re = w->model, *im = w->imaginary, *back = w->backward;
-  const size_t m = (size_t)w->modes->n, pairs = (size_t)to->n_pairs, nc = (size_t)to->contact.n;
-  const size_t q3 = (size_t)to->probe.n, K = (size_t)to->load.n_harmonics + 1;
-  const struct {
-    double **re, **im; /* im NULL: real */
-    size_t   n;
-  } real[] = {{&re->frequency, NULL, m},
-              {&re->damping_ratio, NULL, m},
-              {&re->eigen_residual, NULL, m},
-              {&re->right, &im->right, 3 * pairs * m},
-              {&re->left, &im->left, to->has_left ? 3 * pairs * m : 0},
-              {&re->probe, &im->probe, q3 * m + 1},
-              {&re->residual_flexibility, &im->residual_flexibility, nc * nc},
-              {&re->residual_inertia, &im->residual_inertia, nc * nc},
-              {&re->residual_fourth, &im->residual_fourth, nc * nc},
-              {&re->probe_contact_residual, &im->probe_contact_residual, q3 * nc + 1},
-              {&re->probe_contact_inertia, &im->probe_contact_inertia, q3 * nc + 1},
-              {&re->probe_contact_fourth, &im->probe_contact_fourth, q3 * nc + 1},
-              {&re->contact_tail, NULL, 2 * nc},
-              {&re->load_tail, NULL, nc > 0 ? 2 * K : 0}};
-  const struct {
-    double complex **forward, **back;
-    size_t           n;
-  } load[]  = {{&re->modal_force, &back->modal_force, m},
-               {&re->load_residual, &back->load_residual, nc},
-               {&re->load_inertia, &back->load_inertia, nc},
-               {&re->load_fourth, &back->load_fourth, nc},
-               {&re->probe_load_residual, &back->probe_load_residual, nc > 0 ? q3 : 0},
-               {&re->probe_load_inertia, &back->probe_load_inertia, nc > 0 ? q3 : 0},
-               {&re->probe_load_fourth, &back->probe_load_fourth, nc > 0 ? q3 : 0}};
-  bool made = true;
-  for (size_t i = 0; i < sizeof real / sizeof *real; i++) {
-    if (real[i].n == 0) continue;
-    made = (*real[i].re = calloc(real[i].n, sizeof(double))) && made;
-    if (real[i].im) made = (*real[i].im = calloc(real[i].n, sizeof(double))) && made;
-  }
-  for (size_t i = 0; i < sizeof load / sizeof *load; i++) {
-    if (load[i].n == 0 && i > 3) continue; /* without contact there are no residual terms */
-    made = (*load[i].forward = calloc(K * load[i].n + 1, sizeof(double complex))) && made;
-    made = (*load[i].back = calloc(K * load[i].n + 1, sizeof(double complex))) && made;
-  }
-  re->n_modes  = (int)m;
-  re->n_pairs  = to->n_pairs;
-  re->has_left = to->has_left;
-  re->n_probes = to->probe.n / 3;
-  re->n_load   = to->load.n_harmonics;
-  SHB_CHECK(made, SHB_ERR_IO, "out of memory for a modal model of %zu contact dofs", nc);
-  return SHB_OK;
+  w->model->n_modes            = w->modes->n;
+  w->model->n_pairs            = to->n_pairs;
+  w->model->has_left           = to->has_left;
+  w->model->n_probes           = to->probe.n / 3;
+  w->model->n_load             = to->load.n_harmonics;
+  return modal_model_allocate(w->model, w->imaginary, w->backward);
 }
 
 static void split(size_t n, const double complex *value, double *re, double *im) {

@@ -100,6 +100,7 @@ shb_status h5_shape_of(hid_t at, const char *path, h5_shape *shape);
  * Real data is accepted where complex is expected. Errors: SHB_ERR_INPUT if the dataset is missing,
  * has another rank or shape, or holds a number that is not finite. The text names the file, the
  * dataset, the found and the wanted shape. */
+shb_status h5_check_shape(hid_t at, const char *path, h5_shape *expected); /* reads no value */
 shb_status h5_read_double(hid_t at, const char *path, h5_shape *expected, double **data);
 shb_status h5_read_complex(hid_t at, const char *path, h5_shape *expected, double complex **data);
 shb_status h5_read_int(hid_t at, const char *path, h5_shape *expected, int **data);

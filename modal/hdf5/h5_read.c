@@ -165,6 +165,13 @@ static shb_status open_source(hid_t at, const char *path, h5_shape *expected, so
   return status;
 }
 
+shb_status h5_check_shape(hid_t at, const char *path, h5_shape *expected) {
+  source from;
+  SHB_TRY(open_source(at, path, expected, &from));
+  H5Dclose(from.set);
+  return SHB_OK;
+}
+
 static const char all_finite[] = "all must be finite";
 
 static shb_status read_real(const source *from, double **data) {

@@ -274,135 +274,61 @@ static double *bound_tails(const modal_joining *j, int sides, const double *from
   return to;
 }
 
-static void *copy(const void *from, size_t bytes) {
-  void *to = from ? malloc(bytes + 1) : NULL;
-  if (to) memcpy(to, from, bytes);
-  return to;
-}
-
-static char **copy_names(char *const *name, int n) {
-  char **to = name ? calloc((size_t)n + 1, sizeof *to) : NULL;
-  for (int i = 0; to && i < n; i++) to[i] = strdup(name[i]);
-  return to;
-}
-
-/* What knows nothing of the contact, in arrays of the sizes of b. */
-static void copy_rest(const modal_model *a, modal_model *b) {
-  const size_t m = (size_t)b->n_modes, q = 3 * (size_t)b->n_probes, K = (size_t)b->n_load + 1;
-  const size_t r = (size_t)b->n_residual, real = sizeof(double), both = sizeof(double complex);
-  b->frequency           = copy(a->frequency, m * real);
-  b->damping_ratio       = copy(a->damping_ratio, m * real);
-  b->coriolis            = copy(a->coriolis, m * m * real);
-  b->eigen_residual      = copy(a->eigen_residual, m * real);
-  b->residual_frequency  = copy(a->residual_frequency, r * real);
-  b->residual_force      = copy(a->residual_force, K * r * both);
-  b->residual_probe      = copy(a->residual_probe, q * r * real);
-  b->load_tail           = copy(a->load_tail, 2 * K * real);
-  b->modal_force         = copy(a->modal_force, K * m * both);
-  b->probe               = copy(a->probe, q * m * real);
-  b->probe_load_residual = copy(a->probe_load_residual, K * q * both);
-  b->probe_load_inertia  = copy(a->probe_load_inertia, K * q * both);
-  b->probe_load_fourth   = copy(a->probe_load_fourth, K * q * both);
-  b->probe_name          = copy_names(a->probe_name, b->n_probes);
-  b->interface_name      = copy_names(a->interface_name, b->n_interfaces);
-}
-
-/* Area, position and interface of the patches. */
-static void describe_patches(const modal_model *a, const modal_joining *j, modal_model *b) {
-  const size_t n = (size_t)j->n_patches;
-  b->position    = calloc(3 * n, sizeof *b->position);
-  b->area        = a->area ? calloc(n, sizeof *b->area) : NULL;
-  b->interface   = a->interface ? calloc(n, sizeof *b->interface) : NULL;
-  b->normal      = a->normal ? calloc(3 * n, sizeof *b->normal) : NULL;
-  for (int i = 0; i < j->n_pairs; i++) {
-    int at = j->patch[i];
-    if (b->area) b->area[at] += a->area[i];
-    if (b->interface) b->interface[at] = a->interface[i];
-    for (int d = 0; b->position && a->position && d < 3; d++)
-      b->position[3 * at + d] += j->weight[i] * a->position[3 * i + d];
+/* Areas add up, positions are means, and normals unit means. What is numbered has the number of a
+ * pair of the patch. */
+static void *describe_patches(const modal_dataset *row, const modal_model *a,
+                              const modal_joining *j) {
+  const size_t patches = (size_t)j->n_patches;
+  const size_t each    = row->dims[1] ? (size_t)modal_size_of(a, row->dims[1]) : 1;
+  const void  *from    = modal_dataset_get(row, a);
+  if (row->kind == MODAL_INDEX) {
+    int *to = calloc(patches, sizeof *to);
+    for (int i = 0; to && i < j->n_pairs; i++) to[j->patch[i]] = ((const int *)from)[i];
+    return to;
   }
-  if (b->normal) mean_normals(a, j, b->normal);
+  double *to = calloc(each * patches, sizeof *to);
+  if (to && from == a->normal) {
+    mean_normals(a, j, to);
+    return to;
+  }
+  for (int i = 0; to && i < j->n_pairs; i++)
+    for (size_t d = 0; d < each; d++)
+      to[each * (size_t)j->patch[i] + d] +=
+          (each > 1 ? j->weight[i] : 1) * ((const double *)from)[each * (size_t)i + d];
+  return to;
 }
 
-/* True if every part that the one has is in the other. */
-static bool is_whole(const modal_model *a, const modal_model *b) {
-  const void *const from[] = {a->right,
-                              a->left,
-                              a->residual_flexibility,
-                              a->residual_inertia,
-                              a->residual_fourth,
-                              a->residual_shape,
-                              a->contact_tail,
-                              a->load_residual,
-                              a->load_inertia,
-                              a->load_fourth,
-                              a->probe_contact_residual,
-                              a->probe_contact_inertia,
-                              a->probe_contact_fourth,
-                              a->frequency,
-                              a->damping_ratio,
-                              a->coriolis,
-                              a->modal_force,
-                              a->probe,
-                              a->residual_force,
-                              a->area,
-                              a->normal};
-  const void *const to[]   = {b->right,
-                              b->left,
-                              b->residual_flexibility,
-                              b->residual_inertia,
-                              b->residual_fourth,
-                              b->residual_shape,
-                              b->contact_tail,
-                              b->load_residual,
-                              b->load_inertia,
-                              b->load_fourth,
-                              b->probe_contact_residual,
-                              b->probe_contact_inertia,
-                              b->probe_contact_fourth,
-                              b->frequency,
-                              b->damping_ratio,
-                              b->coriolis,
-                              b->modal_force,
-                              b->probe,
-                              b->residual_force,
-                              b->area,
-                              b->normal};
-  for (size_t i = 0; i < sizeof from / sizeof *from; i++)
-    if (from[i] && !to[i]) return false;
-  return true;
+/* An array of the contact by its dimensions; of: whose sizes a has. sign: of the transpose of a
+ * residual matrix. */
+static void *joined_array(const modal_dataset *row, const modal_model *of, const modal_model *a,
+                          const modal_joining *j, double sign) {
+  const double *from  = modal_dataset_get(row, a);
+  const int     sides = of->has_left ? 2 : 1;
+  const char   *dims  = row->dims;
+  if (!from) return NULL;
+  if (strcmp(dims, "p3m") == 0 || strcmp(dims, "l3m") == 0)
+    return mean_rows(j, 1, from, (size_t)of->n_modes);
+  if (dims[0] == 'p') return describe_patches(row, a, j);
+  if (strcmp(dims, "cc") == 0) return mean_both(j, sides, from, sign);
+  if (row->part == MODAL_TAIL) return bound_tails(j, sides, from);
+  if (dims[0] == 'c') return mean_rows(j, sides, from, (size_t)modal_size_of(of, dims[1]));
+  return mean_columns(j, sides, from, (size_t)modal_size_of(of, dims[0]),
+                      modal_dataset_width(row) / sizeof(double));
 }
 
-/* The arrays of a, whose sizes are those of `of`, joined. sign: of the transpose of the residual
- * matrices. */
+/* The arrays of a, whose sizes are those of `of`, joined. */
 static shb_status join_arrays(const modal_model *of, const modal_model *a, const modal_joining *j,
                               double sign, modal_model *b) {
-  const size_t m = (size_t)of->n_modes, q = 3 * (size_t)of->n_probes, K = (size_t)of->n_load + 1;
-  const int    sides = of->has_left ? 2 : 1;
-  *b                 = (modal_model){.n_modes      = of->n_modes,
-                                     .n_pairs      = j->n_patches,
-                                     .n_probes     = of->n_probes,
-                                     .n_load       = of->n_load,
-                                     .n_interfaces = of->n_interfaces,
-                                     .has_left     = of->has_left,
-                                     .n_residual   = of->n_residual,
-                                     .tail_order   = of->tail_order};
-  copy_rest(a, b);
-  b->right                = mean_rows(j, 1, a->right, m);
-  b->left                 = mean_rows(j, 1, a->left, m);
-  b->residual_flexibility = mean_both(j, sides, a->residual_flexibility, sign);
-  b->residual_inertia     = mean_both(j, sides, a->residual_inertia, sign);
-  b->residual_fourth      = mean_both(j, sides, a->residual_fourth, sign);
-  b->residual_shape       = mean_rows(j, sides, a->residual_shape, (size_t)of->n_residual);
-  b->contact_tail         = bound_tails(j, sides, a->contact_tail);
-  b->load_residual = (double complex *)mean_columns(j, sides, (double *)a->load_residual, K, 2);
-  b->load_inertia  = (double complex *)mean_columns(j, sides, (double *)a->load_inertia, K, 2);
-  b->load_fourth   = (double complex *)mean_columns(j, sides, (double *)a->load_fourth, K, 2);
-  b->probe_contact_residual = mean_columns(j, sides, a->probe_contact_residual, q, 1);
-  b->probe_contact_inertia  = mean_columns(j, sides, a->probe_contact_inertia, q, 1);
-  b->probe_contact_fourth   = mean_columns(j, sides, a->probe_contact_fourth, q, 1);
-  if (a->position) describe_patches(a, j, b);
-  if (is_whole(a, b) && !a->position == !b->position) return SHB_OK;
+  bool whole = true;
+  *b         = modal_model_sizes(of);
+  b->n_pairs = j->n_patches;
+  for (const modal_dataset *row = modal_datasets; row->path && whole; row++) {
+    void *data = strpbrk(row->dims, "plc") ? joined_array(row, of, a, j, sign)
+                                           : modal_dataset_copy(row, of, a);
+    modal_dataset_set(row, b, data);
+    whole = data || !modal_dataset_get(row, a);
+  }
+  if (whole) return SHB_OK;
   modal_model_free(b);
   return shb_fail(SHB_ERR_IO, __FILE__, __LINE__, "out of memory for %d patches", j->n_patches);
 }

@@ -67,34 +67,14 @@ static double error_of(const selection *s, const modal_model *fewer) {
   return worst;
 }
 
-static double *copy_of(const double *data, size_t n) {
-  double *copy = data ? malloc(n * sizeof *copy + 1) : NULL;
-  return copy ? memcpy(copy, data, n * sizeof *copy) : NULL;
-}
-
-/* Copy the contact part of the model, the part that the selection reduces. */
+/* Copy the contact part of the model, the part that the selection reduces. A load is not needed. */
 static shb_status copy_contact(const modal_model *model, modal_model *copy) {
-  const size_t side = 3 * (size_t)model->n_pairs, m = (size_t)model->n_modes;
-  const size_t n = side * (model->has_left ? 2 : 1), r = (size_t)model->n_residual;
-  *copy                      = (modal_model){.n_modes    = model->n_modes,
-                                             .n_pairs    = model->n_pairs,
-                                             .has_left   = model->has_left,
-                                             .n_residual = model->n_residual,
-                                             .tail_order = model->tail_order};
-  copy->frequency            = copy_of(model->frequency, m);
-  copy->right                = copy_of(model->right, side * m);
-  copy->left                 = copy_of(model->left, side * m);
-  copy->residual_flexibility = copy_of(model->residual_flexibility, n * n);
-  copy->residual_inertia     = copy_of(model->residual_inertia, n * n);
-  copy->residual_fourth      = copy_of(model->residual_fourth, n * n);
-  copy->contact_tail         = copy_of(model->contact_tail, 2 * n);
-  copy->residual_frequency   = copy_of(model->residual_frequency, r);
-  copy->residual_shape       = copy_of(model->residual_shape, n * r);
-  copy->modal_force          = calloc(m, sizeof *copy->modal_force);
-  SHB_CHECK(copy->frequency && copy->right && (copy->left || !model->has_left) &&
-                copy->residual_flexibility && copy->residual_inertia && copy->residual_fourth &&
-                copy->contact_tail && (copy->residual_shape || r == 0) && copy->modal_force,
-            SHB_ERR_IO, "out of memory to choose the modes");
+  *copy        = modal_model_sizes(model);
+  copy->n_load = copy->n_probes = 0;
+  SHB_TRY(modal_model_copy(model, copy));
+  if (!copy->modal_force)
+    copy->modal_force = calloc((size_t)model->n_modes, sizeof *copy->modal_force);
+  SHB_CHECK(copy->modal_force, SHB_ERR_IO, "out of memory to choose the modes");
   return SHB_OK;
 }
 
@@ -118,8 +98,8 @@ shb_status modal_select_modes(const modal_model *model, double band, double tole
                               double *error) {
   selection   s = {.model = model, .n = modal_model_contact_dofs(model), .band = band};
   modal_model reduced;
-  SHB_CHECK(modal_series_has_fourth(model) && model->contact_tail, SHB_ERR_INPUT,
-            "the modal model does not hold what estimates its error");
+  SHB_CHECK(modal_series_has_fourth(model) && !model->residual_diagonal && model->contact_tail,
+            SHB_ERR_INPUT, "the modal model does not hold what estimates its error");
   shb_status status = copy_contact(model, &reduced);
   if (status == SHB_OK) status = find_scales(&s);
   if (status == SHB_OK) status = remove_modes(&s, tolerance, &reduced, modes, error);

@@ -96,48 +96,31 @@ shb_status modal_nodal_diameters_write(hid_t file, const modal_nodal_diameters *
   return SHB_OK;
 }
 
-/* The sizes that all models share, with their noun; the first difference is told. */
+/* The sizes that all models share; the first difference is told. Residual modes may differ. */
 static shb_status check_sizes(const char *label, const modal_model *a, const modal_model *b) {
-  const struct {
-    const char *noun;
-    int         first, here;
-  } size[] = {{"modes", a->n_modes, b->n_modes},
-              {"contact pairs", a->n_pairs, b->n_pairs},
-              {"sides of the contact", a->has_left + 1, b->has_left + 1},
-              {"probes", a->n_probes, b->n_probes},
-              {"load harmonics", a->n_load + 1, b->n_load + 1},
-              {"contact interfaces", a->n_interfaces, b->n_interfaces}};
-  for (size_t i = 0; i < sizeof size / sizeof *size; i++)
-    SHB_CHECK(size[i].first == size[i].here, SHB_ERR_INPUT,
+  for (const modal_size *size = modal_sizes; size->path; size++) {
+    const int first = (int)modal_size_of(a, size->letter),
+              here  = (int)modal_size_of(b, size->letter);
+    SHB_CHECK(size->letter == 'r' || first == here, SHB_ERR_INPUT,
               "%s holds %d %s, /nodal_diameter_0 %d; write as many at every nodal diameter", label,
-              size[i].here, size[i].noun, size[i].first);
+              here, size->noun, first);
+  }
+  SHB_CHECK(a->has_left == b->has_left, SHB_ERR_INPUT,
+            "%s holds %d sides of the contact, /nodal_diameter_0 %d; write as many at every nodal "
+            "diameter",
+            label, b->has_left + 1, a->has_left + 1);
   return SHB_OK;
 }
 
 /* Optional parts that one model has and another lacks would be an error of the wave. */
 static shb_status check_parts(const char *label, const modal_model *a, const modal_model *b) {
-  const struct {
-    const char *dataset;
-    const void *first, *here;
-  } part[] = {{"modes/coriolis", a->coriolis, b->coriolis},
-              {"contact/residual_flexibility", a->residual_flexibility, b->residual_flexibility},
-              {"contact/residual_inertia", a->residual_inertia, b->residual_inertia},
-              {"contact/residual_fourth", a->residual_fourth, b->residual_fourth},
-              {"contact/residual_tail", a->contact_tail, b->contact_tail},
-              {"load/residual_response", a->load_residual, b->load_residual},
-              {"load/residual_inertia", a->load_inertia, b->load_inertia},
-              {"load/residual_fourth", a->load_fourth, b->load_fourth},
-              {"probe/contact_residual", a->probe_contact_residual, b->probe_contact_residual},
-              {"probe/contact_inertia", a->probe_contact_inertia, b->probe_contact_inertia},
-              {"probe/contact_fourth", a->probe_contact_fourth, b->probe_contact_fourth},
-              {"probe/load_residual", a->probe_load_residual, b->probe_load_residual},
-              {"probe/load_inertia", a->probe_load_inertia, b->probe_load_inertia},
-              {"probe/load_fourth", a->probe_load_fourth, b->probe_load_fourth}};
-  for (size_t i = 0; i < sizeof part / sizeof *part; i++)
-    SHB_CHECK(!part[i].first == !part[i].here, SHB_ERR_INPUT,
+  for (const modal_dataset *row = modal_datasets; row->path; row++) {
+    const bool shared = modal_dataset_is_residual(row) || strcmp(row->path, "modes/coriolis") == 0;
+    const bool first = modal_dataset_get(row, a), here = modal_dataset_get(row, b);
+    SHB_CHECK(!shared || first == here, SHB_ERR_INPUT,
               "%s %s /%s, /nodal_diameter_0 %s; write it at every nodal diameter or at none", label,
-              part[i].here ? "has" : "lacks", part[i].dataset,
-              part[i].here ? "lacks it" : "has it");
+              here ? "has" : "lacks", row->path, here ? "lacks it" : "has it");
+  }
   return SHB_OK;
 }
 

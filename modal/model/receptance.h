@@ -1,4 +1,5 @@
-/* Receptance of the contact dofs of a modal model, for inspection and tests. Free of PETSc. */
+/* Receptance of the contact dofs of a modal model, and its samples in the file, for
+ * readers, inspection and tests. Free of PETSc. */
 #ifndef MODAL_MODEL_RECEPTANCE_H
 #define MODAL_MODEL_RECEPTANCE_H
 
@@ -19,5 +20,13 @@ void modal_receptance(const modal_model *model, double omega, double complex *re
  * modal_receptance at omega. */
 double modal_receptance_error(const modal_model *model, double omega,
                               const double complex *receptance);
+
+/* Write /receptance/frequency [201 + m] Hz: even steps from 0 to 1.1 times the highest mode, and
+ * the modes' own. Write /receptance/contact [201 + m][n_contact][n_contact], and error [201 + m].
+ * Nothing is written above 64 MB. */
+shb_status modal_receptance_write(hid_t file, const modal_model *model);
+
+/* The same of a file that holds them, after a change of the damping. */
+shb_status modal_receptance_replace(hid_t file, const modal_model *model);
 
 #endif

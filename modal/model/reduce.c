@@ -29,73 +29,41 @@ static double complex at_probe(const parts *p, int dof, int mode) {
   return entry(p->re->probe, p->im ? p->im->probe : NULL, i);
 }
 
-static void drop_residuals(modal_model *model) {
-  double **const         real[]      = {&model->residual_flexibility,
-                                        &model->residual_inertia,
-                                        &model->residual_fourth,
-                                        &model->probe_contact_residual,
-                                        &model->probe_contact_inertia,
-                                        &model->probe_contact_fourth,
-                                        &model->residual_frequency,
-                                        &model->residual_shape,
-                                        &model->residual_probe,
-                                        &model->contact_tail,
-                                        &model->load_tail};
-  double complex **const complexes[] = {&model->load_residual,      &model->load_inertia,
-                                        &model->load_fourth,        &model->probe_load_residual,
-                                        &model->probe_load_inertia, &model->probe_load_fourth,
-                                        &model->residual_force};
-  for (size_t i = 0; i < sizeof real / sizeof *real; i++) {
-    free(*real[i]);
-    *real[i] = NULL;
+/* The models that hold an array of this kind: the first one, and that of a wave, or NULL. */
+static modal_model *second_of(const parts *p, const modal_dataset *row) {
+  return row->kind == MODAL_SPLIT ? p->im : row->kind == MODAL_LOAD ? p->back : NULL;
+}
+
+static void drop(const modal_dataset *row, const parts *p) {
+  modal_dataset_free(row, p->re);
+  if (second_of(p, row)) modal_dataset_free(row, second_of(p, row));
+}
+
+static void drop_residuals(const parts *p) {
+  for (const modal_dataset *row = modal_datasets; row->path; row++)
+    if (modal_dataset_is_residual(row) || row->part == MODAL_RESIDUAL_MODES) drop(row, p);
+  p->re->n_residual = 0;
+}
+
+/* Allocate an array as zeros, if it is missing. */
+static bool allocate(const modal_dataset *row, const modal_model *sizes, modal_model *of) {
+  if (!modal_dataset_get(row, of))
+    modal_dataset_set(row, of,
+                      calloc(modal_dataset_count(row, sizes) + 1, modal_dataset_width(row)));
+  return modal_dataset_get(row, of);
+}
+
+/* Allocate the terms that are missing. R3 is not added to a model with R2 but without R3: it would
+ * hold the few modes left out here only. */
+static bool allocate_terms(const parts *p) {
+  const bool fourth   = p->re->residual_fourth || !p->re->residual_inertia;
+  bool       complete = true;
+  for (const modal_dataset *row = modal_datasets; row->path; row++) {
+    if (!modal_dataset_is_term(row) || (row->part == MODAL_R3 && !fourth)) continue;
+    complete = allocate(row, p->re, p->re) && complete;
+    if (second_of(p, row)) complete = allocate(row, p->re, second_of(p, row)) && complete;
   }
-  for (size_t i = 0; i < sizeof complexes / sizeof *complexes; i++) {
-    free(*complexes[i]);
-    *complexes[i] = NULL;
-  }
-  model->n_residual = 0;
-}
-
-static bool allocate_real(double **part, size_t n) {
-  if (!*part) *part = calloc(n, sizeof **part);
-  return *part;
-}
-
-static bool allocate_complex(double complex **part, size_t n) {
-  if (!*part) *part = calloc(n, sizeof **part);
-  return *part;
-}
-
-/* Allocate missing terms of the contact, or of the load, as zeros. */
-static bool allocate_contact(modal_model *of, size_t c, size_t q, bool fourth) {
-  bool complete = allocate_real(&of->residual_flexibility, c * c) &&
-                  allocate_real(&of->residual_inertia, c * c);
-  if (fourth) complete = complete && allocate_real(&of->residual_fourth, c * c);
-  if (q == 0) return complete;
-  if (fourth) complete = complete && allocate_real(&of->probe_contact_fourth, q * c);
-  return complete && allocate_real(&of->probe_contact_residual, q * c) &&
-         allocate_real(&of->probe_contact_inertia, q * c);
-}
-
-static bool allocate_load(modal_model *of, size_t c, size_t q, size_t k, bool fourth) {
-  bool complete =
-      allocate_complex(&of->load_residual, k * c) && allocate_complex(&of->load_inertia, k * c);
-  if (fourth) complete = complete && allocate_complex(&of->load_fourth, k * c);
-  if (q == 0) return complete;
-  if (fourth) complete = complete && allocate_complex(&of->probe_load_fourth, k * q);
-  return complete && allocate_complex(&of->probe_load_residual, k * q) &&
-         allocate_complex(&of->probe_load_inertia, k * q);
-}
-
-/* R3 is not added to a model with R2 but without R3: it would hold the few modes left out here
- * only. */
-static bool allocate_residuals(const parts *p) {
-  const size_t c = (size_t)modal_model_contact_dofs(p->re), q = 3 * (size_t)p->re->n_probes;
-  const size_t k      = (size_t)p->re->n_load + 1;
-  const bool   fourth = p->re->residual_fourth || !p->re->residual_inertia;
-  return allocate_contact(p->re, c, q, fourth) && allocate_load(p->re, c, q, k, fourth) &&
-         (!p->im || allocate_contact(p->im, c, q, fourth)) &&
-         (!p->back || allocate_load(p->back, c, q, k, fourth));
+  return complete;
 }
 
 /* re + j im [rows][columns] += a b^H / scale; im NULL: real */
@@ -110,53 +78,44 @@ static void add_outer(double *re, double *im, int rows, const double complex *a,
     }
 }
 
-/* term[t][at + i] += shape[i] f / w2^t for the terms that exist; conjugate shapes if backward */
-static void add_forced(double complex *const term[3], size_t at, int n, const double complex *shape,
-                       bool backward, double complex f, double w2) {
-  for (int t = 0; t < 3; t++, f /= w2)
-    for (int i = 0; term[t] && i < n; i++)
-      term[t][at + (size_t)i] += (backward ? conj(shape[i]) : shape[i]) * f;
+/* A mode that becomes a term: its shape at the contact and the probes. */
+typedef struct {
+  int                   mode;
+  double                square; /* omega^2 */
+  const double complex *contact, *probe;
+} left_out;
+
+static const double complex *shape_of(const left_out *of, char letter) {
+  return letter == 'c' ? of->contact : of->probe;
 }
 
-/* The load's terms of one direction of the wave. */
-static void add_load_terms(const parts *p, bool backward, int mode, const double complex *phi,
-                           const double complex *psi, double w2) {
-  const modal_model    *of = backward ? p->back : p->re;
-  const int             c = modal_model_contact_dofs(p->re), q = 3 * p->re->n_probes;
-  double complex *const load[]       = {of->load_residual, of->load_inertia, of->load_fourth};
-  double complex *const probe_load[] = {of->probe_load_residual, of->probe_load_inertia,
-                                        of->probe_load_fourth};
-  for (int k = 0; k <= p->re->n_load; k++) {
-    double complex f = of->modal_force[(size_t)k * (size_t)p->re->n_modes + (size_t)mode] / w2;
-    add_forced(load, (size_t)k * (size_t)c, c, phi, backward, f, w2);
-    if (q > 0) add_forced(probe_load, (size_t)k * (size_t)q, q, psi, backward, f, w2);
+/* term [K+1][n] += shape f/omega^2t, t from 1; conjugate shapes of the backward wave. */
+static void add_forced(const modal_dataset *row, const modal_model *sizes, const left_out *of,
+                       bool backward, modal_model *to) {
+  double complex       *term  = modal_dataset_get(row, to);
+  const double complex *shape = shape_of(of, row->dims[1]);
+  const size_t          n     = (size_t)modal_size_of(sizes, row->dims[1]);
+  for (size_t k = 0; k <= (size_t)sizes->n_load; k++) {
+    double complex f = to->modal_force[k * (size_t)sizes->n_modes + (size_t)of->mode] / of->square;
+    for (int t = MODAL_R; t < (int)row->part; t++) f /= of->square;
+    for (size_t i = 0; i < n; i++) term[k * n + i] += (backward ? conj(shape[i]) : shape[i]) * f;
   }
 }
 
-/* Add one mode to the residual terms up to w^4. phi, psi: its shape at the contact and the
- * probes. */
-static void add_terms(const parts *p, int mode, const double complex *phi,
-                      const double complex *psi) {
-  const modal_model *re = p->re, *im = p->im;
-  const int          c = modal_model_contact_dofs(re), q = 3 * re->n_probes;
-  const double       w = SHB_TWO_PI * re->frequency[mode], w2 = w * w;
-  double             power      = w2;
-  double *const      term[3][2] = {
-           {re->residual_flexibility, re->probe_contact_residual},
-           {re->residual_inertia, re->probe_contact_inertia},
-           {re->residual_fourth, re->probe_contact_fourth},
-  };
-  double *const imaginary[3][2] = {
-      {im ? im->residual_flexibility : NULL, im ? im->probe_contact_residual : NULL},
-      {im ? im->residual_inertia : NULL, im ? im->probe_contact_inertia : NULL},
-      {im ? im->residual_fourth : NULL, im ? im->probe_contact_fourth : NULL},
-  };
-  for (int t = 0; t < 3; t++, power *= w2) {
-    if (term[t][0]) add_outer(term[t][0], imaginary[t][0], c, phi, c, phi, power);
-    if (term[t][1]) add_outer(term[t][1], imaginary[t][1], q, psi, c, phi, power);
+/* Add a mode to one of the terms up to w^4. */
+static void add_term(const modal_dataset *row, const parts *p, const left_out *of) {
+  const modal_model *re    = p->re;
+  double             power = of->square;
+  if (!modal_dataset_is_term(row) || !modal_dataset_get(row, re)) return;
+  if (row->kind == MODAL_LOAD) {
+    add_forced(row, re, of, false, p->re);
+    if (p->back) add_forced(row, re, of, true, p->back);
+    return;
   }
-  add_load_terms(p, false, mode, phi, psi, w2);
-  if (p->back) add_load_terms(p, true, mode, phi, psi, w2);
+  for (int t = MODAL_R; t < (int)row->part; t++) power *= of->square;
+  add_outer(modal_dataset_get(row, re), p->im ? modal_dataset_get(row, p->im) : NULL,
+            (int)modal_size_of(re, row->dims[0]), shape_of(of, row->dims[0]),
+            (int)modal_size_of(re, row->dims[1]), shape_of(of, row->dims[1]), power);
 }
 
 /* Copy [rows][n] to [rows][more + n], whose first more columns are zero, and free the old one. */
@@ -168,28 +127,24 @@ static void *widen(void *data, size_t rows, size_t n, size_t more, size_t size) 
   return wide;
 }
 
-/* Insert more residual modes, zero, before those that exist. */
+/* Insert more residual modes, zero, before those that exist. The number of them is as before. */
+static bool widen_row(const modal_dataset *row, const modal_model *sizes, size_t more,
+                      modal_model *of) {
+  const size_t n    = (size_t)sizes->n_residual;
+  const size_t rows = row->dims[1] ? (size_t)modal_size_of(sizes, row->dims[0]) : 1;
+  modal_dataset_set(row, of,
+                    widen(modal_dataset_get(row, of), rows, n, more, modal_dataset_width(row)));
+  return modal_dataset_get(row, of);
+}
+
 static bool widen_residual_modes(const parts *p, int more) {
-  modal_model *re = p->re, *im = p->im;
-  const size_t n = (size_t)re->n_residual, m = (size_t)more;
-  const size_t c = (size_t)modal_model_contact_dofs(re);
-  const size_t q = 3 * (size_t)re->n_probes, k = (size_t)re->n_load + 1;
-  re->residual_frequency = widen(re->residual_frequency, 1, n, m, sizeof(double));
-  re->residual_shape     = widen(re->residual_shape, c, n, m, sizeof(double));
-  re->residual_probe     = widen(re->residual_probe, q, n, m, sizeof(double));
-  re->residual_force     = widen(re->residual_force, k, n, m, sizeof(double complex));
-  bool made =
-      re->residual_frequency && re->residual_shape && re->residual_probe && re->residual_force;
-  if (im) {
-    im->residual_shape = widen(im->residual_shape, c, n, m, sizeof(double));
-    im->residual_probe = widen(im->residual_probe, q, n, m, sizeof(double));
-    made               = made && im->residual_shape && im->residual_probe;
+  bool made = true;
+  for (const modal_dataset *row = modal_datasets; row->path; row++) {
+    if (row->part != MODAL_RESIDUAL_MODES) continue;
+    made = widen_row(row, p->re, (size_t)more, p->re) && made;
+    if (second_of(p, row)) made = widen_row(row, p->re, (size_t)more, second_of(p, row)) && made;
   }
-  if (p->back) {
-    double complex **force = &p->back->residual_force;
-    made                   = (*force = widen(*force, k, n, m, sizeof **force)) && made;
-  }
-  re->n_residual += more;
+  p->re->n_residual += more;
   return made;
 }
 
@@ -218,12 +173,14 @@ static void set_residual_mode(const parts *p, int mode, int at, const double com
 static shb_status move_to_residuals(const parts *p, int modes) {
   const int       c = modal_model_contact_dofs(p->re), q = 3 * p->re->n_probes;
   double complex *phi = calloc((size_t)(c + q) + 1, sizeof *phi), *psi = phi ? phi + c : NULL;
-  bool complete = phi && allocate_residuals(p), exact = complete && p->re->residual_fourth;
+  bool            complete = phi && allocate_terms(p), exact = complete && p->re->residual_fourth;
   if (exact) complete = widen_residual_modes(p, p->re->n_modes - modes);
   for (int mode = modes; complete && mode < p->re->n_modes; mode++) {
     for (int i = 0; i < c; i++) phi[i] = at_contact(p, i, mode);
     for (int i = 0; i < q; i++) psi[i] = at_probe(p, i, mode);
-    add_terms(p, mode, phi, psi);
+    const double   w  = SHB_TWO_PI * p->re->frequency[mode];
+    const left_out of = {mode, w * w, phi, psi};
+    for (const modal_dataset *row = modal_datasets; row->path; row++) add_term(row, p, &of);
     if (exact) set_residual_mode(p, mode, mode - modes, phi, psi);
   }
   free(phi);
@@ -238,27 +195,28 @@ static void shrink(void *data, size_t rows, size_t from, size_t to, size_t size)
     memmove(bytes + i * to * size, bytes + i * from * size, to * size);
 }
 
-static void shrink_shapes(modal_model *of, size_t pairs, size_t probes, size_t from, size_t to) {
-  shrink(of->coriolis, to, from, to, sizeof(double));
-  shrink(of->right, pairs, from, to, sizeof(double));
-  shrink(of->left, pairs, from, to, sizeof(double));
-  shrink(of->probe, probes, from, to, sizeof(double));
+/* Keep the first modes of an array [..][modes]; of [modes][modes] the rows too. */
+static void shrink_row(const modal_dataset *row, const modal_model *sizes, int modes,
+                       modal_model *of) {
+  const int last = (int)strlen(row->dims) - 1;
+  size_t    rows = 1;
+  if (row->dims[last] != 'm') return;
+  for (int i = 0; i < last; i++)
+    rows *= row->dims[i] == 'm' ? (size_t)modes : (size_t)modal_size_of(sizes, row->dims[i]);
+  shrink(modal_dataset_get(row, of), rows, (size_t)sizes->n_modes, (size_t)modes,
+         modal_dataset_width(row));
 }
 
 static shb_status reduce(const parts *p, int modes, bool residuals) {
   modal_model *model = p->re;
   SHB_CHECK(modes >= 1 && modes <= model->n_modes, SHB_ERR_INPUT,
             "%d modes are to be kept; there are 1 to %d", modes, model->n_modes);
-  if (!residuals) drop_residuals(model);
-  if (!residuals && p->im) drop_residuals(p->im);
-  if (!residuals && p->back) drop_residuals(p->back);
+  if (!residuals) drop_residuals(p);
   if (residuals && modes < model->n_modes) SHB_TRY(move_to_residuals(p, modes));
-  const size_t pairs = 3 * (size_t)model->n_pairs, probes = 3 * (size_t)model->n_probes;
-  const size_t from = (size_t)model->n_modes, to = (size_t)modes, k = (size_t)model->n_load + 1;
-  shrink_shapes(model, pairs, probes, from, to);
-  if (p->im) shrink_shapes(p->im, pairs, probes, from, to);
-  shrink(model->modal_force, k, from, to, sizeof(double complex));
-  if (p->back) shrink(p->back->modal_force, k, from, to, sizeof(double complex));
+  for (const modal_dataset *row = modal_datasets; row->path; row++) {
+    shrink_row(row, model, modes, model);
+    if (second_of(p, row)) shrink_row(row, model, modes, second_of(p, row));
+  }
   model->n_modes = modes;
   return SHB_OK;
 }
@@ -293,12 +251,6 @@ static void extend_tail(const modal_model *model, const double complex *shape, d
   for (int j = 0; j < 2; j++) tail[j] = sum[j] + (model->tail_order == 3 ? tail[j] : 0);
 }
 
-static void free_imaginary(modal_model *imaginary) {
-  free(imaginary->residual_shape);
-  free(imaginary->residual_probe);
-  imaginary->residual_shape = imaginary->residual_probe = NULL;
-}
-
 void modal_model_drop_residual_modes(modal_model *model) {
   modal_wave_drop_residual_modes(model, NULL, NULL);
 }
@@ -308,24 +260,16 @@ void modal_wave_drop_residual_modes(modal_model *model, modal_model *imaginary,
   const size_t  r  = (size_t)model->n_residual;
   const double *im = imaginary ? imaginary->residual_shape : NULL;
   if (r == 0) return;
-  double complex row[r];
+  double complex shape[r];
   for (int c = 0; model->contact_tail && c < modal_model_contact_dofs(model); c++) {
-    for (size_t i = 0; i < r; i++) row[i] = entry(model->residual_shape, im, (size_t)c * r + i);
-    extend_tail(model, row, model->contact_tail + 2 * c);
+    for (size_t i = 0; i < r; i++) shape[i] = entry(model->residual_shape, im, (size_t)c * r + i);
+    extend_tail(model, shape, model->contact_tail + 2 * c);
   }
   for (int k = 0; model->load_tail && k <= model->n_load; k++)
     extend_tail(model, model->residual_force + (size_t)k * r, model->load_tail + 2 * k);
-  free(model->residual_frequency);
-  free(model->residual_shape);
-  free(model->residual_force);
-  free(model->residual_probe);
-  model->residual_frequency = model->residual_shape = model->residual_probe = NULL;
-  model->residual_force                                                     = NULL;
-  model->n_residual                                                         = 0;
-  model->tail_order                                                         = 3;
-  if (imaginary) free_imaginary(imaginary);
-  if (backward) {
-    free(backward->residual_force);
-    backward->residual_force = NULL;
-  }
+  const parts p = {model, imaginary, backward};
+  for (const modal_dataset *row = modal_datasets; row->path; row++)
+    if (row->part == MODAL_RESIDUAL_MODES) drop(row, &p);
+  model->n_residual = 0;
+  model->tail_order = 3;
 }

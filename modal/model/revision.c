@@ -7,19 +7,7 @@
 #include "mesh/base/constants.h"
 #include "modal/hdf5/h5.h"
 #include "modal/model/model.h"
-#include "modal/model/sampled_receptance.h"
-
-/* Datasets [K + 1, ...] that change with the load; of each model that a file holds. */
-static const struct {
-  const char *path;
-  enum { LINEAR, QUADRATIC } order; /* the tail is that of the load's work */
-} loaded[] = {
-    {"load/modal_force", LINEAR},      {"load/residual_response", LINEAR},
-    {"load/residual_inertia", LINEAR}, {"load/residual_fourth", LINEAR},
-    {"load/residual_tail", QUADRATIC}, {"residual_modes/load", LINEAR},
-    {"residual/load_weight", LINEAR},  {"probe/load_residual", LINEAR},
-    {"probe/load_inertia", LINEAR},    {"probe/load_fourth", LINEAR},
-};
+#include "modal/model/receptance.h"
 
 static shb_status scale_complex(hid_t file, const char *path, const double complex *ratio) {
   h5_shape        shape = {.rank = 2};
@@ -69,12 +57,15 @@ static bool ends_with(const char *path, const char *tail) {
   return n >= t && strcmp(path + n - t, tail) == 0 && (n == t || path[n - t - 1] == '/');
 }
 
+/* Datasets [K + 1, ...] of each model that a file holds change with the load. The tail is that of
+ * the load's work. */
 static shb_status revise_dataset(hid_t file, const char *path, const modal_revision *revision) {
   if (ends_with(path, "modes/damping_ratio")) return set_damping(file, path, &revision->damping);
-  for (size_t i = 0; i < sizeof loaded / sizeof *loaded; i++)
-    if (ends_with(path, loaded[i].path))
-      return loaded[i].order == QUADRATIC ? scale_work(file, path, revision->ratio)
-                                          : scale_complex(file, path, revision->ratio);
+  if (ends_with(path, "residual/load_weight")) return scale_complex(file, path, revision->ratio);
+  for (const modal_dataset *row = modal_datasets; row->path; row++)
+    if (row->dims[0] == 'k' && ends_with(path, row->path))
+      return row->kind == MODAL_REAL ? scale_work(file, path, revision->ratio)
+                                     : scale_complex(file, path, revision->ratio);
   return SHB_OK;
 }
 
@@ -94,7 +85,7 @@ static shb_status sample_again(hid_t file, const char *path) {
   modal_model model = {0};
   if (!h5_exists(file, "/receptance/contact")) return SHB_OK;
   shb_status status = modal_model_read_at(file, path, &model);
-  if (status == SHB_OK) status = modal_sampled_replace(file, &model);
+  if (status == SHB_OK) status = modal_receptance_replace(file, &model);
   modal_model_free(&model);
   return status;
 }

@@ -125,19 +125,14 @@ static shb_status check_tracks(const char *path, const modal_speeds *s, const in
   return SHB_OK;
 }
 
-/* Check that model i has the sizes and the optional parts of the first one. */
+/* Check that model i has the sizes and the optional parts of the first one. Coriolis terms may lack
+ * at rest. */
 static shb_status check_alike(const char *path, const modal_model *a, const modal_model *b, int i) {
   bool same = a->n_modes == b->n_modes && a->n_pairs == b->n_pairs && a->has_left == b->has_left &&
-              a->n_probes == b->n_probes && a->n_load == b->n_load &&
-              !a->residual_flexibility == !b->residual_flexibility &&
-              !a->residual_inertia == !b->residual_inertia &&
-              !a->residual_fourth == !b->residual_fourth && !a->contact_tail == !b->contact_tail &&
-              !a->load_fourth == !b->load_fourth && !a->load_residual == !b->load_residual &&
-              !a->load_inertia == !b->load_inertia &&
-              !a->probe_contact_residual == !b->probe_contact_residual &&
-              !a->probe_contact_inertia == !b->probe_contact_inertia &&
-              !a->probe_load_residual == !b->probe_load_residual &&
-              !a->probe_load_inertia == !b->probe_load_inertia;
+              a->n_probes == b->n_probes && a->n_load == b->n_load;
+  for (const modal_dataset *row = modal_datasets; row->path; row++)
+    same = same && (!modal_dataset_is_residual(row) ||
+                    !modal_dataset_get(row, a) == !modal_dataset_get(row, b));
   SHB_CHECK(same, SHB_ERR_INPUT,
             "%s: /speed_%d does not hold what /speed_0 holds: modes, pairs, probes, load harmonics "
             "and residual terms must be the same at every speed",

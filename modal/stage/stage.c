@@ -15,7 +15,7 @@
 #include "modal/common/phases.h"
 #include "modal/common/session.h"
 #include "modal/common/team.h"
-#include "modal/model/sampled_receptance.h"
+#include "modal/model/receptance.h"
 #include "modal/stage/model_export.h"
 #include "modal/stage/sector_export.h"
 #include "modal/stage/sector_modes.h"
@@ -86,7 +86,7 @@ static shb_status write_all(hid_t file, const contents *c) {
   SHB_TRY(modal_export_turning(file, result->coriolis));
   SHB_TRY(modal_participation_write(file, &result->participation));
   SHB_TRY(modal_export_contact(file, &result->patches));
-  SHB_TRY(modal_sampled_write(file, &result->model));
+  SHB_TRY(modal_receptance_write(file, &result->model));
   SHB_TRY(modal_deflection_write(file, &result->deflection, mesh->n_nodes, mesh->n_elements,
                                  &result->model));
   return modal_export_vtk(file, mesh, result->model.n_modes, result->model.frequency);

@@ -5,6 +5,8 @@ shb_test(modal/hdf5 INTEGRATION stamp LIBRARIES shb_modal_hdf5 DEFINITIONS
   WRITTEN_OVER="${CMAKE_CURRENT_SOURCE_DIR}/modal/hdf5/damaged/written_over.h5")
 shb_test(modal/model INTEGRATION model UNIT spline residual_series receptance mode_selection damping
   LIBRARIES shb_model)
+shb_test(modal/model UNIT golden LIBRARIES shb_model
+  ARGUMENTS ${CMAKE_CURRENT_SOURCE_DIR}/modal/model/golden)
 shb_test(modal/model UNIT reduce joined_pairs INTEGRATION speeds
   LIBRARIES tests_models tests_fem shb_modal)
 shb_test(modal/common UNIT random_vector session INTEGRATION completeness HAND team
