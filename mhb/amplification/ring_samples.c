@@ -108,10 +108,12 @@ static void store(work *w, int at, const mhb_ring_peak *peak) {
   s->factor[at]    = peak->worst / w->tuned[at / s->n].worst;
   s->frequency[at] = peak->worst_at;
   s->blade[at]     = peak->blade;
+  s->mark[at]      = peak->marked || w->tuned[at / s->n].marked;
   for (int i = 0; i < all; i++) done += s->factor[i] > 0;
   shb_progress_show(w->progress, 100. * done / all,
-                    "sample %d of %d, n0 %.4g N: %.4g times the tuned peak", at % s->n + 1, s->n,
-                    s->n0[at / s->n], s->factor[at]);
+                    "sample %d of %d, n0 %.4g N: %.4g times the tuned peak%s", at % s->n + 1, s->n,
+                    s->n0[at / s->n], s->factor[at],
+                    s->mark[at] ? ", error above the tolerance" : "");
   if (mhb_publisher_is_due(&w->publisher, PUBLISH_EVERY))
     mhb_publisher_note(&w->publisher, mhb_publisher_write(&w->publisher, w->response));
 }

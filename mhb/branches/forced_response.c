@@ -487,6 +487,15 @@ static shb_status take_curves(sweep *s) {
   return SHB_OK;
 }
 
+/* Few cases use the highest levels: no point has harmonics above those kept. */
+static void drop_unused_harmonics(mhb_response *r) {
+  int most = MHB_USUAL_HARMONICS;
+  for (int i = 0; i < r->n_branches; i++)
+    for (int p = 0; p < r->branch[i].n_points && r->branch[i].harmonics; p++)
+      if (r->branch[i].harmonics[p] > most) most = r->branch[i].harmonics[p];
+  mhb_response_narrow(r, most);
+}
+
 /* A secondary branch that does not cover its range is noted in the file only. The sweep has its
  * main branches all the same. Branches 0 and 1 are the linear limits, which an outline has not. */
 static shb_status outcome(const mhb_response *response, const mhb_settings *settings) {
@@ -526,6 +535,8 @@ static shb_status all_curves(sweep *s, const modal_model *model, mhb_settings *s
   if (status == SHB_OK) status = lasting_motion(s, model);
   if (status == SHB_OK) s->response->unfinished = shb_interrupted() || settings->ring;
   if (status == SHB_OK) status = take_curves(s);
+  const bool chosen = settings->motion_tolerance > 0;
+  if (status == SHB_OK && chosen && !shb_interrupted()) drop_unused_harmonics(s->response);
   if (status == SHB_OK) status = mhb_modal_motion_keep(model, settings, s->response);
   if (alike) settings->alike = NULL;
   mhb_receptance_destroy(alike);

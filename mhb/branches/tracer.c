@@ -82,8 +82,8 @@ static shb_status estimate(mhb_segment_host *host, mhb_curve_point *point, bool 
   SHB_TRY(mhb_harmonic_levels_move(t->levels, higher, is_start, raised));
   use_level(t);
   if (!*raised) mhb_harmonic_levels_miss(t->levels, point);
-  host->out_of_reach =
-      !*raised && !t->accepts_all && !(point->miss <= t->levels->settings->motion_tolerance);
+  host->out_of_reach = !*raised && !t->accepts_all && !mhb_harmonic_levels_all_usual(t->levels) &&
+                       !(point->miss <= t->levels->settings->motion_tolerance);
   return *raised && is_start && t->returns_to_start ? note_start(t) : SHB_OK;
 }
 

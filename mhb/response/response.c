@@ -235,6 +235,31 @@ shb_status mhb_response_copy_points(mhb_response *to, int to_branch, const mhb_r
   return SHB_OK;
 }
 
+/* Rows of the harmonics 0..n stay of an array of points that ends with that axis. */
+static void narrow_field(mhb_branch *b, const mhb_field *f, size_t row, int n) {
+  const size_t before = ((size_t)b->n_harmonics + 1) * mhb_field_bytes(f->kind);
+  const size_t after = ((size_t)n + 1) * mhb_field_bytes(f->kind), rows = row / before;
+  char        *data = mhb_field_get(b, f);
+  for (size_t i = 0; i < (size_t)b->n_points * rows; i++)
+    memmove(data + i * after, data + i * before, after);
+  char *less = realloc(data, (size_t)b->capacity * rows * after);
+  if (less) mhb_field_set(b, f, less);
+}
+
+void mhb_response_narrow(mhb_response *response, int n_harmonics) {
+  for (int i = 0; i < response->n_branches; i++) {
+    mhb_branch *b = &response->branch[i];
+    if (b->n_harmonics <= n_harmonics) continue;
+    for (int k = 0; k < MHB_N_FIELDS && b->capacity > 0; k++) {
+      const mhb_field *f = &mhb_fields[k];
+      if (strchr(f->dims, 'k') && mhb_field_kept(response, b, f))
+        narrow_field(b, f, mhb_field_row(response, b, f), n_harmonics);
+    }
+    b->n_harmonics = n_harmonics;
+  }
+  if (response->n_harmonics > n_harmonics) response->n_harmonics = n_harmonics;
+}
+
 shb_status mhb_response_lasting_curve(mhb_branch *branch, int n) {
   mhb_lasting_curve *c = &branch->lasting_curve;
   free_curve(c);
@@ -387,7 +412,12 @@ bool mhb_branch_marked(const mhb_branch *branch, int point) {
 }
 
 mhb_marks mhb_response_marks(const mhb_response *response) {
-  mhb_marks marks = {0};
+  mhb_marks          marks = {0};
+  const mhb_samples *s     = response->samples;
+  for (int i = 0; s && i < s->preloads; i++) {
+    marks.samples += mhb_samples_done(s, i);
+    marks.marked_samples += mhb_samples_marked(s, i);
+  }
   for (int i = 0; i < response->n_branches; i++) {
     const mhb_branch *b = &response->branch[i];
     if (b->kind != MHB_BRANCH_NONLINEAR && b->kind != MHB_BRANCH_TRACKED) continue;

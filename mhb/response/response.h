@@ -44,6 +44,9 @@ void mhb_response_place(mhb_response *response, int branch, int at);
  * memory. */
 shb_status mhb_response_copy_points(mhb_response *to, int to_branch, const mhb_response *from,
                                     int from_branch, int first, int last);
+/* Harmonics above n_harmonics are dropped, of all branches. They must be 0, and no branch may have
+ * modal amplitudes yet. */
+void mhb_response_narrow(mhb_response *response, int n_harmonics);
 /* Appends a search to the records of a branch. SHB_ERR_IO: no memory. */
 shb_status mhb_response_note_search(mhb_branch *branch, const mhb_search *search);
 /* to <- the text and the sweep of the motion that lasts; those it had are freed. SHB_ERR_IO: no
@@ -80,11 +83,13 @@ shb_status mhb_response_write(const mhb_response *response, const char *path,
                               const shb_provenance *provenance);
 shb_status mhb_response_read(const char *path, mhb_response **response);
 
-/* Points of the balance whose error is above the tolerance, of all branches. */
+/* Points of the balance whose error is above the tolerance, of all branches; samples of random
+ * rings whose peak is such a point, of all preloads. */
 typedef struct {
   int    points, marked;
-  double largest;   /* error_truncation of a marked one */
-  int    harmonics; /* most of a marked one; 0: not known */
+  int    samples, marked_samples; /* done; of them */
+  double largest;                 /* error_truncation of a marked one */
+  int    harmonics;               /* most of a marked one; 0: not known */
 } mhb_marks;
 
 mhb_marks mhb_response_marks(const mhb_response *response);

@@ -289,18 +289,22 @@ static void ladders(void **state) {
     int    nu, load, given;
     double tolerance;
     int    n, m[MHB_MAX_LEVELS];
-  } rows[] = {{1, 1, 6, 0, 1, {6}},
-              {1, 1, 1, 1e-3, 9, {1, 3, 5, 7, 9, 13, 17, 21, 31}},
-              {2, 1, 1, 1e-3, 7, {2, 6, 10, 14, 18, 26, 31}},
-              {1, 2, 1, 1e-3, 8, {3, 5, 7, 9, 13, 17, 21, 31}},
-              {16, 2, 1, 1e-3, 1, {32}}};
+    int    pairs;
+  } rows[] = {{1, 1, 6, 0, 1, {6}, 1},
+              {1, 1, 1, 1e-3, 13, {1, 3, 5, 7, 9, 13, 17, 21, 31, 45, 63, 91, 127}, 1},
+              {2, 1, 1, 1e-3, 11, {2, 6, 10, 14, 18, 26, 31, 45, 63, 91, 127}, 1},
+              {1, 2, 1, 1e-3, 12, {3, 5, 7, 9, 13, 17, 21, 31, 45, 63, 91, 127}, 1},
+              {16, 2, 1, 1e-3, 5, {32, 45, 63, 91, 127}, 1},
+              {1, 1, 1, 1e-3, 11, {1, 3, 5, 7, 9, 13, 17, 21, 31, 45, 63}, 2},
+              {1, 1, 1, 1e-3, 9, {1, 3, 5, 7, 9, 13, 17, 21, 31}, 3},
+              {1, 1, 1, 1e-3, 9, {1, 3, 5, 7, 9, 13, 17, 21, 31}, 40}};
   for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
     int          m[MHB_MAX_LEVELS];
     modal_model  model;
     mhb_settings s     = random_settings(rows[i].given);
     s.subharmonics     = rows[i].nu;
     s.motion_tolerance = rows[i].tolerance;
-    random_model(1, 0, 3, &model); /* load harmonics 0, 1, 2 */
+    random_model(rows[i].pairs, 0, 3, &model); /* load harmonics 0, 1, 2 */
     for (int k = 0; rows[i].load < 2 && k < model.n_modes; k++)
       model.modal_force[2 * model.n_modes + k] = 0;
     assert_int_equal(mhb_harmonic_levels_ladder(&model, &s, m), rows[i].n);
