@@ -142,12 +142,18 @@ static void samples_above_the_tolerance_are_marked(void **state) {
   mhb_mistuned_ring *ring  = drawn_ring(&blade, deviation, &s);
   shb_progress       quiet = shb_progress_start("test", true, false);
   (void)state;
+  r               = solve(&blade, deviation, NULL, NULL);
+  const double at = r->branch[2].amplification.worst_at;
+  mhb_response_destroy(r);
+  s.frequency[0] = 0.99 * at;
+  s.frequency[1] = 1.01 * at;
   for (int i = 0; i < 2; i++) {
     s.motion_tolerance = i ? 1e-2 : 1e-9;
     assert_ok(mhb_ring_response(&s, &SAMPLING, NULL, &NONE, &quiet, &r));
     const mhb_marks marks = mhb_response_marks(r);
     print_message("tolerance %.0e: %d of %d samples marked\n", s.motion_tolerance,
                   marks.marked_samples, marks.samples);
+    assert_int_equal(r->branch[2].amplification.factor > 0, i); /* that of the ring itself */
     assert_int_equal(marks.samples, SAMPLES);
     assert_int_equal(marks.marked_samples, i ? 0 : SAMPLES);
     assert_int_equal(mhb_samples_worst(r->samples, 0) < 0, !i);
