@@ -61,10 +61,11 @@ static shb_status trace(const mhb_settings *settings, double n0, mhb_ring_peak *
       .point = go_on, .searching = searching, .is_due = never_due, .publish = publish_nothing};
   const modal_model *whole = &settings->ring->whole;
   int                m[MHB_MAX_LEVELS], n = mhb_harmonic_levels_ladder(whole, settings, m), branch;
-  mhb_settings       first    = *settings;
-  mhb_balance       *balance  = NULL;
-  mhb_response      *response = mhb_response_create(whole->n_pairs, whole->n_probes, m[n - 1]);
-  first.harmonics             = m[0];
+  mhb_settings       first   = *settings;
+  mhb_balance       *balance = NULL;
+  mhb_response      *response =
+      mhb_response_create(whole->n_pairs, whole->n_probes, mhb_harmonic_levels_usual(n, m));
+  first.harmonics   = m[0];
   shb_status status = response ? SHB_OK : shb_fail(SHB_ERR_IO, __FILE__, __LINE__, "out of memory");
   if (status == SHB_OK) {
     response->ring = settings->ring->blades;

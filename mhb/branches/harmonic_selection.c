@@ -65,6 +65,11 @@ int mhb_harmonic_levels_ladder(const modal_model *model, const mhb_settings *s,
   return n;
 }
 
+int mhb_harmonic_levels_usual(int n, const int *m) {
+  while (n > 1 && m[n - 1] > MHB_USUAL_HARMONICS) n--;
+  return m[n - 1];
+}
+
 static void level_destroy(mhb_harmonic_level *level) {
   if (!level) return;
   mhb_truncation_destroy(level->truncation);

@@ -55,6 +55,9 @@ typedef struct {
 int mhb_harmonic_levels_ladder(const modal_model *model, const mhb_settings *settings,
                                int m[MHB_MAX_LEVELS]);
 
+/* Of a ladder, the highest of the usual ones; the only one if none is. */
+int mhb_harmonic_levels_usual(int n, const int *m);
+
 /* Starts at the given balance, which must outlive it, with its settings, operating point and
  * parameter. SHB_ERR_IO: no memory. */
 shb_status mhb_harmonic_levels_create(mhb_balance *balance, mhb_harmonic_levels **levels);

@@ -216,48 +216,57 @@ void mhb_response_place(mhb_response *response, int branch, int at) {
              (size_t)at, (size_t)b->n_points);
 }
 
+/* to <- `rows` rows of harmonics, `after` bytes each, of which `before` are given. From the last on:
+ * both may begin at the same place. */
+static void spread(char *to, size_t after, const char *from, size_t before, size_t rows) {
+  for (size_t i = rows; i-- > 0;) {
+    memmove(to + i * after, from + i * before, before);
+    memset(to + i * after + before, 0, after - before);
+  }
+}
+
+/* Bytes of the harmonics of one row; 0: the field has none. */
+static size_t harmonics_of(const mhb_branch *branch, const mhb_field *f) {
+  return strchr(f->dims, 'k') ? ((size_t)branch->n_harmonics + 1) * mhb_field_bytes(f->kind) : 0;
+}
+
+shb_status mhb_response_widen(const mhb_response *response, mhb_branch *branch, int n_harmonics) {
+  mhb_branch wide  = *branch;
+  wide.n_harmonics = n_harmonics;
+  for (int i = 0; i < MHB_N_FIELDS && branch->n_harmonics < n_harmonics; i++) {
+    const mhb_field *f      = &mhb_fields[i];
+    const size_t     before = harmonics_of(branch, f), after = harmonics_of(&wide, f);
+    if (before == 0 || !mhb_field_kept(response, branch, f) || branch->capacity == 0) continue;
+    const size_t row  = mhb_field_row(response, branch, f) / before; /* rows of a point */
+    char        *data = realloc(mhb_field_get(branch, f), (size_t)branch->capacity * row * after);
+    SHB_CHECK(data, SHB_ERR_IO, "no memory for %d harmonics", n_harmonics);
+    mhb_field_set(branch, f, data);
+    spread(data, after, data, before, (size_t)branch->n_points * row);
+  }
+  if (branch->n_harmonics < n_harmonics) branch->n_harmonics = n_harmonics;
+  return SHB_OK;
+}
+
 shb_status mhb_response_copy_points(mhb_response *to, int to_branch, const mhb_response *from,
                                     int from_branch, int first, int last) {
   const mhb_branch *a    = &from->branch[from_branch];
   mhb_branch       *b    = &to->branch[to_branch];
   int               step = first <= last ? 1 : -1;
+  SHB_TRY(mhb_response_widen(to, b, a->n_harmonics));
   for (int i = first; i != last + step; i += step) {
     int point;
     SHB_TRY(mhb_response_point(to, to_branch, &point));
     for (int k = 0; k < MHB_N_FIELDS; k++) {
       const mhb_field *f = &mhb_fields[k];
       if (!mhb_field_kept(to, b, f)) continue;
-      size_t row = mhb_field_row(to, b, f);
-      memcpy((char *)mhb_field_get(b, f) + (size_t)point * row,
-             (char *)mhb_field_get(a, f) + (size_t)i * row, row);
+      const size_t row = mhb_field_row(to, b, f), own = mhb_field_row(from, a, f);
+      const size_t before = own == row ? row : harmonics_of(a, f);
+      const size_t after  = own == row ? row : harmonics_of(b, f);
+      spread((char *)mhb_field_get(b, f) + (size_t)point * row, after,
+             (char *)mhb_field_get(a, f) + (size_t)i * own, before, row / after);
     }
   }
   return SHB_OK;
-}
-
-/* Rows of the harmonics 0..n stay of an array of points that ends with that axis. */
-static void narrow_field(mhb_branch *b, const mhb_field *f, size_t row, int n) {
-  const size_t before = ((size_t)b->n_harmonics + 1) * mhb_field_bytes(f->kind);
-  const size_t after = ((size_t)n + 1) * mhb_field_bytes(f->kind), rows = row / before;
-  char        *data = mhb_field_get(b, f);
-  for (size_t i = 0; i < (size_t)b->n_points * rows; i++)
-    memmove(data + i * after, data + i * before, after);
-  char *less = realloc(data, (size_t)b->capacity * rows * after);
-  if (less) mhb_field_set(b, f, less);
-}
-
-void mhb_response_narrow(mhb_response *response, int n_harmonics) {
-  for (int i = 0; i < response->n_branches; i++) {
-    mhb_branch *b = &response->branch[i];
-    if (b->n_harmonics <= n_harmonics) continue;
-    for (int k = 0; k < MHB_N_FIELDS && b->capacity > 0; k++) {
-      const mhb_field *f = &mhb_fields[k];
-      if (strchr(f->dims, 'k') && mhb_field_kept(response, b, f))
-        narrow_field(b, f, mhb_field_row(response, b, f), n_harmonics);
-    }
-    b->n_harmonics = n_harmonics;
-  }
-  if (response->n_harmonics > n_harmonics) response->n_harmonics = n_harmonics;
 }
 
 shb_status mhb_response_lasting_curve(mhb_branch *branch, int n) {

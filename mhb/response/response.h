@@ -40,13 +40,13 @@ shb_status mhb_response_point(mhb_response *response, int branch, int *point);
 /* Moves the last point of a branch to place at; those from there on move up by one. */
 void mhb_response_place(mhb_response *response, int branch, int at);
 /* Appends points first..last of a branch of another response of the same shape, in this order: from
- * the last to the first if first > last. Both branches have as many harmonics. SHB_ERR_IO: no
+ * the last to the first if first > last. A branch of fewer harmonics is widened. SHB_ERR_IO: no
  * memory. */
 shb_status mhb_response_copy_points(mhb_response *to, int to_branch, const mhb_response *from,
                                     int from_branch, int first, int last);
-/* Harmonics above n_harmonics are dropped, of all branches. They must be 0, and no branch may have
- * modal amplitudes yet. */
-void mhb_response_narrow(mhb_response *response, int n_harmonics);
+/* A branch gets room for so many harmonics; those it has not are 0. It may have no modal amplitudes
+ * yet. SHB_ERR_IO: no memory. */
+shb_status mhb_response_widen(const mhb_response *response, mhb_branch *branch, int n_harmonics);
 /* Appends a search to the records of a branch. SHB_ERR_IO: no memory. */
 shb_status mhb_response_note_search(mhb_branch *branch, const mhb_search *search);
 /* to <- the text and the sweep of the motion that lasts; those it had are freed. SHB_ERR_IO: no
