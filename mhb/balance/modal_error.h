@@ -7,8 +7,8 @@
  * the motion lacks e_k = d(free)_k - dR_k p_k, with the signs of both. The contact answers to it:
  *   (I + R J) du = e,   J = dp/du,
  * near a resonance of the blade with its contact many times e. The answer to the difference of the
- * last two shapes is added to |du|: the true shape is nearer to the last one than that to the one
- * before. Near a fold this du is far too long; a long one is shortened by the curvature of the
+ * last two shapes is added to |du|. The true shape is nearer to the last one than that is to the
+ * one before. Near a fold this du is far too long; a long one is shortened by the curvature of the
  * residual along it. */
 #ifndef MHB_BALANCE_MODAL_ERROR_H
 #define MHB_BALANCE_MODAL_ERROR_H

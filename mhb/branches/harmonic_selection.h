@@ -48,10 +48,10 @@ typedef struct {
 } mhb_harmonic_levels;
 
 /* The numbers of harmonics a sweep may use, rising: 1, 3, 5, 7, 9, 13, 17, 21, 31 (times the
- * subharmonics, 31 at most) from the load's highest harmonic on. 45, 63, 91, 127 follow, as far as
- * the balance of twice as many has 1600 unknowns at most: 127 for one pair, 63 for two. A disc of
- * which nodal diameters are missing has none of these. One, if they are not to be chosen. Returns
- * how many. */
+ * subharmonics, 31 at most) from the load's highest harmonic on. 45, 63, 91, 127 follow as far as
+ * they are affordable: 127 for one pair, 63 for two, none for more. The balance of twice as many
+ * has 1600 unknowns at most. A disc of which nodal diameters are missing has none of these. One, if
+ * they are not to be chosen. Returns how many. */
 int mhb_harmonic_levels_ladder(const modal_model *model, const mhb_settings *settings,
                                int m[MHB_MAX_LEVELS]);
 

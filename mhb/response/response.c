@@ -216,8 +216,8 @@ void mhb_response_place(mhb_response *response, int branch, int at) {
              (size_t)at, (size_t)b->n_points);
 }
 
-/* to <- `rows` rows of harmonics, `after` bytes each, of which `before` are given. From the last on:
- * both may begin at the same place. */
+/* to <- `rows` rows of harmonics, `after` bytes each, of which `before` are given. From the last
+ * on: both may begin at the same place. */
 static void spread(char *to, size_t after, const char *from, size_t before, size_t rows) {
   for (size_t i = rows; i-- > 0;) {
     memmove(to + i * after, from + i * before, before);

@@ -83,7 +83,7 @@ shb_status mhb_response_write(const mhb_response *response, const char *path,
                               const shb_provenance *provenance);
 shb_status mhb_response_read(const char *path, mhb_response **response);
 
-/* Points of the balance whose error is above the tolerance, of all branches; samples of random
+/* Points of the balance whose error is above the tolerance, of all branches. Samples of random
  * rings whose peak is such a point, of all preloads. */
 typedef struct {
   int    points, marked;
