@@ -158,14 +158,13 @@ static double power(const double *x, int rows, int nb, int k) {
   return sum;
 }
 
-/* share[k] = |all harmonics above k|^2, k = 0..top: the solution's up to m, the estimate's
+/* share[k] = |all harmonics above k|^2, k = 1..top: the solution's up to m, the estimate's
  * beyond. */
 static void tail(const mhb_harmonic_level *level, const double *x, int top, double *share) {
   const mhb_balance *b   = level->balance;
   double             sum = 0;
-  for (int k = top; k >= 0; k--) {
+  for (int k = top; k > 0; k--) {
     share[k] = sum;
-    if (k == 0) break;
     sum +=
         k <= b->m ? power(x, 3 * b->n_pairs, b->nb, k) : mhb_truncation_power(level->truncation, k);
   }
