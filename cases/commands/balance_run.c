@@ -22,20 +22,29 @@ mhb_sampling balance_sampling(const case_file *file) {
                         .seed      = file->mistuning.seed};
 }
 
-/* Points above the tolerance are an outcome that must not be overlooked, beside any other. */
+/* Points above the tolerance are an outcome that must not be overlooked, beside any other. So are
+ * samples. */
 static shb_status tell_marks(const case_file *file, const mhb_response *response,
                              shb_status status) {
   const mhb_marks marks = mhb_response_marks(response);
-  char            before[512];
-  if (marks.marked == 0 || (status != SHB_OK && status != SHB_NOT_CONVERGED)) return status;
+  char            before[512], points[256] = "", samples[128] = "";
+  const bool      both = marks.marked > 0 && marks.marked_samples > 0;
+  if (marks.marked == 0 && marks.marked_samples == 0) return status;
+  if (status != SHB_OK && status != SHB_NOT_CONVERGED) return status;
   snprintf(before, sizeof before, "%s%s", status == SHB_OK ? "" : shb_message(),
            status == SHB_OK ? "" : "; ");
-  return shb_fail(
-      SHB_NOT_CONVERGED, __FILE__, __LINE__,
-      "%s%d of %d points have an estimated error above mhb.tolerance %g, up to %.2g with "
-      "%d harmonics: they are marked, and no peak is told from them",
-      before, marks.marked, marks.points, file->mhb.motion_tolerance, marks.largest,
-      marks.harmonics);
+  if (marks.marked > 0)
+    snprintf(points, sizeof points,
+             "%d of %d points have an estimated error above mhb.tolerance %g, up to %.2g with %d "
+             "harmonics: they are marked, and no peak is told from them",
+             marks.marked, marks.points, file->mhb.motion_tolerance, marks.largest,
+             marks.harmonics);
+  if (marks.marked_samples > 0)
+    snprintf(samples, sizeof samples,
+             "%d of %d random rings have their peak above mhb.tolerance %g: they are marked",
+             marks.marked_samples, marks.samples, file->mhb.motion_tolerance);
+  return shb_fail(SHB_NOT_CONVERGED, __FILE__, __LINE__, "%s%s%s%s", before, points,
+                  both ? "; " : "", samples);
 }
 
 /* Does the file at path hold the complete result of these settings? *outcome: what that is. */

@@ -179,6 +179,7 @@ static shb_status harmonics_ladder(convergence_study *s) {
   wide.motion_tolerance = 1;
   int  n                = mhb_harmonic_levels_ladder(&s->model, &wide, m);
   bool there            = own == 0;
+  while (m[n - 1] > mhb_harmonic_levels_usual(n, m)) n--;
   for (int i = 0; i < n; i++) there = there || m[i] == own;
   if (!there) m[n++] = own;
   qsort(m, (size_t)n, sizeof *m, by_size);

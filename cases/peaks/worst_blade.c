@@ -21,7 +21,7 @@ static void take(const mhb_response *r, const mhb_branch *b, const mhb_settings 
     const double worst = worst_blade_amplitude(r, b, p), error = b->error_truncation[p];
     if (!(worst > peak->amplitude)) continue;
     peak->found           = true;
-    peak->exact           = true;
+    peak->exact           = !mhb_branch_marked(b, p);
     peak->amplitude       = worst;
     peak->amplitude_error = error >= 0 ? error * worst : NAN;
     peak->frequency       = b->frequency[p];

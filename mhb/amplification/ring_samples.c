@@ -61,10 +61,11 @@ static shb_status trace(const mhb_settings *settings, double n0, mhb_ring_peak *
       .point = go_on, .searching = searching, .is_due = never_due, .publish = publish_nothing};
   const modal_model *whole = &settings->ring->whole;
   int                m[MHB_MAX_LEVELS], n = mhb_harmonic_levels_ladder(whole, settings, m), branch;
-  mhb_settings       first    = *settings;
-  mhb_balance       *balance  = NULL;
-  mhb_response      *response = mhb_response_create(whole->n_pairs, whole->n_probes, m[n - 1]);
-  first.harmonics             = m[0];
+  mhb_settings       first   = *settings;
+  mhb_balance       *balance = NULL;
+  mhb_response      *response =
+      mhb_response_create(whole->n_pairs, whole->n_probes, mhb_harmonic_levels_usual(n, m));
+  first.harmonics   = m[0];
   shb_status status = response ? SHB_OK : shb_fail(SHB_ERR_IO, __FILE__, __LINE__, "out of memory");
   if (status == SHB_OK) {
     response->ring = settings->ring->blades;
@@ -108,10 +109,12 @@ static void store(work *w, int at, const mhb_ring_peak *peak) {
   s->factor[at]    = peak->worst / w->tuned[at / s->n].worst;
   s->frequency[at] = peak->worst_at;
   s->blade[at]     = peak->blade;
+  s->mark[at]      = peak->marked || w->tuned[at / s->n].marked;
   for (int i = 0; i < all; i++) done += s->factor[i] > 0;
   shb_progress_show(w->progress, 100. * done / all,
-                    "sample %d of %d, n0 %.4g N: %.4g times the tuned peak", at % s->n + 1, s->n,
-                    s->n0[at / s->n], s->factor[at]);
+                    "sample %d of %d, n0 %.4g N: %.4g times the tuned peak%s", at % s->n + 1, s->n,
+                    s->n0[at / s->n], s->factor[at],
+                    s->mark[at] ? ", error above the tolerance" : "");
   if (mhb_publisher_is_due(&w->publisher, PUBLISH_EVERY))
     mhb_publisher_note(&w->publisher, mhb_publisher_write(&w->publisher, w->response));
 }

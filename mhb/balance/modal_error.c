@@ -15,8 +15,8 @@ enum { MOST_SOLVED = 60 };
 /* A change longer than this part of the vibration is checked for the curvature. */
 static const double LONG = 0.02;
 
-/* The two parts of e_k, added as if orthogonal. */
-typedef enum { BY_LOAD, BY_CONTACT, PARTS } part;
+/* The shape of what is missing: of the last residual term, or of the one before it. */
+typedef enum { LAST, BEFORE, SHAPES } shape;
 
 /* Rest of the residual series at w relative to its last term, by the estimated error of the worst
  * dof. Without an estimate: (w/w_m)^2, w_m the highest mode. */
@@ -36,9 +36,14 @@ static double series_ratio(const modal_model *model, double w) {
 /* Misfit up to which the modes kept have the damping of mass and stiffness (Rayleigh). */
 static const double RAYLEIGH = 0.02;
 
-/* 2 zeta w_e of modes left out near w_e. It is Rayleigh's alpha + beta w^2 where the modes kept
- * have that. Else the damping ratio is that of the highest. */
-static double damping_beyond(const modal_model *model, double w_e) {
+/* Damping of the modes left out: 2 zeta_i w_i of each is alpha + beta w_i^2 or less. */
+typedef struct {
+  double alpha, beta;
+} mass_and_stiffness;
+
+/* Rayleigh's alpha and beta where the modes kept have that damping. Else the damping ratio is that
+ * of the highest: 2 zeta w is concave in w^2 and below its tangent at w_e. */
+static mass_and_stiffness damping_beyond(const modal_model *model, double w_e) {
   const int n    = model->n_modes;
   double    s[3] = {0}, t[2] = {0}, misfit = 0;
   bool      damped = n >= 3; /* any two have it */
@@ -58,20 +63,24 @@ static double damping_beyond(const modal_model *model, double w_e) {
     const double w = SHB_TWO_PI * model->frequency[i], d = 2 * model->damping_ratio[i] * w;
     misfit = fmax(misfit, fabs((alpha + beta * w * w) / d - 1));
   }
-  if (damped && misfit < RAYLEIGH) return fmax(0, alpha + beta * w_e * w_e);
-  return 2 * model->damping_ratio[n - 1] * w_e;
+  const double zeta = model->damping_ratio[n - 1];
+  if (damped && misfit < RAYLEIGH) return (mass_and_stiffness){alpha, beta};
+  return (mass_and_stiffness){zeta * w_e, w_e > 0 ? zeta / w_e : 0};
 }
 
 /* The residual terms are of modes without damping. With it a mode has 1/w_i^2 (1 - 2 j zeta_i w/w_i
- * + ...): the loss of all modes left out, relative to the first term, at w. w_e: that of their
- * first two terms, or the last mode kept. */
-static double missing_loss(const modal_model *model, double w) {
+ * + ...): the loss of all modes left out at w, by the first two terms. w_e: that of their first two
+ * terms, or the last mode kept. */
+static void set_missing_loss(const modal_model *model, double w, bool has_second, double loss[2]) {
   const int n      = 3 * model->n_pairs * (model->has_left ? 2 : 1);
   double    square = pow(SHB_TWO_PI * model->frequency[model->n_modes - 1], 2), most[2] = {0, 0};
   for (int i = 0; i < n && modal_series_has_fourth(model); i++)
     for (int t = 0; t < 2; t++) most[t] = fmax(most[t], modal_series_diagonal(model, t, i));
   if (most[1] > 0) square = fmax(square, most[0] / most[1]);
-  return square > 0 ? w * damping_beyond(model, sqrt(square)) / square : 0;
+  const mass_and_stiffness by = damping_beyond(model, sqrt(square));
+  loss[0]                     = w * by.beta;
+  loss[1]                     = has_second ? w * by.alpha : 0;
+  if (!has_second && square > 0) loss[0] += w * by.alpha / square;
 }
 
 /* Number of the last term that the model has. */
@@ -81,59 +90,74 @@ static int last_term(void *const term[MODAL_TERMS]) {
   return t;
 }
 
+/* Terms t and t - 1 of a series without weights: the sum of the diagonal of one over that of the
+ * other. 0: not known. */
+static double rate_of_terms(const modal_model *model, int t) {
+  const int n    = 3 * model->n_pairs * (model->has_left ? 2 : 1);
+  double    last = 0, before = 0;
+  if (t < 1 || !modal_series_has_fourth(model)) return 0;
+  for (int i = 0; i < n; i++) {
+    last += modal_series_diagonal(model, t, i);
+    before += modal_series_diagonal(model, t - 1, i);
+  }
+  return before > 0 ? last / before : 0;
+}
+
 /* What is missing of the modes left out at one harmonic. */
 typedef struct {
-  double ratio; /* by series_ratio, of their last term */
-  double loss;  /* by missing_loss, of their first term */
+  double ratio;   /* by series_ratio, of their last term */
+  double loss[2]; /* of their first two terms */
+  double rate;    /* of the last term and the one before */
 } missing;
 
-/* to[n] <- what the motion of one structure lacks at harmonic k, by the forces p[n]; NULL: by its
- * load. */
-static void missing_motion(const mhb_receptance *r, int k, const missing *of,
+/* to[n] <- what the motion of one structure lacks at harmonic k under its load and the forces p[n].
+ * Both parts have the sign that their modes give them. */
+static void missing_motion(const mhb_receptance *r, int k, const missing *of, shape as,
                            const double complex *p, double complex *to) {
   const mhb_residual_terms *terms = r->residual_terms;
   const modal_series        s = modal_series_at(mhb_receptance_model(r, k), k * r->omega / r->nu);
   const int                 t = last_term(terms->own[0] ? (void *const *)terms->own
                                                         : (void *const *)terms->contact),
             u                 = last_term((void *const *)terms->load);
+  const int      back         = as == BEFORE && of->rate > 0 && t > 0 && u > 0;
+  const double   size         = as == BEFORE ? of->ratio * (back ? of->rate : 0) : of->ratio;
   double complex lost[r->n];
   memset(to, 0, sizeof *to * (size_t)r->n);
   memset(lost, 0, sizeof lost);
-  if (p) {
-    mhb_residual_terms_add_product(terms, t, k, -of->ratio * s.weight[t], p, to);
-    mhb_residual_terms_add_product(terms, 0, k, of->loss, p, lost);
-  }
-  for (int i = 0; i < r->n && !p && terms->load[u]; i++) {
-    to[i]   = of->ratio * s.load_weight[u] * r->scale * terms->load[u][k * r->n + i];
-    lost[i] = -of->loss * r->scale * terms->load[0][k * r->n + i];
+  mhb_residual_terms_add_product(terms, t - back, k, -size * s.weight[t], p, to);
+  for (int i = 0; i < 2 && i <= t; i++)
+    mhb_residual_terms_add_product(terms, i, k, of->loss[i], p, lost);
+  for (int i = 0; i < r->n && terms->load[u]; i++) {
+    to[i] += size * s.load_weight[u] * r->scale * terms->load[u - back][k * r->n + i];
+    for (int j = 0; j < 2 && j <= u; j++)
+      lost[i] -= of->loss[j] * r->scale * terms->load[j][k * r->n + i];
   }
   for (int i = 0; i < r->n; i++) to[i] += CMPLX(-cimag(lost[i]), creal(lost[i])); /* j lost */
 }
 
 /* The same of all blades of a ring, to[n]. */
-static void missing_in_ring(const mhb_ring_receptance *g, int k, const missing *of,
+static void missing_in_ring(const mhb_ring_receptance *g, int k, const missing *of, shape as,
                             const double complex *p, double complex *to) {
   double complex force[2 * g->n], motion[2 * g->n];
   memset(to, 0, sizeof *to * (size_t)g->blades * (size_t)g->n);
   for (int i = 0; i < g->blades; i++) {
-    missing_motion(g->blade[i], k, of, mhb_ring_forces_of_blade(g, i, p, force), motion);
+    missing_motion(g->blade[i], k, of, as, mhb_ring_forces_of_blade(g, i, p, force), motion);
     mhb_ring_add_blade(g, i, motion, to);
   }
 }
 
-/* One part of e[k][n]; of[k]. */
-static void set_missing_motion(const mhb_balance *b, const missing *of, part by,
+/* e[k][n] of one shape; of[k]. */
+static void set_missing_motion(const mhb_balance *b, const missing *of, shape as,
                                double complex *e) {
   const mhb_receptance *r = b->receptance;
   double complex        p[3 * b->n_pairs];
   for (int k = 1; k <= b->m; k++) {
-    const double complex *on = by == BY_CONTACT ? p : NULL;
-    double complex       *to = e + k * 3 * b->n_pairs;
-    if (on) mhb_balance_contact_force(b, k, p);
+    double complex *to = e + k * 3 * b->n_pairs;
+    mhb_balance_contact_force(b, k, p);
     if (r->ring)
-      missing_in_ring(r->ring, k, &of[k], on, to);
+      missing_in_ring(r->ring, k, &of[k], as, p, to);
     else
-      missing_motion(r, k, &of[k], on, to);
+      missing_motion(r, k, &of[k], as, p, to);
   }
 }
 
@@ -199,8 +223,11 @@ double mhb_modal_error(const mhb_balance *b, const double *x, mhb_truncation *t)
   double                sum = 0;
   int                   pivot[n];
   if (!one->residual_terms->contact[0] && !one->residual_terms->own[0]) return -1;
+  const int last =
+      last_term(one->residual_terms->own[0] ? (void *const *)one->residual_terms->own
+                                            : (void *const *)one->residual_terms->contact);
   double complex *e =
-      calloc((size_t)all + (linear && !r->ring ? (size_t)n * (size_t)n : 0), sizeof *e);
+      calloc(2 * (size_t)all + (linear && !r->ring ? (size_t)n * (size_t)n : 0), sizeof *e);
   if (!e || !(size > 0)) {
     free(e);
     return e ? 0 : -1;
@@ -208,12 +235,15 @@ double mhb_modal_error(const mhb_balance *b, const double *x, mhb_truncation *t)
   for (int k = 1; k <= b->m; k++) {
     const modal_model *model = mhb_receptance_model(one, k);
     const double       w     = k * r->omega / r->nu;
-    of[k] = (missing){.ratio = series_ratio(model, w), .loss = missing_loss(model, w)};
+    of[k] = (missing){.ratio = series_ratio(model, w), .rate = rate_of_terms(model, last)};
+    set_missing_loss(model, w, last > 0, of[k].loss);
   }
-  for (part by = 0; by < PARTS; by++) {
-    set_missing_motion(b, of, by, e);
-    if (linear) solve_by_harmonic(b, e + all, pivot, e);
-    sum = hypot(sum, t ? solve_by_system(b, t, size, e) : norm_of(all, e));
+  for (shape as = LAST; as < SHAPES; as++) set_missing_motion(b, of, as, e + (int)as * all);
+  for (int i = 0; i < all; i++) e[all + i] = e[i] - e[all + i];
+  for (shape as = LAST; as < SHAPES; as++) {
+    double complex *of_shape = e + (int)as * all;
+    if (linear) solve_by_harmonic(b, e + 2 * all, pivot, of_shape);
+    sum += t ? solve_by_system(b, t, size, of_shape) : norm_of(all, of_shape);
   }
   free(e);
   return sum / size;

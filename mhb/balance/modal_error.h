@@ -1,13 +1,15 @@
 /* Error of a solution by the modes that the modal file leaves out.
  *
  * Residual terms and modes leave out a part dR_k of the receptance and d(free)_k of the load's
- * response. Their size is estimated (modal/model/residual_series.h); their shape is taken from the
+ * response. Their size is estimated (modal/model/residual_series.h); their shape is that of the
  * last residual term of the file. The residual terms have no damping. What is lost by it is
- * estimated from the damping of the modes kept and the first residual term. At given forces the
- * motion lacks e_k = d(free)_k - dR_k p_k. The contact answers to it:
+ * estimated from the damping of the modes kept and the first two residual terms. At given forces
+ * the motion lacks e_k = d(free)_k - dR_k p_k, with the signs of both. The contact answers to it:
  *   (I + R J) du = e,   J = dp/du,
- * near a resonance of the blade with its contact many times e. Near a fold this du is far too long;
- * a long one is shortened by the curvature of the residual along it. */
+ * near a resonance of the blade with its contact many times e. The answer to the difference of the
+ * last two shapes is added to |du|. The true shape is nearer to the last one than that is to the
+ * one before. Near a fold this du is far too long; a long one is shortened by the curvature of the
+ * residual along it. */
 #ifndef MHB_BALANCE_MODAL_ERROR_H
 #define MHB_BALANCE_MODAL_ERROR_H
 

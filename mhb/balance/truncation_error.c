@@ -345,7 +345,7 @@ double mhb_truncation_across(mhb_truncation *t, double value, const double *tang
   mhb_balance  *b = t->doubled;
   const int     n = b->n, own = t->balance->n;
   const double  unit = mhb_norm(t->x, n), size = mhb_balance_vibration(t->balance, t->x);
-  const bool    knows = t->kind == MHB_TRUNCATION_NEWTON && !t->by_broyden && !t->by_gmres;
+  const bool    knows = t->kind == MHB_TRUNCATION_NEWTON && !t->ring && !t->system->low_rank;
   double        column[n + 1], row[n + 1], *change = column;
   mhb_parameter parameter = b->parameter;
   if (!knows || !(size > 0)) return INFINITY;

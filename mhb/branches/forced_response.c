@@ -487,6 +487,15 @@ static shb_status take_curves(sweep *s) {
   return SHB_OK;
 }
 
+/* All branches have as many harmonics as the one with the most. */
+static shb_status widen_all(mhb_response *r) {
+  for (int i = 0; i < r->n_branches; i++)
+    if (r->branch[i].n_harmonics > r->n_harmonics) r->n_harmonics = r->branch[i].n_harmonics;
+  for (int i = 0; i < r->n_branches; i++)
+    SHB_TRY(mhb_response_widen(r, &r->branch[i], r->n_harmonics));
+  return SHB_OK;
+}
+
 /* A secondary branch that does not cover its range is noted in the file only. The sweep has its
  * main branches all the same. Branches 0 and 1 are the linear limits, which an outline has not. */
 static shb_status outcome(const mhb_response *response, const mhb_settings *settings) {
@@ -526,6 +535,7 @@ static shb_status all_curves(sweep *s, const modal_model *model, mhb_settings *s
   if (status == SHB_OK) status = lasting_motion(s, model);
   if (status == SHB_OK) s->response->unfinished = shb_interrupted() || settings->ring;
   if (status == SHB_OK) status = take_curves(s);
+  if (status == SHB_OK && !shb_interrupted()) status = widen_all(s->response);
   if (status == SHB_OK) status = mhb_modal_motion_keep(model, settings, s->response);
   if (alike) settings->alike = NULL;
   mhb_receptance_destroy(alike);
@@ -552,8 +562,9 @@ shb_status mhb_forced_response(const modal_model *model, const mhb_settings *ask
       .progress = progress,
       .main_share = settings->search.starts > 0 ? MAIN_SHARE : 1};
   mhb_publisher_start(&s.publisher, path, provenance);
-  s.response = mhb_response_create(model->n_pairs, model->n_probes, m[n_levels - 1]);
-  s.preload  = calloc((size_t)settings->n_preloads, sizeof *s.preload);
+  s.response =
+      mhb_response_create(model->n_pairs, model->n_probes, mhb_harmonic_levels_usual(n_levels, m));
+  s.preload = calloc((size_t)settings->n_preloads, sizeof *s.preload);
   shb_status status =
       s.response && s.preload ? SHB_OK : shb_fail(SHB_ERR_IO, __FILE__, __LINE__, "out of memory");
   if (status == SHB_OK) s.response->unfinished = true;

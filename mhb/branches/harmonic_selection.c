@@ -16,12 +16,17 @@ static const double FIRST_ORDER = 3;
 static const double NEARLY_ALL = 0.75;
 
 /* A move that ends farther off, relative to the motion, has met another branch. */
-static const double NEAR                  = 0.3;
-static const int    STEPS[MHB_MAX_LEVELS] = {1, 3, 5, 7, 9, 13, 17, 21, 31};
+static const double NEAR = 0.3;
+
+/* The order of a tail is known to this only (mhb/balance/truncation_error). */
+static const double ORDER_MARGIN          = 0.75;
+static const int    STEPS[MHB_MAX_LEVELS] = {1, 3, 5, 7, 9, 13, 17, 21, 31, 45, 63, 91, 127};
 enum {
-  LOWER_AFTER       = 3, /* points in a row that ask for a lower level */
-  LOWER_AFTER_ONSET = 6, /* more of them after the level was raised */
-  AT_ONSET          = 7  /* harmonics where slip begins */
+  AFFORDABLE        = 1600, /* unknowns of twice the harmonics: some 0.3 s a point */
+  N_USUAL           = 9,    /* steps up to MHB_USUAL_HARMONICS */
+  LOWER_AFTER       = 3,    /* points in a row that ask for a lower level */
+  LOWER_AFTER_ONSET = 6,    /* more of them after the level was raised */
+  AT_ONSET          = 7     /* harmonics where slip begins */
 };
 
 /* Highest harmonic of the fundamental that the load has, at least nu. */
@@ -36,17 +41,33 @@ static int load_harmonics(const modal_model *model, const mhb_settings *s) {
   return top * s->subharmonics;
 }
 
+/* The most harmonics that are affordable. */
+static int most_harmonics(const modal_model *model, const mhb_settings *s) {
+  const modal_nodal_diameters *d    = s->nodal_diameters;
+  const int                    rows = 3 * (model->n_pairs > 0 ? model->n_pairs : 1);
+  if (d && d->n <= d->blades / 2) return MHB_USUAL_HARMONICS;
+  return (int)fmin(MHB_MOST_HARMONICS, (AFFORDABLE / rows - 1) / 4);
+}
+
 int mhb_harmonic_levels_ladder(const modal_model *model, const mhb_settings *s,
                                int m[MHB_MAX_LEVELS]) {
   int n = 0, least = load_harmonics(model, s);
   m[0] = s->harmonics;
   if (!(s->motion_tolerance > 0)) return 1;
-  for (int i = 0; i < MHB_MAX_LEVELS; i++) {
-    int next = (int)fmin(MHB_MOST_HARMONICS, STEPS[i] * s->subharmonics);
+  for (int i = 0; i < N_USUAL; i++) {
+    int next = (int)fmin(MHB_USUAL_HARMONICS, STEPS[i] * s->subharmonics);
     if (next >= least && (n == 0 || next > m[n - 1])) m[n++] = next;
   }
   if (n == 0) m[n++] = least;
+  const int most = most_harmonics(model, s);
+  for (int i = N_USUAL; i < MHB_MAX_LEVELS; i++)
+    if (STEPS[i] > m[n - 1] && STEPS[i] <= most) m[n++] = STEPS[i];
   return n;
+}
+
+int mhb_harmonic_levels_usual(int n, const int *m) {
+  while (n > 1 && m[n - 1] > MHB_USUAL_HARMONICS) n--;
+  return m[n - 1];
 }
 
 static void level_destroy(mhb_harmonic_level *level) {
@@ -137,32 +158,51 @@ static double power(const double *x, int rows, int nb, int k) {
   return sum;
 }
 
-/* share[k] = |all harmonics above k|^2, k = 0..MHB_MOST_LOOKED_AT: the solution's up to m, the
- * estimate's beyond. */
-static void tail(const mhb_harmonic_level *level, const double *x, double *share) {
+/* share[k] = |all harmonics above k|^2, k = 1..top: the solution's up to m, the estimate's
+ * beyond. */
+static void tail(const mhb_harmonic_level *level, const double *x, int top, double *share) {
   const mhb_balance *b   = level->balance;
   double             sum = 0;
-  for (int k = MHB_MOST_LOOKED_AT; k > 0; k--) {
+  for (int k = top; k > 0; k--) {
     share[k] = sum;
     sum +=
         k <= b->m ? power(x, 3 * b->n_pairs, b->nb, k) : mhb_truncation_power(level->truncation, k);
   }
 }
 
-/* The lowest level that keeps the tolerance. Levels above the one in use need no margin. */
-static int choose(const mhb_harmonic_levels *h, const double *x, double error, double size) {
-  double share[MHB_MOST_LOOKED_AT + 1], tolerance = h->settings->motion_tolerance * size;
-  int    m = h->m[h->at];
-  tail(mhb_harmonic_levels_current(h), x, share);
-  double beyond = sqrt(share[m]), gain = beyond > 0 ? fmax(1, error * size / beyond) : 1;
-  int    enough = error * size <= SAFETY * tolerance;
-  for (int i = 0; i < h->n; i++) {
-    double promised = gain * sqrt(share[h->m[i]]);
-    if (i < h->at && promised <= DOWNWARD_MARGIN * tolerance) return i;
-    if (i == h->at && enough) return i;
-    if (i > h->at && (promised <= SAFETY * tolerance || h->m[i] > 2 * m)) return i;
-  }
+/* The level above the usual ones that an error asks for, excess times the tolerance with the
+ * harmonics in use. It falls like m^(2-p) at least (theory/balance.md, Tail and norms). Where the
+ * highest level is not foreseen to keep the tolerance the one in use stays. */
+static int choose_beyond(const mhb_harmonic_levels *h, double excess) {
+  const double order = mhb_harmonic_levels_current(h)->truncation->order;
+  const double m = h->m[h->at], top = h->m[h->n - 1];
+  const double rate = fmax(1, order - 2), best = fmax(1, order + ORDER_MARGIN - 2);
+  if (excess * pow(m / top, best) > 1) return h->at;
+  for (int i = h->at + 1; i < h->n; i++)
+    if (excess * pow(m / h->m[i], rate) <= 1 || h->m[i] > 2 * m) return i;
   return h->n - 1;
+}
+
+/* The lowest level that keeps the tolerance. Levels above the one in use need no margin. The usual
+ * levels are used up first. */
+static int choose(const mhb_harmonic_levels *h, const double *x, double error, double size) {
+  const int    m = h->m[h->at], top = mhb_truncation_highest(m);
+  const int    usual     = mhb_harmonic_levels_of(h, MHB_USUAL_HARMONICS);
+  const double tolerance = h->settings->motion_tolerance * size;
+  double       share[top + 1];
+  tail(mhb_harmonic_levels_current(h), x, top, share);
+  double beyond = sqrt(share[m]), gain = beyond > 0 ? fmax(1, error * size / beyond) : 1;
+  int    enough = error * size <= (h->at < usual ? SAFETY : 1) * tolerance;
+  for (int i = 0; i < h->at; i++)
+    if (gain * sqrt(share[h->m[i]]) <= DOWNWARD_MARGIN * tolerance) return i;
+  if (enough) return h->at;
+  for (int i = h->at + 1; i < usual; i++)
+    if (h->m[i] > 2 * m || gain * sqrt(share[h->m[i]]) <= SAFETY * tolerance) return i;
+  return h->at < usual ? usual : choose_beyond(h, error / h->settings->motion_tolerance);
+}
+
+bool mhb_harmonic_levels_all_usual(const mhb_harmonic_levels *h) {
+  return h->at >= mhb_harmonic_levels_of(h, MHB_USUAL_HARMONICS);
 }
 
 int mhb_harmonic_levels_most_unknowns(const mhb_harmonic_levels *h) {
@@ -232,13 +272,17 @@ void mhb_harmonic_levels_estimate(mhb_harmonic_levels *h, mhb_curve_point *point
   h->wanted = h->at;
   h->linear = point->truncation_kind == MHB_TRUNCATION_NONE;
   if (h->n == 1) return;
+  const mhb_truncation *t       = mhb_harmonic_levels_current(h)->truncation;
+  const bool            exceeds = point->miss > h->settings->motion_tolerance;
+  const bool            judges  = exceeds && mhb_harmonic_levels_all_usual(h);
+  if (judges && !t->by_broyden) mhb_harmonic_levels_miss(h, point);
   h->wanted  = choose(h, point->x, point->miss, mhb_balance_vibration(b, point->x));
   bool onset = h->from_linear || is_nearly_linear(point->evaluation, b->n_pairs);
   int  least = mhb_harmonic_levels_of(h, AT_ONSET * h->settings->subharmonics);
   if (!h->linear && onset && h->wanted < least) h->wanted = least;
   if (h->wanted < h->least) h->wanted = h->least;
-  const bool exceeds = point->miss > h->settings->motion_tolerance;
-  if (exceeds && h->at == h->n - 1) mhb_harmonic_levels_miss(h, point);
+  /* the curve is dear to look at where Broyden's method gave the estimate */
+  if (judges && t->by_broyden && h->wanted <= h->at) mhb_harmonic_levels_miss(h, point);
 }
 
 int mhb_harmonic_levels_of_event(mhb_harmonic_levels *h, mhb_curve_point *point) {

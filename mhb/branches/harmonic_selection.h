@@ -18,7 +18,8 @@
 #include "mhb/continuation/balance_curve.h"
 #include "mhb/continuation/events.h"
 
-enum { MHB_MAX_LEVELS = 9, MHB_MOST_HARMONICS = 31 };
+/* The ladder goes to MHB_USUAL_HARMONICS whatever the size, beyond where a point needs it. */
+enum { MHB_MAX_LEVELS = 13, MHB_USUAL_HARMONICS = 31, MHB_MOST_HARMONICS = 127 };
 
 typedef struct {
   mhb_settings       settings;
@@ -47,10 +48,15 @@ typedef struct {
 } mhb_harmonic_levels;
 
 /* The numbers of harmonics a sweep may use, rising: 1, 3, 5, 7, 9, 13, 17, 21, 31 (times the
- * subharmonics, 31 at most) from the load's highest harmonic on. One, if they are not to be chosen.
- * Returns how many. */
+ * subharmonics, 31 at most) from the load's highest harmonic on. 45, 63, 91, 127 follow as far as
+ * they are affordable: 127 for one pair, 63 for two, none for more. The balance of twice as many
+ * has 1600 unknowns at most. A disc of which nodal diameters are missing has none of these. One, if
+ * they are not to be chosen. Returns how many. */
 int mhb_harmonic_levels_ladder(const modal_model *model, const mhb_settings *settings,
                                int m[MHB_MAX_LEVELS]);
+
+/* Of a ladder, the highest of the usual ones; the only one if none is. */
+int mhb_harmonic_levels_usual(int n, const int *m);
 
 /* Starts at the given balance, which must outlive it, with its settings, operating point and
  * parameter. SHB_ERR_IO: no memory. */
@@ -66,6 +72,9 @@ int mhb_harmonic_levels_of(const mhb_harmonic_levels *levels, int m);
 static inline mhb_harmonic_level *mhb_harmonic_levels_current(const mhb_harmonic_levels *levels) {
   return levels->level[levels->at];
 }
+
+/* Whether no usual level is above the one in use. */
+bool mhb_harmonic_levels_all_usual(const mhb_harmonic_levels *levels);
 
 /* Unknowns at the highest level. */
 int mhb_harmonic_levels_most_unknowns(const mhb_harmonic_levels *levels);

@@ -390,7 +390,7 @@ static shb_status prepare(main_branch *m, mhb_balance *balance, int least,
   return SHB_OK;
 }
 
-/* Where an attempt ends without a point the most harmonics are tried. Where those give none either
+/* Where an attempt ends without a point the most usual ones are tried. Where those give none either
  * the fewest are taken, however large their estimates are. */
 static bool found_nothing(const main_branch *m) {
   return n_points(m) == 0 && m->n_detached == 0 && !m->stopped;
@@ -409,11 +409,11 @@ static shb_status trace_with_enough(main_branch *m, mhb_balance *balance,
     m->tracer->accepts_all = accepts_all;
     SHB_TRY(attempt(m, stable_at, end));
     const bool nothing = least > 0 && found_nothing(m) && !m->tracer->accepts_all;
-    const int  top     = m->tracer->levels->n - 1;
+    const int  usual   = mhb_harmonic_levels_of(m->tracer->levels, MHB_USUAL_HARMONICS);
     again              = m->needed > least || nothing;
     if (!again) break;
-    accepts_all = nothing && least == top;
-    least       = accepts_all ? 0 : nothing ? top : m->needed;
+    accepts_all = nothing && least == usual;
+    least       = accepts_all ? 0 : nothing ? usual : m->needed;
     earlier     = NULL;
     discard(m);
   }

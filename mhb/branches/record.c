@@ -5,6 +5,7 @@
 
 #include "mesh/base/constants.h"
 #include "mhb/search/ring_motion.h"
+#include "mhb/structure/ring_receptance.h"
 
 static void record_signals(mhb_response *response, mhb_branch *branch, int point,
                            const mhb_balance *b, const double *x) {
@@ -32,14 +33,30 @@ static bool is_at_limit(const mhb_balance *b, int a) {
   return info->share[MHB_STICK] == 1 && info->undetermined && (p[b->nb] != 0 || p[2 * b->nb] != 0);
 }
 
-/* Some pair sticks throughout although it can slip. */
+/* A pair sticks throughout although it can slip. */
+static bool has_free_mean(const mhb_balance *b, int a) {
+  const mhb_law *law = &b->law[a];
+  return law->mu > 0 && (law->ku[0] > 0 || law->ku[2] > 0) && b->eval->info[a].undetermined;
+}
+
+/* The mean friction of a pair that sticks loads others: one that moves, or pairs that touch on the
+ * same contact. Alone on its contact, with all others stuck or open, it changes no motion. */
 static bool has_undetermined_friction(const mhb_balance *b) {
-  for (int a = 0; a < b->n_pairs; a++) {
-    const mhb_law *law = &b->law[a];
-    if (law->mu > 0 && (law->ku[0] > 0 || law->ku[2] > 0) && b->eval->info[a].undetermined)
-      return true;
+  const mhb_ring_receptance *ring   = b->receptance->ring;
+  const int                  own    = ring ? ring->ring->n_pairs : b->n_pairs; /* of a contact */
+  bool                       sticks = false, moves = false, shares = false;
+  for (int first = 0; first < b->n_pairs; first += own) {
+    int touch = 0, stuck = 0;
+    for (int a = first; a < first + own; a++) {
+      const mhb_contact_info *info = &b->eval->info[a];
+      touch += info->share[MHB_SEPARATE] < 1;
+      stuck += has_free_mean(b, a);
+      moves = moves || (info->share[MHB_SEPARATE] < 1 && info->share[MHB_STICK] < 1);
+    }
+    sticks = sticks || stuck > 0;
+    shares = shares || (stuck > 0 && touch > 1);
   }
-  return false;
+  return shares || (sticks && moves);
 }
 
 static int mark_of(const mhb_balance *b, const mhb_curve_point *point) {
@@ -77,6 +94,7 @@ shb_status mhb_record(mhb_response *response, int index, mhb_balance *b,
                       const mhb_curve_point *point, int special, double seconds) {
   int at;
   mhb_balance_use(b, point->evaluation);
+  SHB_TRY(mhb_response_widen(response, &response->branch[index], b->m));
   SHB_TRY(mhb_response_point(response, index, &at));
   mhb_branch *branch    = &response->branch[index];
   branch->frequency[at] = b->eval->at.omega / SHB_TWO_PI;

@@ -69,10 +69,10 @@ static void problem_destroy(subharmonic_problem *s) {
   free(s);
 }
 
-/* Highest harmonic that a branch of this order may have. */
-static int most_harmonics(const branch_search *h, const subharmonic_problem *s) {
+/* Harmonics that a branch of this order has room for from the start. */
+static int usual_harmonics(const branch_search *h, const subharmonic_problem *s) {
   int m[MHB_MAX_LEVELS], n = mhb_harmonic_levels_ladder(h->model, &s->settings, m);
-  return m[n - 1];
+  return mhb_harmonic_levels_usual(n, m);
 }
 
 static int search_harmonics(const branch_search *h, const subharmonic_problem *s) {
@@ -181,7 +181,7 @@ static shb_status append(branch_search *h, const subharmonic_problem *s, mhb_ori
   mhb_branch *b  = branch_at(h, *index);
   b->origin      = origin;
   b->order       = s->order;
-  b->n_harmonics = most_harmonics(h, s);
+  b->n_harmonics = usual_harmonics(h, s);
   b->main        = 0;
   return SHB_OK;
 }

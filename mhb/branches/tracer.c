@@ -82,8 +82,8 @@ static shb_status estimate(mhb_segment_host *host, mhb_curve_point *point, bool 
   SHB_TRY(mhb_harmonic_levels_move(t->levels, higher, is_start, raised));
   use_level(t);
   if (!*raised) mhb_harmonic_levels_miss(t->levels, point);
-  host->out_of_reach =
-      !*raised && !t->accepts_all && !(point->miss <= t->levels->settings->motion_tolerance);
+  host->out_of_reach = !*raised && !t->accepts_all && !mhb_harmonic_levels_all_usual(t->levels) &&
+                       !(point->miss <= t->levels->settings->motion_tolerance);
   return *raised && is_start && t->returns_to_start ? note_start(t) : SHB_OK;
 }
 
@@ -431,13 +431,12 @@ static shb_status take_segment(mhb_tracer *t, int i) {
   const mhb_response *segments = t->earlier->segments;
   const mhb_branch   *from     = &segments->branch[i];
   mhb_trace_state     state    = t->earlier->state[i];
-  bool                fits     = from->n_harmonics == t->store->n_harmonics;
   state.at                     = 0;
   state.reads                  = true;
-  if (fits && from->n_points > 0)
+  if (from->n_points > 0)
     SHB_TRY(mhb_response_copy_points(t->store, i, segments, i, 0, from->n_points - 1));
-  if (fits) SHB_TRY(pass_state(&state, t));
-  SHB_CHECK(fits && !state.failed && state.at == state.n, SHB_ERR_INPUT,
+  SHB_TRY(pass_state(&state, t));
+  SHB_CHECK(!state.failed && state.at == state.n, SHB_ERR_INPUT,
             "the curve under way of the earlier response file does not fit; run with --force");
   return SHB_OK;
 }

@@ -354,6 +354,18 @@ static shb_status read_kind(hid_t group, const char *path, int index, mhb_branch
   return SHB_OK;
 }
 
+/* Harmonics of a branch or segment, where they are not those of the root. */
+static shb_status read_scale(hid_t group, const char *path, int index, mhb_branch *branch) {
+  h5_shape harmonic;
+  if (!h5_exists(group, "harmonic")) return SHB_OK;
+  SHB_TRY(h5_shape_of(group, "harmonic", &harmonic));
+  SHB_CHECK(harmonic.rank == 1 && harmonic.dim[0] >= 1 && harmonic.dim[0] <= MHB_MOST_ENTRIES,
+            SHB_ERR_INPUT, "%s: /branch_%d/harmonic must be a list of 1 to %d", path, index,
+            MHB_MOST_ENTRIES);
+  branch->n_harmonics = (int)harmonic.dim[0] - 1;
+  return SHB_OK;
+}
+
 /* Files of earlier versions have none of these: a branch is its own main one, with the order of the
  * file. */
 static shb_status read_descent(hid_t group, const char *path, int index, mhb_branch *branch) {
@@ -373,14 +385,7 @@ static shb_status read_descent(hid_t group, const char *path, int index, mhb_bra
             path, index, branch->order, branch->main, index);
   branch->origin   = (mhb_origin)origin;
   branch->searched = searched != 0;
-  if (!h5_exists(group, "harmonic")) return SHB_OK;
-  h5_shape harmonic;
-  SHB_TRY(h5_shape_of(group, "harmonic", &harmonic));
-  SHB_CHECK(harmonic.rank == 1 && harmonic.dim[0] >= 1 && harmonic.dim[0] <= MHB_MOST_ENTRIES,
-            SHB_ERR_INPUT, "%s: /branch_%d/harmonic must be a list of 1 to %d", path, index,
-            MHB_MOST_ENTRIES);
-  branch->n_harmonics = (int)harmonic.dim[0] - 1;
-  return SHB_OK;
+  return read_scale(group, path, index, branch);
 }
 
 /* Files of earlier versions have none. */
@@ -506,9 +511,9 @@ static shb_status read_segment(hid_t resume, const char *path, int index,
     unfinished->state[unfinished->n++] = state;
     status = mhb_response_branch(unfinished->segments, MHB_BRANCH_NONLINEAR, &at);
   }
-  if (status == SHB_OK)
-    status =
-        read_points(group, path, index, unfinished->segments, &unfinished->segments->branch[at]);
+  mhb_branch *segment = status == SHB_OK ? &unfinished->segments->branch[at] : NULL;
+  if (segment) status = read_scale(group, path, index, segment);
+  if (status == SHB_OK) status = read_points(group, path, index, unfinished->segments, segment);
   H5Gclose(group);
   return status;
 }
@@ -532,7 +537,6 @@ static shb_status read_unfinished(hid_t group, const char *path, int index,
   if (version != MHB_TRACE_STATE_VERSION || n < 1 || n > MHB_MOST_ENTRIES) return SHB_OK;
   branch->unfinished = mhb_unfinished_create(response);
   SHB_CHECK(branch->unfinished, SHB_ERR_IO, "%s: no memory", path);
-  branch->unfinished->segments->n_harmonics  = branch->n_harmonics;
   branch->unfinished->segments->subharmonics = branch->order;
   SHB_TRY(open_group(group, path, "resume", &resume));
   shb_status status = read_segments(resume, path, index, n, branch->unfinished);

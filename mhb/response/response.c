@@ -216,20 +216,54 @@ void mhb_response_place(mhb_response *response, int branch, int at) {
              (size_t)at, (size_t)b->n_points);
 }
 
+/* to <- `rows` rows of harmonics, `after` bytes each, of which `before` are given. From the last
+ * on: both may begin at the same place. */
+static void spread(char *to, size_t after, const char *from, size_t before, size_t rows) {
+  for (size_t i = rows; i-- > 0;) {
+    memmove(to + i * after, from + i * before, before);
+    memset(to + i * after + before, 0, after - before);
+  }
+}
+
+/* Bytes of the harmonics of one row; 0: the field has none. */
+static size_t harmonics_of(const mhb_branch *branch, const mhb_field *f) {
+  return strchr(f->dims, 'k') ? ((size_t)branch->n_harmonics + 1) * mhb_field_bytes(f->kind) : 0;
+}
+
+shb_status mhb_response_widen(const mhb_response *response, mhb_branch *branch, int n_harmonics) {
+  mhb_branch wide  = *branch;
+  wide.n_harmonics = n_harmonics;
+  for (int i = 0; i < MHB_N_FIELDS && branch->n_harmonics < n_harmonics; i++) {
+    const mhb_field *f      = &mhb_fields[i];
+    const size_t     before = harmonics_of(branch, f), after = harmonics_of(&wide, f);
+    if (before == 0 || !mhb_field_kept(response, branch, f) || branch->capacity == 0) continue;
+    const size_t row  = mhb_field_row(response, branch, f) / before; /* rows of a point */
+    char        *data = realloc(mhb_field_get(branch, f), (size_t)branch->capacity * row * after);
+    SHB_CHECK(data, SHB_ERR_IO, "no memory for %d harmonics", n_harmonics);
+    mhb_field_set(branch, f, data);
+    spread(data, after, data, before, (size_t)branch->n_points * row);
+  }
+  if (branch->n_harmonics < n_harmonics) branch->n_harmonics = n_harmonics;
+  return SHB_OK;
+}
+
 shb_status mhb_response_copy_points(mhb_response *to, int to_branch, const mhb_response *from,
                                     int from_branch, int first, int last) {
   const mhb_branch *a    = &from->branch[from_branch];
   mhb_branch       *b    = &to->branch[to_branch];
   int               step = first <= last ? 1 : -1;
+  SHB_TRY(mhb_response_widen(to, b, a->n_harmonics));
   for (int i = first; i != last + step; i += step) {
     int point;
     SHB_TRY(mhb_response_point(to, to_branch, &point));
     for (int k = 0; k < MHB_N_FIELDS; k++) {
       const mhb_field *f = &mhb_fields[k];
       if (!mhb_field_kept(to, b, f)) continue;
-      size_t row = mhb_field_row(to, b, f);
-      memcpy((char *)mhb_field_get(b, f) + (size_t)point * row,
-             (char *)mhb_field_get(a, f) + (size_t)i * row, row);
+      const size_t row = mhb_field_row(to, b, f), own = mhb_field_row(from, a, f);
+      const size_t before = own == row ? row : harmonics_of(a, f);
+      const size_t after  = own == row ? row : harmonics_of(b, f);
+      spread((char *)mhb_field_get(b, f) + (size_t)point * row, after,
+             (char *)mhb_field_get(a, f) + (size_t)i * own, before, row / after);
     }
   }
   return SHB_OK;
@@ -387,7 +421,12 @@ bool mhb_branch_marked(const mhb_branch *branch, int point) {
 }
 
 mhb_marks mhb_response_marks(const mhb_response *response) {
-  mhb_marks marks = {0};
+  mhb_marks          marks = {0};
+  const mhb_samples *s     = response->samples;
+  for (int i = 0; s && i < s->preloads; i++) {
+    marks.samples += mhb_samples_done(s, i);
+    marks.marked_samples += mhb_samples_marked(s, i);
+  }
   for (int i = 0; i < response->n_branches; i++) {
     const mhb_branch *b = &response->branch[i];
     if (b->kind != MHB_BRANCH_NONLINEAR && b->kind != MHB_BRANCH_TRACKED) continue;

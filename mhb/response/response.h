@@ -40,10 +40,13 @@ shb_status mhb_response_point(mhb_response *response, int branch, int *point);
 /* Moves the last point of a branch to place at; those from there on move up by one. */
 void mhb_response_place(mhb_response *response, int branch, int at);
 /* Appends points first..last of a branch of another response of the same shape, in this order: from
- * the last to the first if first > last. Both branches have as many harmonics. SHB_ERR_IO: no
+ * the last to the first if first > last. A branch of fewer harmonics is widened. SHB_ERR_IO: no
  * memory. */
 shb_status mhb_response_copy_points(mhb_response *to, int to_branch, const mhb_response *from,
                                     int from_branch, int first, int last);
+/* A branch gets room for so many harmonics; those it has not are 0. It may have no modal amplitudes
+ * yet. SHB_ERR_IO: no memory. */
+shb_status mhb_response_widen(const mhb_response *response, mhb_branch *branch, int n_harmonics);
 /* Appends a search to the records of a branch. SHB_ERR_IO: no memory. */
 shb_status mhb_response_note_search(mhb_branch *branch, const mhb_search *search);
 /* to <- the text and the sweep of the motion that lasts; those it had are freed. SHB_ERR_IO: no
@@ -80,11 +83,13 @@ shb_status mhb_response_write(const mhb_response *response, const char *path,
                               const shb_provenance *provenance);
 shb_status mhb_response_read(const char *path, mhb_response **response);
 
-/* Points of the balance whose error is above the tolerance, of all branches. */
+/* Points of the balance whose error is above the tolerance, of all branches. Samples of random
+ * rings whose peak is such a point, of all preloads. */
 typedef struct {
   int    points, marked;
-  double largest;   /* error_truncation of a marked one */
-  int    harmonics; /* most of a marked one; 0: not known */
+  int    samples, marked_samples; /* done; of them */
+  double largest;                 /* error_truncation of a marked one */
+  int    harmonics;               /* most of a marked one; 0: not known */
 } mhb_marks;
 
 mhb_marks mhb_response_marks(const mhb_response *response);

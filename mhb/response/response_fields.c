@@ -35,12 +35,13 @@ const mhb_field mhb_fields[] = {
      "estimated error of the contact force's harmonics, relative to the motion"},
     {"error/modal", "", MHB_DOUBLE, AT(error_modal), "-",
      "estimated error from the modes left out, their damping with them, relative to the "
-     "vibration"},
+     "vibration: the root-mean-square over the period of the error over that of the motion"},
     {"mark", "", MHB_INT, AT(mark), "-",
      "what the point is not worth, a sum: 1 error/truncation, threefold where it is of first "
      "order, "
      "is above the tolerance asked for, and beside a fold the curve misses it too; 2 a "
-     "contact sticks all the time: nothing determines its mean friction; 4 the error is not "
+     "contact sticks all the time: nothing determines its mean friction, which loads others; 4 the "
+     "error is not "
      "judged"},
     /* N_TRACKED: of tracked flips and Neimark-Sacker points */
     {"multiplier", "", MHB_COMPLEX, AT(multiplier), "-",

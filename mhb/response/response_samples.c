@@ -1,6 +1,7 @@
 #include "mhb/response/response_samples.h"
 
 #include <math.h>
+#include <stdbool.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -20,7 +21,8 @@ shb_status mhb_samples_create(int n, int preloads, int blades, mhb_samples **out
   s->factor        = calloc(all, sizeof(double));
   s->frequency     = calloc(all, sizeof(double));
   s->blade         = calloc(all, sizeof(int));
-  if (s->n0 && s->deviation && s->factor && s->frequency && s->blade) {
+  s->mark          = calloc(all, sizeof(int));
+  if (s->n0 && s->deviation && s->factor && s->frequency && s->blade && s->mark) {
     *out = s;
     return SHB_OK;
   }
@@ -35,6 +37,7 @@ void mhb_samples_destroy(mhb_samples *s) {
   free(s->factor);
   free(s->frequency);
   free(s->blade);
+  free(s->mark);
   free(s);
 }
 
@@ -48,11 +51,21 @@ int mhb_samples_done(const mhb_samples *s, int preload) {
   return done;
 }
 
+static bool is_result(const mhb_samples *s, int preload, int i) {
+  return factors_of(s, preload)[i] > 0 && !s->mark[(size_t)preload * (size_t)s->n + (size_t)i];
+}
+
+int mhb_samples_marked(const mhb_samples *s, int preload) {
+  int results = 0;
+  for (int i = 0; i < s->n; i++) results += is_result(s, preload, i);
+  return mhb_samples_done(s, preload) - results;
+}
+
 int mhb_samples_worst(const mhb_samples *s, int preload) {
   const double *factor = factors_of(s, preload);
   int           worst  = -1;
   for (int i = 0; i < s->n; i++)
-    if (factor[i] > 0 && (worst < 0 || factor[i] > factor[worst])) worst = i;
+    if (is_result(s, preload, i) && (worst < 0 || factor[i] > factor[worst])) worst = i;
   return worst;
 }
 
@@ -86,21 +99,22 @@ static void ranks(int n, double p, int *low, int *high) {
   }
 }
 
+/* A marked sample counts as the least of all for the lower bound, as the largest for the upper. */
 void mhb_samples_quantile(const mhb_samples *s, int preload, double p, double out[3]) {
-  const int n = mhb_samples_done(s, preload);
+  const int n = mhb_samples_done(s, preload), marked = mhb_samples_marked(s, preload);
   double   *x = malloc(sizeof *x * (size_t)(n + 1));
   int       low, high, m = 0;
   out[0] = out[1] = out[2] = NAN;
   for (int i = 0; x && i < s->n; i++)
-    if (factors_of(s, preload)[i] > 0) x[m++] = factors_of(s, preload)[i];
-  if (x && n > 0) {
-    qsort(x, (size_t)n, sizeof *x, by_value);
-    const double at = p * (n - 1), part = at - floor(at);
+    if (is_result(s, preload, i)) x[m++] = factors_of(s, preload)[i];
+  if (m > 0) {
+    qsort(x, (size_t)m, sizeof *x, by_value);
+    const double at = p * (m - 1), part = at - floor(at);
     const int    i = (int)at;
-    out[0]         = i + 1 < n ? (1 - part) * x[i] + part * x[i + 1] : x[n - 1];
+    out[0]         = i + 1 < m ? (1 - part) * x[i] + part * x[i + 1] : x[m - 1];
     ranks(n, p, &low, &high);
-    if (low > 0) out[1] = x[low - 1];
-    if (high > 0) out[2] = x[high - 1];
+    if (low > marked) out[1] = x[low - 1 - marked];
+    if (high > 0 && high <= m) out[2] = x[high - 1];
   }
   free(x);
 }
@@ -120,11 +134,13 @@ static shb_status write_distribution(hid_t file, const mhb_samples *s) {
     if (isnan(all[i])) all[i] = 0;
   SHB_TRY(h5_write_double(file, "/samples/quantile", H5_SHAPE(QUANTILES), QUANTILE, "-",
                           "of the amplification factor"));
-  SHB_TRY(h5_write_double(file, "/samples/distribution", H5_SHAPE(preloads, QUANTILES, 3), all, "-",
-                          "quantiles of the amplification factor: value, lower and upper bound of "
-                          "95 % confidence; 0: too few samples"));
+  SHB_TRY(h5_write_double(
+      file, "/samples/distribution", H5_SHAPE(preloads, QUANTILES, 3), all, "-",
+      "quantiles of the amplification factor: value of the samples not marked, lower "
+      "and upper bound of 95 % confidence wherever the marked ones are; 0: too "
+      "few samples"));
   return h5_write_int(file, "/samples/worst", H5_SHAPE(preloads), worst, "-",
-                      "sample with the largest factor, from 0; -1: none is done");
+                      "sample with the largest factor, from 0, of those not marked; -1: none");
 }
 
 shb_status mhb_samples_write(hid_t file, const mhb_samples *s) {
@@ -138,6 +154,9 @@ shb_status mhb_samples_write(hid_t file, const mhb_samples *s) {
                           "where the worst blade is highest"));
   SHB_TRY(h5_write_int(file, "/samples/blade", H5_SHAPE(preloads, n), s->blade, "-",
                        "the worst blade, from 0"));
+  SHB_TRY(h5_write_int(file, "/samples/mark", H5_SHAPE(preloads, n), s->mark, "-",
+                       "1: the estimated error of the peak, or of the tuned one, is above the "
+                       "tolerance; the sample is no result"));
   return write_distribution(file, s);
 }
 
@@ -152,7 +171,7 @@ static shb_status read_into(hid_t file, const char *name, h5_shape shape, double
 
 static shb_status read_all(hid_t file, mhb_samples *s) {
   h5_shape table = H5_SHAPE((hsize_t)s->preloads, (hsize_t)s->n);
-  int     *blade;
+  int     *blade, *mark;
   SHB_TRY(read_into(file, "/samples/n0", H5_SHAPE((hsize_t)s->preloads), s->n0));
   SHB_TRY(read_into(file, "/samples/deviation", H5_SHAPE((hsize_t)s->n, (hsize_t)s->blades),
                     s->deviation));
@@ -161,6 +180,10 @@ static shb_status read_all(hid_t file, mhb_samples *s) {
   SHB_TRY(h5_read_int(file, "/samples/blade", &table, &blade));
   memcpy(s->blade, blade, sizeof *blade * h5_count(table));
   free(blade);
+  if (!h5_exists(file, "/samples/mark")) return SHB_OK; /* earlier versions */
+  SHB_TRY(h5_read_int(file, "/samples/mark", &table, &mark));
+  memcpy(s->mark, mark, sizeof *mark * h5_count(table));
+  free(mark);
   return SHB_OK;
 }
 

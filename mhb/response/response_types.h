@@ -46,7 +46,7 @@ enum {
 /* mark of mhb_branch, a sum: what a point is not worth. */
 enum {
   MHB_ABOVE_TOLERANCE       = 1, /* error_truncation is above the tolerance: it is no result */
-  MHB_TRACTION_UNDETERMINED = 2, /* a contact sticks throughout: so is its mean friction */
+  MHB_TRACTION_UNDETERMINED = 2, /* a mean friction that loads others is (it sticks throughout) */
   MHB_ERROR_NOT_JUDGED      = 4,
   MHB_ALL_MARKS             = 7
 };

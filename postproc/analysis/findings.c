@@ -428,7 +428,7 @@ static void put_undetermined(const mhb_response *r, post_buffer *out) {
       points += (r->branch[b].mark[p] & MHB_TRACTION_UNDETERMINED) != 0;
   if (points > 0)
     post_put(out,
-             "<li><b>Not determined:</b> at %d points a contact sticks all the time. Nothing "
+             "<li><b>Not determined:</b> at %d points a contact sticks while others touch. Nothing "
              "determines its mean friction; the smallest is taken. Where others slip or open "
              "meanwhile, the amplitude depends on it too.</li>\n",
              points);

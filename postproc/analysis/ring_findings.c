@@ -41,11 +41,18 @@ static void put_bounds(const double bounds[2], int samples, post_buffer *out) {
 /* "n0 = 12 N: median 1.2 (1.1 to 1.3), 95 % quantile 1.4 (1.3 to 1.6)": one item a preload. */
 static void put_samples(const mhb_samples *s, int preload, post_buffer *out) {
   char      text[POST_NUMBER], n0[POST_NUMBER];
-  const int done = mhb_samples_done(s, preload);
+  const int done = mhb_samples_done(s, preload), marked = mhb_samples_marked(s, preload);
   double    median[3], high[3];
   mhb_samples_quantile(s, preload, 0.5, median);
   mhb_samples_quantile(s, preload, 0.95, high);
   const int worst = mhb_samples_worst(s, preload);
+  if (marked > 0)
+    post_put(
+        out,
+        "<li class=\"caution\"><b>Marked:</b> of %d random rings with n0 = %s\u00a0N the peaks "
+        "of %d have an estimated error above <code>mhb.tolerance</code>. Their factors may be "
+        "any, and bounds allow for that.</li>\n",
+        done, post_plain(n0, s->n0[preload], 4), marked);
   if (worst < 0) return;
   post_put(out, "<li>%d random rings, n0 = %s\u00a0N: the factor's median is %s", done,
            post_plain(n0, s->n0[preload], 4), post_plain(text, median[0], 4));

@@ -17,7 +17,7 @@ int post_factor_corners(const mhb_samples *s, int preload, double *x, double *sh
   int n = 0;
   for (int i = 0; i < s->n; i++) {
     const double factor = s->factor[preload * s->n + i];
-    if (factor > 0) x[n++] = factor;
+    if (factor > 0 && !s->mark[preload * s->n + i]) x[n++] = factor;
   }
   qsort(x, (size_t)n, sizeof *x, ascending);
   for (int i = n - 1; i >= 0;
@@ -35,11 +35,12 @@ static int extent(const mhb_samples *s, double range[2]) {
   range[0] = INFINITY;
   range[1] = -INFINITY;
   for (int i = 0; i < s->n * s->preloads; i++) {
-    if (!(s->factor[i] > 0)) continue;
+    if (!(s->factor[i] > 0) || s->mark[i]) continue;
     range[0] = fmin(range[0], s->factor[i]);
     range[1] = fmax(range[1], s->factor[i]);
   }
-  for (int p = 0; p < s->preloads; p++) most = (int)fmax(most, mhb_samples_done(s, p));
+  for (int p = 0; p < s->preloads; p++)
+    most = (int)fmax(most, mhb_samples_done(s, p) - mhb_samples_marked(s, p));
   return most;
 }
 

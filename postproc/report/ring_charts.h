@@ -11,7 +11,7 @@
 void post_put_blades(const mhb_response *response, post_buffer *out);
 
 /* Corners of the share of rings whose factor is at most x. It rises by 1/n at each of the n factors
- * of a preload that are done.
+ * of a preload that are done and not marked.
  *   x, share  out  [2 samples->n]
  * Returns the number of corners, 2 n; 0 without factors. */
 int post_factor_corners(const mhb_samples *samples, int preload, double *x, double *share);

@@ -157,6 +157,7 @@ static void put_samples(const work *w) {
     post_json_object(w->json, NULL);
     post_json_number(w->json, "n0", s->n0[i]);
     post_json_integer(w->json, "samples", mhb_samples_done(s, i));
+    post_json_integer(w->json, "marked", mhb_samples_marked(s, i));
     for (int q = 0; q < 3; q++) {
       double value[3];
       mhb_samples_quantile(s, i, quantile[q].p, value);

@@ -133,6 +133,36 @@ static void a_sweep_without_its_peaks_is_unfinished(void **state) {
   modal_model_free(&blade);
 }
 
+/* No number of harmonics keeps the tolerance: samples are marked, not silent results. */
+static void samples_above_the_tolerance_are_marked(void **state) {
+  double             deviation[N];
+  modal_model        blade;
+  mhb_settings       s;
+  mhb_response      *r;
+  mhb_mistuned_ring *ring  = drawn_ring(&blade, deviation, &s);
+  shb_progress       quiet = shb_progress_start("test", true, false);
+  (void)state;
+  r               = solve(&blade, deviation, NULL, NULL);
+  const double at = r->branch[2].amplification.worst_at;
+  mhb_response_destroy(r);
+  s.frequency[0] = 0.99 * at;
+  s.frequency[1] = 1.01 * at;
+  for (int i = 0; i < 2; i++) {
+    s.motion_tolerance = i ? 1e-2 : 1e-9;
+    assert_ok(mhb_ring_response(&s, &SAMPLING, NULL, &NONE, &quiet, &r));
+    const mhb_marks marks = mhb_response_marks(r);
+    print_message("tolerance %.0e: %d of %d samples marked\n", s.motion_tolerance,
+                  marks.marked_samples, marks.samples);
+    assert_int_equal(r->branch[2].amplification.factor > 0, i); /* that of the ring itself */
+    assert_int_equal(marks.samples, SAMPLES);
+    assert_int_equal(marks.marked_samples, i ? 0 : SAMPLES);
+    assert_int_equal(mhb_samples_worst(r->samples, 0) < 0, !i);
+    mhb_response_destroy(r);
+  }
+  mhb_mistuned_ring_destroy(ring);
+  modal_model_free(&blade);
+}
+
 /* Interrupted before its samples, a run keeps those of the file. The last test: the mark of the
  * interruption stays. */
 static void samples_outlive_an_interruption(void **state) {
@@ -161,6 +191,7 @@ int main(void) {
   const struct CMUnitTest tests[] = {cmocka_unit_test(equal_blades_have_the_factor_one),
                                      cmocka_unit_test(samples_are_taken_up),
                                      cmocka_unit_test(a_sweep_without_its_peaks_is_unfinished),
+                                     cmocka_unit_test(samples_above_the_tolerance_are_marked),
                                      cmocka_unit_test(samples_outlive_an_interruption)};
   return cmocka_run_group_tests(tests, scratch_make, scratch_remove);
 }

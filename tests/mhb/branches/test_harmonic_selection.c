@@ -24,7 +24,7 @@
 
 static const double TOLERANCE = 1e-4;
 
-enum { FINE = MHB_MOST_HARMONICS, MAX_POINTS = 3000 };
+enum { FINE = MHB_USUAL_HARMONICS, MAX_POINTS = 3000 };
 
 /* The main branch; seconds of the better of two runs. */
 static mhb_response *follow(const modal_model *model, const mhb_settings *s, int most,
@@ -40,12 +40,12 @@ static mhb_response *follow(const modal_model *model, const mhb_settings *s, int
   return response;
 }
 
-enum { BEFORE = 7 };
+enum { BEFORE = 7, BESIDE = 2 };
 
-/* True errors of a branch, by solutions of 31 harmonics at its frequencies. */
+/* True errors of a branch, by solutions of 31 harmonics or more at its frequencies. */
 typedef struct {
   int    n, lost, within; /* points compared; without a counterpart near by; within the tolerance */
-  double worst, fold;     /* largest error off folds, at folds */
+  double worst, fold;     /* largest error off folds, beside them */
   int    folds, peaks, most; /* most: harmonics */
   int    linear, wasteful;   /* linear points; those inside a row with more harmonics than needed */
 } truth;
@@ -68,14 +68,22 @@ static void count_kinds(const mhb_branch *b, int p, truth *out) {
   out->wasteful += settled && b->harmonics[p] > 1;
 }
 
+/* There the error at a frequency has no bound, and the distance of the curve counts. */
+static bool is_beside_fold(const mhb_branch *b, int p) {
+  for (int i = p - BESIDE; i <= p + BESIDE; i++)
+    if (i >= 0 && i < b->n_points && b->special[i] == MHB_FOLD) return true;
+  return false;
+}
+
 static truth compare(const modal_model *model, mhb_settings s, const mhb_response *r) {
   const mhb_branch *b = &r->branch[0];
-  int               K = r->n_harmonics + 1, nb = mhb_real_size(FINE), iterations;
+  const int         m = b->n_harmonics > FINE ? b->n_harmonics : FINE;
+  int               K = b->n_harmonics + 1, nb = mhb_real_size(m), iterations;
   double            x[3 * nb], fine[3 * nb];
   mhb_balance      *residual;
   mhb_newton       *newton;
   truth             out = {.n = 0};
-  s.harmonics           = FINE;
+  s.harmonics           = m;
   assert_int_equal(mhb_balance_create(model, &s, &residual), SHB_OK);
   mhb_balance_set_preload(residual, s.n0[0]);
   assert_int_equal(mhb_newton_create(residual->n, &newton), SHB_OK);
@@ -94,7 +102,7 @@ static truth compare(const modal_model *model, mhb_settings s, const mhb_respons
     }
     out.n++;
     out.within += error <= TOLERANCE;
-    double *worst = b->special[p] == MHB_FOLD ? &out.fold : &out.worst;
+    double *worst = is_beside_fold(b, p) ? &out.fold : &out.worst;
     *worst        = fmax(*worst, error);
   }
   mhb_newton_destroy(newton);
@@ -229,30 +237,33 @@ static void a_curve_of_few_harmonics_is_left_where_it_is_none_of_many(void **sta
   }
 }
 
-/* 31 harmonics do not keep 1e-7: the points that miss it are marked, the linear ones are not. */
+/* 127 harmonics do not keep 1e-10, which 31 foresee: the points that miss it are marked and have no
+ * more, the linear ones are not. */
 static void what_no_level_keeps_is_marked(void **state) {
   (void)state;
   modal_model   model;
   mhb_response *r;
   three_degree_model(&model);
   mhb_settings s     = ground_settings(0.4, 0.8, 0.5, 0.3, 1);
-  s.motion_tolerance = 1e-7;
-  s.frequency[0]     = 0.8 / SHB_TWO_PI;
-  s.frequency[1]     = 1.7 / SHB_TWO_PI;
+  s.motion_tolerance = 1e-10;
+  s.frequency[0]     = 1.15 / SHB_TWO_PI;
+  s.frequency[1]     = 1.45 / SHB_TWO_PI;
   assert_ok(main_curve(&model, &s, FINE, NULL, &r));
   const mhb_branch *b      = &r->branch[0];
-  int               marked = 0, fewer = 0;
+  int               marked = 0, fewer = 0, near = 0;
   for (int p = 0; p < b->n_points; p++) {
     const bool misses = (b->mark[p] & MHB_ABOVE_TOLERANCE) != 0;
     marked += misses;
     fewer += misses && b->harmonics[p] < FINE;
-    if (b->special[p] == MHB_ORDINARY)
-      assert_int_equal(misses, b->error_truncation[p] > s.motion_tolerance);
+    /* on a steep curve the distance of the curve counts */
+    near += !misses && b->error_truncation[p] > s.motion_tolerance;
+    assert_true(!misses || b->error_truncation[p] > s.motion_tolerance);
   }
   const mhb_marks marks = mhb_response_marks(r);
-  print_message("%d of %d points marked, to %.1e\n", marked, b->n_points, marks.largest);
-  assert_true(marked > 5 && marked < b->n_points && fewer == 0);
-  assert_true(marks.marked == marked && marks.points == b->n_points && marks.harmonics == FINE);
+  print_message("%d of %d points marked, to %.1e; %d near the curve\n", marked, b->n_points,
+                marks.largest, near);
+  assert_true(marked > 5 && marked < b->n_points && fewer == 0 && near < marked / 4);
+  assert_true(marks.marked == marked && marks.points == b->n_points && marks.harmonics >= FINE);
   mhb_response_destroy(r);
   modal_model_free(&model);
 }
@@ -283,24 +294,51 @@ static void static_parts_do_not_count(void **state) {
   modal_model_free(&model);
 }
 
+/* 31 harmonics do not keep 1e-4 on this resonance: more are taken where they do, and no point is
+ * marked. */
+static void more_than_31_harmonics_are_taken_where_they_suffice(void **state) {
+  (void)state;
+  modal_model   model;
+  mhb_response *r;
+  tip_contact_beam_model(20, &model);
+  mhb_settings s     = ground_settings(0.3, 2e5, 2e5, 100, 1);
+  s.motion_tolerance = TOLERANCE;
+  s.frequency[0]     = 230;
+  s.frequency[1]     = 280;
+  assert_ok(main_curve(&model, &s, FINE, NULL, &r));
+  const mhb_marks marks = mhb_response_marks(r);
+  s.motion_tolerance    = 0;
+  const truth t         = compare(&model, s, r);
+  print_message("%d points to H %d, %d marked, %d lost, worst %.1e\n", r->branch[0].n_points,
+                t.most, marks.marked, t.lost, t.worst);
+  assert_true(t.most > MHB_USUAL_HARMONICS && r->branch[0].n_harmonics == t.most);
+  assert_true(marks.marked == 0 && t.worst <= 1.5 * TOLERANCE);
+  mhb_response_destroy(r);
+  modal_model_free(&model);
+}
+
 static void ladders(void **state) {
   (void)state;
   static const struct {
     int    nu, load, given;
     double tolerance;
     int    n, m[MHB_MAX_LEVELS];
-  } rows[] = {{1, 1, 6, 0, 1, {6}},
-              {1, 1, 1, 1e-3, 9, {1, 3, 5, 7, 9, 13, 17, 21, 31}},
-              {2, 1, 1, 1e-3, 7, {2, 6, 10, 14, 18, 26, 31}},
-              {1, 2, 1, 1e-3, 8, {3, 5, 7, 9, 13, 17, 21, 31}},
-              {16, 2, 1, 1e-3, 1, {32}}};
+    int    pairs;
+  } rows[] = {{1, 1, 6, 0, 1, {6}, 1},
+              {1, 1, 1, 1e-3, 13, {1, 3, 5, 7, 9, 13, 17, 21, 31, 45, 63, 91, 127}, 1},
+              {2, 1, 1, 1e-3, 11, {2, 6, 10, 14, 18, 26, 31, 45, 63, 91, 127}, 1},
+              {1, 2, 1, 1e-3, 12, {3, 5, 7, 9, 13, 17, 21, 31, 45, 63, 91, 127}, 1},
+              {16, 2, 1, 1e-3, 5, {32, 45, 63, 91, 127}, 1},
+              {1, 1, 1, 1e-3, 11, {1, 3, 5, 7, 9, 13, 17, 21, 31, 45, 63}, 2},
+              {1, 1, 1, 1e-3, 9, {1, 3, 5, 7, 9, 13, 17, 21, 31}, 3},
+              {1, 1, 1, 1e-3, 9, {1, 3, 5, 7, 9, 13, 17, 21, 31}, 40}};
   for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
     int          m[MHB_MAX_LEVELS];
     modal_model  model;
     mhb_settings s     = random_settings(rows[i].given);
     s.subharmonics     = rows[i].nu;
     s.motion_tolerance = rows[i].tolerance;
-    random_model(1, 0, 3, &model); /* load harmonics 0, 1, 2 */
+    random_model(rows[i].pairs, 0, 3, &model); /* load harmonics 0, 1, 2 */
     for (int k = 0; rows[i].load < 2 && k < model.n_modes; k++)
       model.modal_force[2 * model.n_modes + k] = 0;
     assert_int_equal(mhb_harmonic_levels_ladder(&model, &s, m), rows[i].n);
@@ -312,13 +350,14 @@ static void ladders(void **state) {
 int main(int argc, char **argv) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(ladders),
+      cmocka_unit_test(more_than_31_harmonics_are_taken_where_they_suffice),
+      cmocka_unit_test(what_no_level_keeps_is_marked),
       cmocka_unit_test(three_degrees),
       cmocka_unit_test(beam),
       cmocka_unit_test(jumps),
       cmocka_unit_test(static_parts_do_not_count),
       cmocka_unit_test_prestate(a_curve_of_few_harmonics_is_left_where_it_is_none_of_many,
                                 argc > 1 ? argv[1] : NULL),
-      cmocka_unit_test(what_no_level_keeps_is_marked),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

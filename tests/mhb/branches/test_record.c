@@ -3,6 +3,7 @@
 
 #include "mesh/base/constants.h"
 #include "tests/support/check.h"
+#include "tests/support/main_curve.h"
 #include "tests/support/random_model.h"
 
 enum { PAIRS = 2, PROBES = 2, H = 3, NB = 2 * H + 1, N = PAIRS * 3 * NB };
@@ -109,6 +110,36 @@ static void a_point_is_marked_for_what_it_is_not_worth(void **state) {
   }
 }
 
+/* Shares of the period stuck and open of two pairs; whether the mean friction of one loads the
+ * other. */
+static void a_stuck_pair_that_loads_no_other_is_not_marked(void **state) {
+  (void)state;
+  static const struct {
+    double stick[PAIRS], open[PAIRS];
+    int    mark;
+  } rows[] = {{{1, 1}, {0, 0}, MHB_TRACTION_UNDETERMINED},     /* they share a load */
+              {{1, 0.4}, {0, 0.1}, MHB_TRACTION_UNDETERMINED}, /* one slips */
+              {{0, 1}, {0.2, 0}, MHB_TRACTION_UNDETERMINED},
+              {{1, 0}, {0, 1}, 0}, /* the other is open: a single contact point */
+              {{0.5, 0.4}, {0, 0}, 0},
+              {{0, 0}, {1, 1}, 0}};
+  for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
+    fixture f;
+    set_up(&f, MHB_IN_FREQUENCY, 1.3, H);
+    for (int a = 0; a < PAIRS; a++) {
+      mhb_contact_info *info    = &f.balance->eval->info[a];
+      info->share[MHB_STICK]    = rows[i].stick[a];
+      info->share[MHB_SEPARATE] = rows[i].open[a];
+      info->share[MHB_SLIDE]    = 1 - rows[i].stick[a] - rows[i].open[a];
+      info->undetermined        = rows[i].stick[a] == 1;
+      f.balance->law[a].mu      = 0.4;
+    }
+    assert_ok(mhb_record(f.response, 0, f.balance, &f.point, MHB_ORDINARY, 0));
+    assert_int_equal(f.response->branch[0].mark[0], rows[i].mark);
+    tear_down(&f);
+  }
+}
+
 /* Beside a fold the distance of the curve counts, and the estimate is told as it is. */
 static void beside_a_fold_the_distance_counts(void **state) {
   (void)state;
@@ -204,13 +235,55 @@ static void a_point_is_recorded_with_its_own_evaluation(void **state) {
   tear_down(&f);
 }
 
+/* On whole curves: one pair is never marked, two and three are where one of them sticks. */
+static void curves_are_marked_where_a_stuck_pair_loads_others(void **state) {
+  (void)state;
+  for (int pairs = 1; pairs <= 3; pairs++) {
+    modal_model   model;
+    mhb_response *r;
+    int           stuck = 0, marked = 0, wrong = 0;
+    random_model(pairs, WITH_RESIDUAL, 6, &model);
+    mhb_settings s = random_settings(3);
+    s.to_ground    = true;
+    s.blades       = 1;
+    s.preload      = MHB_EQUILIBRIUM;
+    s.n0[0]        = 0.6;
+    s.stability    = MHB_STABILITY_NEVER;
+    s.frequency[0] = 0.7 / SHB_TWO_PI;
+    s.frequency[1] = 1.3 / SHB_TWO_PI;
+    assert_ok(main_curve(&model, &s, 3, NULL, &r));
+    const mhb_branch *b = &r->branch[0];
+    for (int p = 0; p < b->n_points; p++) {
+      int sticks = 0, touch = 0;
+      for (int a = 0; a < pairs; a++) {
+        const double *share = b->state + 3 * (p * pairs + a);
+        sticks += share[MHB_STICK] == 1;
+        touch += share[MHB_SEPARATE] < 1;
+      }
+      const int mark = (b->mark[p] & MHB_TRACTION_UNDETERMINED) != 0;
+      stuck += sticks > 0;
+      marked += mark;
+      wrong += mark != (sticks > 0 && touch > 1);
+    }
+    print_message("%d pairs: %d points, %d with a stuck pair, %d marked\n", pairs, b->n_points,
+                  stuck, marked);
+    assert_true(wrong == 0 && stuck > 5);
+    assert_int_equal(marked > 0, pairs > 1);
+    mhb_response_destroy(r);
+    modal_model_free(&model);
+  }
+}
+
 int main(void) {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(a_point_arrives_with_all_its_figures),
-                                     cmocka_unit_test(a_point_is_marked_for_what_it_is_not_worth),
-                                     cmocka_unit_test(beside_a_fold_the_distance_counts),
-                                     cmocka_unit_test(another_parameter_has_its_own_value),
-                                     cmocka_unit_test(signals_are_those_of_the_balance),
-                                     cmocka_unit_test(motions_come_back),
-                                     cmocka_unit_test(a_point_is_recorded_with_its_own_evaluation)};
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(a_point_arrives_with_all_its_figures),
+      cmocka_unit_test(a_point_is_marked_for_what_it_is_not_worth),
+      cmocka_unit_test(a_stuck_pair_that_loads_no_other_is_not_marked),
+      cmocka_unit_test(curves_are_marked_where_a_stuck_pair_loads_others),
+      cmocka_unit_test(beside_a_fold_the_distance_counts),
+      cmocka_unit_test(another_parameter_has_its_own_value),
+      cmocka_unit_test(signals_are_those_of_the_balance),
+      cmocka_unit_test(motions_come_back),
+      cmocka_unit_test(a_point_is_recorded_with_its_own_evaluation)};
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

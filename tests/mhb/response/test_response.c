@@ -317,6 +317,47 @@ static void test_growth(void **state) {
 }
 
 /* The last point moved to another place keeps all its values. */
+/* Whether the points of a wide branch are those of a narrow one, with zeros above. */
+static void assert_wider(const mhb_branch *narrow, const mhb_branch *wide) {
+  const int K_wide = wide->n_harmonics + 1;
+  assert_int_equal(wide->n_points, narrow->n_points);
+  for (int row = 0; row < narrow->n_points * PAIRS * 3; row++)
+    for (int k = 0; k < K_wide; k++)
+      assert_true(wide->motion[row * K_wide + k] == (k < K ? narrow->motion[row * K + k] : 0));
+  for (int row = 0; row < narrow->n_points * PROBES * 3; row++)
+    for (int k = 0; k < K_wide; k++)
+      assert_true(wide->probe[row * K_wide + k] == (k < K ? narrow->probe[row * K + k] : 0));
+  for (int p = 0; p < narrow->n_points; p++)
+    assert_true(wide->frequency[p] == narrow->frequency[p] && wide->stable[p] == narrow->stable[p]);
+}
+
+/* In place, and by copies into a branch of more and of fewer harmonics. */
+static void branches_get_room_for_more_harmonics(void **state) {
+  (void)state;
+  enum { WIDE = M + 4, POINTS = 70 };
+  mhb_response *a = mhb_response_create(PAIRS, PROBES, M);
+  mhb_response *b = mhb_response_create(PAIRS, PROBES, WIDE);
+  int           index;
+  a->n_multipliers = b->n_multipliers = MULTIPLIERS;
+  for (int i = 0; i < 2; i++) assert_ok(mhb_response_branch(a, MHB_BRANCH_NONLINEAR, &index));
+  assert_ok(mhb_response_branch(b, MHB_BRANCH_NONLINEAR, &index));
+  for (int p = 0; p < POINTS; p++) fill_point(a, 0);
+  assert_ok(mhb_response_copy_points(b, 0, a, 0, 0, POINTS - 1));
+  assert_wider(&a->branch[0], &b->branch[0]);
+  assert_ok(mhb_response_copy_points(a, 1, a, 0, 0, POINTS - 1));
+  assert_ok(mhb_response_widen(a, &a->branch[1], M)); /* it has them */
+  assert_int_equal(a->branch[1].n_harmonics, M);
+  assert_ok(mhb_response_widen(a, &a->branch[1], WIDE));
+  assert_wider(&a->branch[0], &a->branch[1]);
+  assert_ok(mhb_response_copy_points(a, 0, b, 0, 0, 0));
+  assert_int_equal(a->branch[0].n_harmonics, WIDE);
+  assert_true(a->branch[0].n_points == POINTS + 1);
+  for (int i = 0; i < PAIRS * 3 * (WIDE + 1); i++)
+    assert_true(a->branch[0].force[POINTS * PAIRS * 3 * (WIDE + 1) + i] == b->branch[0].force[i]);
+  mhb_response_destroy(a);
+  mhb_response_destroy(b);
+}
+
 static void test_placed(void **state) {
   (void)state;
   mhb_response *response = sample(PROBES, 9), *wanted = sample(PROBES, 9);
@@ -575,6 +616,7 @@ int main(void) {
       cmocka_unit_test(run_up_tells_its_speeds),
       cmocka_unit_test(test_further_branches),
       cmocka_unit_test(test_growth),
+      cmocka_unit_test(branches_get_room_for_more_harmonics),
       cmocka_unit_test(test_placed),
       cmocka_unit_test(test_earlier_version),
       cmocka_unit_test(test_described),

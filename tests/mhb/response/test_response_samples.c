@@ -61,6 +61,32 @@ static void bounds_hold_the_quantile(void **state) {
   mhb_samples_destroy(s);
 }
 
+/* Samples without a result are left out of quantile and worst. The bounds hold wherever they are:
+ * tables of 100 samples, five of which count as the least below and as the largest above. */
+static void marked_samples_are_no_result(void **state) {
+  enum { N = 100, MARKED = 5 };
+  mhb_samples *s;
+  double       q[3];
+  (void)state;
+  assert_ok(mhb_samples_create(N, 1, 3, &s));
+  for (int i = 0; i < N; i++) s->factor[i] = 1 + i;
+  for (int i = 0; i < MARKED; i++) s->mark[N - 1 - 7 * i] = 1; /* 100, 93, 86, 79, 72 */
+  assert_int_equal(mhb_samples_done(s, 0), N);
+  assert_int_equal(mhb_samples_marked(s, 0), MARKED);
+  assert_int_equal(mhb_samples_worst(s, 0), N - 2);
+  mhb_samples_quantile(s, 0, 0.5, q);
+  assert_near(q[0], 48, 1e-12);          /* of 95 */
+  assert_near(q[1], 40 - MARKED, 1e-12); /* rank 40 of all, five of them below */
+  assert_near(q[2], 61, 1e-12);
+  mhb_samples_quantile(s, 0, 0.95, q);
+  assert_true(isnan(q[2])); /* rank 100 may be a marked one */
+  for (int i = 0; i < N; i++) s->mark[i] = 1;
+  mhb_samples_quantile(s, 0, 0.5, q);
+  assert_true(isnan(q[0]) && isnan(q[1]) && isnan(q[2]));
+  assert_int_equal(mhb_samples_worst(s, 0), -1);
+  mhb_samples_destroy(s);
+}
+
 static void file_holds_them(void **state) {
   hid_t        file;
   mhb_samples *s, *back;
@@ -70,6 +96,7 @@ static void file_holds_them(void **state) {
     s->factor[i]    = i == 3 ? 0 : 1 + 0.1 * i;
     s->frequency[i] = 200 + i;
     s->blade[i]     = i % 3;
+    s->mark[i]      = i == 5;
   }
   for (int i = 0; i < 12; i++) s->deviation[i] = 0.001 * i;
   s->n0[1] = 40;
@@ -83,6 +110,7 @@ static void file_holds_them(void **state) {
   assert_memory_equal(back->factor, s->factor, 8 * sizeof(double));
   assert_memory_equal(back->frequency, s->frequency, 8 * sizeof(double));
   assert_memory_equal(back->blade, s->blade, 8 * sizeof(int));
+  assert_memory_equal(back->mark, s->mark, 8 * sizeof(int));
   assert_memory_equal(back->deviation, s->deviation, 12 * sizeof(double));
   assert_memory_equal(back->n0, s->n0, 2 * sizeof(double));
   mhb_samples_destroy(back);
@@ -90,8 +118,8 @@ static void file_holds_them(void **state) {
 }
 
 int main(void) {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(bounds_are_order_statistics),
-                                     cmocka_unit_test(bounds_hold_the_quantile),
-                                     cmocka_unit_test(file_holds_them)};
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(bounds_are_order_statistics), cmocka_unit_test(bounds_hold_the_quantile),
+      cmocka_unit_test(marked_samples_are_no_result), cmocka_unit_test(file_holds_them)};
   return cmocka_run_group_tests(tests, scratch_make, scratch_remove);
 }

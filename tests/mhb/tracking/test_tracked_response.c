@@ -150,8 +150,24 @@ static void folds_are_followed_to_their_cusps(void **state) {
   mhb_response_destroy(r);
 }
 
+/* No number of harmonics keeps the tolerance: every tracked peak is marked. */
+static void peaks_above_the_tolerance_are_marked(void **state) {
+  (void)state;
+  mhb_settings s        = settings_of(MHB_TRACK_PEAKS, MHB_IN_N0, 0.1, 0.104);
+  s.motion_tolerance    = 1e-9;
+  s.harmonics           = 0; /* as many as it takes */
+  const peak_scan scan  = {&model, &s};
+  mhb_response   *r     = peak_scan_follow(&scan);
+  const mhb_marks marks = mhb_response_marks(r);
+  print_message("%d of %d tracked points marked, to %.1e\n", marks.marked, marks.points,
+                marks.largest);
+  assert_true(marks.marked > 2 && marks.marked == marks.points && marks.largest > 1e-9);
+  mhb_response_destroy(r);
+}
+
 int main(void) {
   const struct CMUnitTest tests[] = {
+      cmocka_unit_test(peaks_above_the_tolerance_are_marked),
       cmocka_unit_test(the_optimum_of_the_preload_is_that_of_a_scan),
       cmocka_unit_test(the_optimum_of_the_friction_coefficient_is_that_of_a_scan),
       cmocka_unit_test(the_optimum_of_the_stiffness_is_that_of_a_scan),

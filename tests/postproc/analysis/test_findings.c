@@ -254,12 +254,15 @@ static void a_bound_that_samples_lack_is_said(void **state) {
   assert_ok(post_analysis_create(r, &a));
   assert_ok(mhb_samples_create(20, 1, 3, &r->samples));
   for (int i = 0; i < 20; i++) r->samples->factor[i] = 1.1 + 0.01 * i;
+  r->samples->mark[19]              = 1; /* the largest is no result */
   r->samples->n0[0]                 = 100;
   r->branch[2].amplification.factor = 1.2;
   r->ring                           = 6;
   post_findings(a, &out);
   r->ring = 0;
-  assert_has(out.text, "20 random rings, n0 = 100\u00a0N: the factor's median is 1.195 (");
+  assert_has(out.text, "20 random rings, n0 = 100\u00a0N: the factor's median is 1.19 (");
+  assert_has(out.text, "of 20 random rings with n0 = 100\u00a0N the peaks of 1 have an estimated");
+  assert_has(out.text, "the largest is 1.28 (sample 18)");
   assert_has(out.text, ", its 95\u00a0% quantile 1.2");
   assert_has(out.text,
              " with 97.5\u00a0% confidence; 20 samples give no upper bound); the largest");

@@ -30,6 +30,9 @@ static void the_share_rises_at_each_factor(void **state) {
     assert_near(share[i], wanted_share[i], 1e-15);
   }
   assert_int_equal(post_factor_corners(s, 1, x, share), 0);
+  s->mark[0] = 1; /* no result */
+  assert_int_equal(post_factor_corners(s, 0, x, share), 4);
+  assert_true(x[0] == 1.1 && x[3] == 1.7);
   mhb_samples_destroy(s);
 }
 
