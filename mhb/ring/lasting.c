@@ -67,7 +67,6 @@ typedef struct {
   double                 scale, highest; /* m, the wave's peak; of a blade over the mean of all */
   double                *peaks;          /* space: of a start in each copy */
   double                 share;          /* of five lines beside the wave, of the largest motion */
-  int                    lead;           /* that motion; -1: none */
   bool                   stopped;
   mhb_lasting           *result;
 } settling;
@@ -194,7 +193,6 @@ static shb_status take_motion(settling *w, const mhb_motion *m, int copy) {
   if (r->n_motions == MHB_LASTING_MOTIONS) return SHB_OK;
   r->motion[r->n_motions++] = *m;
   if (!lead) return SHB_OK;
-  w->lead = r->n_motions - 1;
   SHB_TRY(find_side_wave(w->model, &s->start[copy], r, &w->share));
   return w->how->state ? mhb_ring_save(&s->ring, copy, s->output.space, w->how->state) : SHB_OK;
 }
@@ -222,21 +220,48 @@ static void begin_measuring(settling *w, const mhb_motion_group *group, int n, m
   }
 }
 
+/* The motion that n copies show together. */
+static mhb_motion motion_of(const settling *w, int n, const int *copy) {
+  double                   mean[MHB_START_BLOCKS], spread[MHB_START_BLOCKS];
+  const int                periods = w->starts.start[copy[0]].periods;
+  const mhb_lasting_series series  = mhb_starts_series(&w->starts, n, copy, mean, spread, w->peaks);
+  return mhb_motion_of(&series, periods == MHB_START_BLOCKS * MHB_START_BLOCK);
+}
+
+static bool is_told(const mhb_motion *m) {
+  return m->wave || m->settled;
+}
+
 /* Read the motions after some blocks. Returns whether all are told. */
 static bool read_motions(const settling *w, int blocks, measured *all) {
-  double     mean[MHB_START_BLOCKS], spread[MHB_START_BLOCKS];
-  const bool last = blocks == MHB_START_BLOCKS;
-  bool       told = true;
+  bool told = true;
   for (int i = 0; i < all->n; i++) {
-    const int                n = all->copies[i];
-    const mhb_lasting_series series =
-        mhb_starts_series(&w->starts, n, all->copy[i], mean, spread, w->peaks);
+    const int   n = all->copies[i];
     mhb_motion *m = &all->motion[i];
-    *m            = mhb_motion_of(&series, last);
+    *m            = motion_of(w, n, all->copy[i]);
     m->starts     = all->group[i].motion.starts;
-    told          = told && (m->wave || m->settled) && n * (blocks - blocks / 2) >= LEAST_COUNTED;
+    told          = told && is_told(m) && n * (blocks - blocks / 2) >= LEAST_COUNTED;
   }
-  return told || last;
+  return told || blocks == MHB_START_BLOCKS;
+}
+
+/* Take the motion of a group; each copy's own where one differs. *far: they differ, or it is not
+ * the motion that the starts showed. */
+static shb_status take_measured(settling *w, const measured *all, int i, bool *far) {
+  const mhb_motion *m = &all->motion[i], *shown = &all->group[i].motion;
+  const int         n = all->copies[i];
+  mhb_motion        own[MHB_LANES];
+  bool              differ = false;
+  for (int k = 0; k < n && n > 1; k++) {
+    own[k]        = motion_of(w, 1, &all->copy[i][k]);
+    own[k].starts = k > 0 ? 1 : m->starts - (n - 1);
+    differ        = differ || (is_told(&own[k]) && mhb_motion_distance(&own[k], m) > DIFFERENT);
+  }
+  *far =
+      *far || differ || (is_told(m) && is_told(shown) && mhb_motion_distance(m, shown) > DIFFERENT);
+  if (!differ) return take_motion(w, m, all->copy[i][0]);
+  for (int k = 0; k < n; k++) SHB_TRY(take_motion(w, &own[k], all->copy[i][k]));
+  return SHB_OK;
 }
 
 /* Measure n groups, as many as there are copies at most. *far: one is another motion than its
@@ -250,12 +275,7 @@ static shb_status measure(settling *w, const mhb_motion_group *group, int n, boo
       if (w->stopped) return SHB_OK;
       for (int i = 0; i < n; i++) w->result->periods += all.copies[i] * MHB_START_BLOCK;
     }
-  for (int i = 0; i < n; i++) {
-    const mhb_motion *m = &all.motion[i], *told = &group[i].motion;
-    const bool        settled = (m->wave || m->settled) && (told->wave || told->settled);
-    *far                      = *far || (settled && mhb_motion_distance(m, told) > DIFFERENT);
-    SHB_TRY(take_motion(w, &all.motion[i], all.copy[i][0]));
-  }
+  for (int i = 0; i < n; i++) SHB_TRY(take_measured(w, &all, i, far));
   return SHB_OK;
 }
 
@@ -359,11 +379,11 @@ double mhb_lasting_bytes(int blades, int pairs, int modes, bool mistuned) {
 shb_status mhb_lasting_settle(const modal_model *modal, const mhb_settings *settings,
                               const mhb_wave *wave, const mhb_lasting_run *how,
                               mhb_lasting *result) {
-  static const mhb_lasting_run plain = {.go_on = NULL};
-  settling     w      = {.wave = wave, .how = how ? how : &plain, .lead = -1, .result = result};
-  const double lowest = wave->lowest > 0 ? wave->lowest : wave->omega;
-  const int    copies = w.how->from ? 1 : copies_of(settings->to_ground ? 1 : settings->blades);
-  int          steps[2];
+  static const mhb_lasting_run plain  = {.go_on = NULL};
+  settling                     w      = {.wave = wave, .how = how ? how : &plain, .result = result};
+  const double                 lowest = wave->lowest > 0 ? wave->lowest : wave->omega;
+  const int copies = w.how->from ? 1 : copies_of(settings->to_ground ? 1 : settings->blades);
+  int       steps[2];
   if (!w.how->from) *result = (mhb_lasting){.diameter = -1};
   SHB_TRY(mhb_ring_model_create_copies(modal, settings, wave->n0, lowest, copies, &w.model));
   shb_status status = mhb_ring_steps(w.model, wave->omega, COARSE, &steps[0]);

@@ -143,8 +143,8 @@ static void take_ending(const mhb_lasting *found, const mhb_motion *m, endings *
 static shb_status other_starts(const modal_model *model, const mhb_settings *s,
                                const mhb_wave *wave, const mhb_lasting *found, endings *to) {
   mhb_ring_model *m;
-  mhb_starts      starts;
-  mhb_noise       noise = {.state = 777};
+  mhb_starts      starts = {.scale = 1};
+  mhb_noise       noise  = {.state = 777};
   int             steps, copy = 0;
   double          mean[BLOCKS], spread[BLOCKS];
   double         *peaks = NULL;
