@@ -64,6 +64,7 @@ mhb_reason mhb_newton_solve(mhb_newton *w, mhb_balance *b, double value, double 
   double size = mhb_norm(w->r, n);
   for (*iterations = 0; *iterations < MAX_ITERATIONS; ++*iterations) {
     if (size <= tolerance * fmax(mhb_norm(x, n), DBL_MIN)) return MHB_CONVERGED;
+    if (w->go_on && !w->go_on(w->context)) return MHB_GIVEN_UP;
     memcpy(w->step, w->r, sizeof(double) * (size_t)n);
     if (!mhb_condensation_factor(w->system, NULL, NULL) ||
         !mhb_condensation_solve(w->system, w->step))

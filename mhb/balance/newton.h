@@ -20,7 +20,9 @@ typedef struct {
   int               n;
   mhb_condensation *system;                         /* of the balance last bound; NULL before */
   double           *r, *step, *trial, *slope, *row; /* [n+1] */
-  shb_arena         arena;
+  bool (*go_on)(const void *context); /* asked before each step; false: give up; NULL: nobody */
+  const void *context;
+  shb_arena   arena;
 } mhb_newton;
 
 shb_status mhb_newton_create(int n, mhb_newton **newton);

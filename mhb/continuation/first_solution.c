@@ -12,8 +12,14 @@
 enum { MAX_STAGES = 200, STAGES_A_PAIR = 10 };
 
 /* Linearisations after which a search is given up. The hardest of the tests, 20 pairs with stiff
- * contact, takes 3018. */
-enum { MOST_LINEARISED = 8000, LINEARISED_A_PAIR = 1600 };
+ * contact, takes 3018; one pair of rigid friction with 31 to 63 harmonics 20 to 2800. */
+enum { MOST_LINEARISED = 4000, LINEARISED_A_PAIR = 800 };
+
+/* Steps of a released balance, the shortest that is tried first, and the length below which they
+ * end. Where slip begins corrections converge slowly whatever the step. Numbers of harmonics
+ * between lead on sooner than steps that become shorter and shorter. */
+enum { MAX_RELEASED = 60 };
+static const double BOLD = 0.02, CRAWLS = 1e-3;
 
 /* A softer contact has this part of the stiffness, then the same part of that, so many times. */
 static const double SOFTER = 0.25;
@@ -27,7 +33,7 @@ typedef struct {
   double      *x;          /* [n] m */
   int         *iterations; /* of the last Newton method */
   long         last;       /* count at which it ends */
-  mhb_watch   *watch;
+  mhb_watch   *watcher;
 } search;
 
 /* One way to a solution. */
@@ -40,11 +46,18 @@ static long last_of(const mhb_balance *b, const mhb_watch *watch) {
 
 static bool goes_on(const search *s) {
   return s->b->n_linearised < s->last && !shb_interrupted() &&
-         (!s->watch->go_on || s->watch->go_on(s->watch->context));
+         (!s->watcher->go_on || s->watcher->go_on(s->watcher->context));
+}
+
+/* The same, as Newton's method and the curves ask it. */
+static bool watch(const void *context) {
+  return goes_on(context);
 }
 
 static mhb_reason newton(const search *s, double omega) {
   if (!goes_on(s)) return MHB_GIVEN_UP;
+  s->newton->go_on   = watch;
+  s->newton->context = s;
   return mhb_newton_solve(s->newton, s->b, omega, s->tolerance, s->x, s->iterations);
 }
 
@@ -105,12 +118,12 @@ static mhb_reason directly(const search *s, double omega) {
   return newton(s, omega);
 }
 
-/* The same, then by homotopy in the preload at this omega. */
-static mhb_reason solve_here(const search *s, double omega) {
+/* By homotopy in the preload from the linear limits, the likelier first. */
+static mhb_reason by_homotopy(const search *s, double omega) {
   mhb_balance *b      = s->b;
-  mhb_reason   reason = directly(s, omega);
+  mhb_reason   reason = MHB_MAX_ITERATIONS;
   for (int i = 0; i < 2 && !is_over(s, reason); i++) {
-    int stuck = b->eval->at.n0 > 0 ? 1 - i : i; /* the likelier limit first */
+    int stuck = b->eval->at.n0 > 0 ? 1 - i : i;
     if (mhb_balance_linear_limit(b, omega, stuck, s->x) != SHB_OK) continue;
     mhb_balance_tie_preloads(b, 1);
     reason = homotopy(s, omega, far_preload(b, s->x, stuck));
@@ -119,13 +132,17 @@ static mhb_reason solve_here(const search *s, double omega) {
   return reason;
 }
 
-/* x <- the solution at `to`, along the curve from a solution x at `from`. */
-static bool continue_to(const search *s, double from, double to) {
+/* x <- the solution at `to`, along the curve from a solution x at `from`. plain: no step is tried
+ * where the ordinary ones fail. */
+static bool continue_to(const search *s, double from, double to, bool plain) {
   mhb_balance   *b = s->b;
   mhb_arclength *curve;
   const int      direction = to > from ? 1 : -1, most = MAX_STAGES + STAGES_A_PAIR * b->n_pairs;
   bool           arrived = false;
   if (mhb_balance_curve_create(b, fmin(from, to), fmax(from, to), &curve) != SHB_OK) return false;
+  mhb_balance_curve_of(curve)->newton->go_on   = watch;
+  mhb_balance_curve_of(curve)->newton->context = s;
+  curve->system->plain                         = plain;
   bool on = mhb_arclength_start(curve, s->x, from, direction) == MHB_CONVERGED;
   for (int i = 0; i < most && on && !arrived && goes_on(s); i++) {
     mhb_arclength_outcome outcome = mhb_arclength_step(curve);
@@ -143,18 +160,6 @@ static bool continue_to(const search *s, double from, double to) {
   return arrived;
 }
 
-static mhb_reason by_frequency(const search *s, double omega) {
-  static const double elsewhere[] = {0.98, 1.02, 0.95, 1.05, 0.9, 1.1, 0.8, 0.6};
-  mhb_reason          reason      = solve_here(s, omega);
-  for (int i = 0; i < 8 && !is_over(s, reason); i++) {
-    double from = elsewhere[i] * omega;
-    if (solve_here(s, from) != MHB_CONVERGED) continue;
-    if (!continue_to(s, from, omega)) continue;
-    reason = newton(s, omega);
-  }
-  return reason;
-}
-
 /* Along the curve in the preload, past its folds, from a preload at which the contact is stuck, or
  * open, throughout. */
 static mhb_reason by_preload(const search *s, double omega) {
@@ -166,7 +171,7 @@ static mhb_reason by_preload(const search *s, double omega) {
     double from = far_preload(b, s->x, stuck);
     mhb_balance_tie_preloads(b, 1);
     mhb_balance_set_parameter(b, MHB_IN_N0);
-    bool found = continue_to(s, from, n0);
+    bool found = continue_to(s, from, n0, false);
     mhb_balance_set_parameter(b, MHB_IN_FREQUENCY);
     mhb_balance_set_preload(b, n0);
     mhb_balance_tie_preloads(b, 0);
@@ -185,12 +190,133 @@ static mhb_reason by_stiffness(const search *s, double omega) {
     mhb_balance_go_to(b, MHB_IN_KU, part * ku);
     if (directly(s, omega) == MHB_CONVERGED) {
       mhb_balance_set_parameter(b, MHB_IN_KU);
-      if (continue_to(s, part * ku, ku)) reason = MHB_CONVERGED;
+      if (continue_to(s, part * ku, ku, false)) reason = MHB_CONVERGED;
     }
     mhb_balance_go_to(b, MHB_IN_KU, ku);
     if (reason == MHB_CONVERGED) reason = newton(s, omega);
   }
   return reason;
+}
+
+/* ---- from any motion ---- */
+
+/* r(x) = (1 - value) r(x0) at a fixed frequency: x0 solves it at 0, a solution of the balance at 1.
+ * Where x0 is a solution of fewer harmonics r(x0) is what the others are loaded with. */
+typedef struct {
+  mhb_curve_system base; /* first: the functions of the system get it back */
+  const search    *search;
+  double           omega;
+  double          *start; /* [n] r(x0) */
+} released_balance;
+
+static released_balance *released(const mhb_curve_system *system) {
+  return (released_balance *)system;
+}
+
+static void released_destroy(mhb_curve_system *system) {
+  mhb_balance_use(released(system)->search->b, NULL);
+  free(released(system)->start);
+  free(system);
+}
+
+static shb_status released_evaluation(mhb_curve_system *system, mhb_evaluation **evaluation) {
+  return mhb_evaluation_create(released(system)->search->b, evaluation);
+}
+
+static void released_discard(mhb_curve_system *system, mhb_evaluation *evaluation) {
+  mhb_balance_discard(released(system)->search->b, evaluation);
+}
+
+/* With derivative, or the residual alone. */
+static void released_residual(mhb_curve_system *system, mhb_curve_point *point, bool derivative) {
+  const released_balance *w = released(system);
+  mhb_balance            *b = w->search->b;
+  goes_on(w->search); /* it is shown; the steps end */
+  mhb_balance_use(b, point->evaluation);
+  if (derivative)
+    mhb_balance_linearise(b, point->x, w->omega, point->r, NULL);
+  else
+    mhb_balance_evaluate(b, point->x, w->omega, point->r, NULL, NULL);
+  for (int i = 0; i < b->n; i++) point->r[i] -= (1 - point->value) * w->start[i];
+  if (derivative) memcpy(point->slope, w->start, sizeof(double) * (size_t)b->n);
+}
+
+static void released_linearise(mhb_curve_system *system, mhb_curve_point *point) {
+  released_residual(system, point, true);
+}
+
+static void released_evaluate(mhb_curve_system *system, mhb_curve_point *point) {
+  released_residual(system, point, false);
+}
+
+static int released_factor(mhb_curve_system *system, const mhb_curve_point *point,
+                           const double *column, const double *row) {
+  mhb_balance_use(released(system)->search->b, point->evaluation);
+  return mhb_condensation_factor(released(system)->search->newton->system, column, row);
+}
+
+static int released_solve(mhb_curve_system *system, double *rhs) {
+  return mhb_condensation_solve(released(system)->search->newton->system, rhs);
+}
+
+static int released_sign(const mhb_curve_system *system) {
+  return mhb_condensation_sign(released(system)->search->newton->system);
+}
+
+/* It starts at a solution; no step needs another one. */
+static mhb_reason released_at_value(mhb_curve_system *system, double tolerance,
+                                    mhb_curve_point *point) {
+  const int n = system->n;
+  released_evaluate(system, point);
+  return mhb_norm(point->r, n) <= tolerance * mhb_norm(point->x, n) ? MHB_CONVERGED
+                                                                    : MHB_NO_DESCENT;
+}
+
+static shb_status released_create(const search *s, double omega, mhb_arclength **curve) {
+  released_balance *w = calloc(1, sizeof *w);
+  SHB_CHECK(w, SHB_ERR_IO, "out of memory");
+  w->base   = (mhb_curve_system){.n                  = s->b->n,
+                                 .least              = -1,
+                                 .plain              = true,
+                                 .row_length         = s->b->nb,
+                                 .copies             = 1,
+                                 .destroy            = released_destroy,
+                                 .evaluation_create  = released_evaluation,
+                                 .evaluation_destroy = released_discard,
+                                 .linearise          = released_linearise,
+                                 .evaluate           = released_evaluate,
+                                 .factor             = released_factor,
+                                 .solve              = released_solve,
+                                 .sign               = released_sign,
+                                 .solve_at_value     = released_at_value};
+  w->search = s;
+  w->omega  = omega;
+  w->start  = calloc((size_t)s->b->n, sizeof(double));
+  if (!w->start || mhb_newton_bind(s->newton, s->b) != SHB_OK) {
+    released_destroy(&w->base);
+    SHB_FAIL(SHB_ERR_IO, "out of memory");
+  }
+  mhb_balance_evaluate(s->b, s->x, omega, w->start, NULL, NULL);
+  return mhb_arclength_create(&w->base, 0, 1, curve);
+}
+
+/* x <- a solution, along the curve of the released balance from x. */
+static mhb_reason release(const search *s, double omega) {
+  mhb_arclength *curve;
+  const int      most    = MAX_RELEASED + STAGES_A_PAIR * s->b->n_pairs;
+  bool           arrived = false;
+  if (released_create(s, omega, &curve) != SHB_OK) return MHB_SINGULAR;
+  bool on = mhb_arclength_start(curve, s->x, 0, 1) == MHB_CONVERGED;
+  for (int i = 0; i < most && on && !arrived && goes_on(s); i++) {
+    curve->step                   = fmax(curve->step, BOLD);
+    mhb_arclength_outcome outcome = mhb_arclength_step(curve);
+    arrived                       = outcome == MHB_ARCLENGTH_AT_END;
+    on = arrived || (outcome == MHB_ARCLENGTH_ON && curve->step > CRAWLS);
+    mhb_arclength_advance(curve);
+  }
+  memcpy(s->x, curve->current.x, sizeof(double) * (size_t)s->b->n);
+  mhb_arclength_destroy(curve);
+  return arrived ? newton(s, omega) : MHB_NO_DESCENT;
 }
 
 /* ---- fewer harmonics ---- */
@@ -216,7 +342,7 @@ static shb_status smaller_create(const search *s, int m, smaller_balance **out) 
   w->settings           = *s->b->settings;
   w->settings.harmonics = m;
   search *own           = &w->search;
-  *own = (search){.tolerance = s->tolerance, .iterations = &w->iterations, .watch = s->watch};
+  *own = (search){.tolerance = s->tolerance, .iterations = &w->iterations, .watcher = s->watcher};
   shb_status status = mhb_balance_create_on(s->b->receptance, &w->settings, &own->b);
   if (status == SHB_OK) status = mhb_newton_create(own->b->n, &own->newton);
   if (status == SHB_OK) own->x = calloc((size_t)own->b->n, sizeof *own->x);
@@ -226,7 +352,7 @@ static shb_status smaller_create(const search *s, int m, smaller_balance **out) 
     return status;
   }
   mhb_balance_set_operating_point(own->b, &s->b->eval->at);
-  own->last = last_of(own->b, s->watch);
+  own->last = last_of(own->b, s->watcher);
   *out      = w;
   return SHB_OK;
 }
@@ -242,8 +368,12 @@ static void copy_motion(const search *from, const search *to) {
 /* From the solution of fewer harmonics to that of s, over numbers between where that is too far. */
 static mhb_reason raise(const search *from, const search *s, double omega) {
   copy_motion(from, s);
-  if (from->b->m > s->watch->harmonics) s->watch->harmonics = from->b->m;
-  mhb_reason       reason = newton(s, omega);
+  if (from->b->m > s->watcher->harmonics) s->watcher->harmonics = from->b->m;
+  mhb_reason reason = newton(s, omega);
+  if (!is_over(s, reason)) {
+    copy_motion(from, s);
+    reason = release(s, omega);
+  }
   const int        middle = (from->b->m + s->b->m + 1) / 2;
   smaller_balance *w;
   if (is_over(s, reason) || middle >= s->b->m) return reason;
@@ -274,6 +404,20 @@ static mhb_reason by_fewer_harmonics(const search *s, double omega) {
   return reason;
 }
 
+/* From values of the frequency near by, along the curve. */
+static mhb_reason by_frequency(const search *s, double omega) {
+  static const double elsewhere[] = {0.98, 1.02, 0.95, 1.05, 0.9, 1.1, 0.8, 0.6};
+  mhb_reason          reason      = MHB_MAX_ITERATIONS;
+  for (int i = 0; i < 8 && !is_over(s, reason); i++) {
+    double from = elsewhere[i] * omega;
+    if (directly(s, from) != MHB_CONVERGED && by_fewer_harmonics(s, from) != MHB_CONVERGED)
+      continue;
+    if (!continue_to(s, from, omega, true)) continue;
+    reason = newton(s, omega);
+  }
+  return reason;
+}
+
 /* A way may take half of what is left. */
 static mhb_reason by(way *go, const search *s, double omega) {
   search part = *s;
@@ -285,7 +429,8 @@ static mhb_reason by(way *go, const search *s, double omega) {
 mhb_reason mhb_first_solution_watched(mhb_newton *with, mhb_balance *b, double value,
                                       double tolerance, mhb_watch *watch, double *x,
                                       int *iterations) {
-  static way *const ways[]    = {by_fewer_harmonics, by_preload, by_stiffness, by_frequency};
+  static way *const ways[]    = {by_fewer_harmonics, by_frequency, by_homotopy, by_preload,
+                                 by_stiffness};
   mhb_parameter     parameter = b->parameter;
   search            s         = {with, b, tolerance, x, iterations, last_of(b, watch), watch};
   *iterations                 = 0;
@@ -297,6 +442,7 @@ mhb_reason mhb_first_solution_watched(mhb_newton *with, mhb_balance *b, double v
   for (size_t i = 0; i < sizeof ways / sizeof *ways && !is_over(&s, reason); i++)
     reason = by(ways[i], &s, omega);
   mhb_balance_set_parameter(b, parameter);
+  with->go_on = NULL;
   return reason;
 }
 

@@ -6,7 +6,8 @@
 
 #include "mhb/balance/newton.h"
 
-/* Who is told that a search goes on, before each Newton method. */
+/* Who is told that a search goes on: before its first linearisation, and before every step of
+ * Newton's method. */
 typedef struct {
   bool (*go_on)(void *context); /* false: give up; NULL: nobody */
   void  *context;
@@ -15,8 +16,9 @@ typedef struct {
 } mhb_watch;
 
 /* A solution at a value of the parameter, without a guess. Newton's method starts from the open and
- * the stuck limit, and from zero. Then it starts from solutions of fewer harmonics. Then it follows
- * the preload from both sides, and the frequency from values near by.
+ * the stuck limit, and from zero. Then it starts from solutions of fewer harmonics, and the forces
+ * of the others are let in along a curve. Then it follows the frequency from values near by, the
+ * preload from both sides, and the tangential stiffness.
  *   value       in   of the balance's parameter
  *   tolerance   in   of |r|/|x|
  *   x           out  [n] m

@@ -7,21 +7,18 @@
 #include "mhb/ring/side_waves.h"
 
 enum {
-  SLOTS          = 3,   /* the first two starts, and one after the other */
-  SEVERAL_BLOCKS = 27,  /* settled starts that still differ are different motions */
-  STEPS          = 256, /* a period of the excitation: 1e-3 of the mean */
-  MOST_STEPS     = 4096
+  COARSE     = 64,  /* steps a period of the excitation where starts are told apart */
+  STEPS      = 256, /* where a motion is measured: 1e-3 of the mean */
+  MOST_STEPS = 4096,
+  FULL_LANES = 48 /* copies of few blades are stepped side by side up to so many */
 };
 
-/* Blocks after which starts are compared. */
-static const int targets[] = {12, 18, SEVERAL_BLOCKS, MHB_START_BLOCKS};
+/* Blocks after which motions that are measured are read. At least so many count for each, of all
+ * starts that measure it. */
+static const int targets[] = {5, 8, 12, 18, 27, MHB_START_BLOCKS}, LEAST_COUNTED = 6;
 
-/* A further start is only compared with motions that are known: 8 blocks leave four that count. */
-static const int further[] = {8, 12, 18, SEVERAL_BLOCKS, MHB_START_BLOCKS};
-
-static const double LEAST_START = 0.03, MOST_START = 0.1; /* relative disturbances */
-static const double DIFFERENT = 2;                        /* mhb_motion_distance */
-static const double STABLE    = 0.8;                      /* largest mhb_ring_model_stiffness */
+static const double DIFFERENT = 2;   /* mhb_motion_distance */
+static const double STABLE    = 0.8; /* largest mhb_ring_model_stiffness */
 static const double SAME_WAVE = 5e-3, MILD_MEAN = 0.05, MILD_WORST = 1.05, FEW_LINES = 0.65;
 
 /* ---- decision ---- */
@@ -35,31 +32,6 @@ static bool is_larger(const mhb_motion *a, const mhb_motion *b) {
   return mhb_motion_worst(a, a->wave) > mhb_motion_worst(b, b->wave);
 }
 
-/* Both starts as one motion. */
-static mhb_motion joined(const mhb_motion *a, const mhb_motion *b) {
-  return (mhb_motion){.wave        = a->wave && b->wave,
-                      .settled     = a->settled && b->settled,
-                      .starts      = a->starts + b->starts,
-                      .half        = {.mean  = 0.5 * (a->half.mean + b->half.mean),
-                                      .error = larger(a->half.error, b->half.error)},
-                      .last        = 0.5 * (a->last + b->last),
-                      .worst       = 0.5 * (a->worst + b->worst),
-                      .worst_error = larger(a->worst_error, b->worst_error)};
-}
-
-int mhb_lasting_judge(const mhb_lasting_series series[2], bool last, mhb_motion motion[2],
-                      int *lead) {
-  for (int i = 0; i < 2; i++) motion[i] = mhb_motion_of(&series[i], last);
-  const mhb_motion *a = &motion[0], *b = &motion[1];
-  const bool        told = (a->wave && b->wave) || (a->settled && b->settled);
-  const double      away = mhb_motion_distance(a, b);
-  *lead                  = is_larger(b, a);
-  if (told && away > DIFFERENT && (last || series[0].blocks >= SEVERAL_BLOCKS)) return 2;
-  if (!(told && away < 1) && !last) return 0;
-  motion[0] = joined(a, b);
-  return 1;
-}
-
 int mhb_lasting_kind_of(int n, const mhb_motion *leader, double share) {
   const double mean = mhb_motion_mean(leader, leader->wave);
   if (n > 1 || (leader->wave && fabs(mean - 1) > SAME_WAVE)) return MHB_LASTING_SEVERAL;
@@ -69,6 +41,12 @@ int mhb_lasting_kind_of(int n, const mhb_motion *leader, double share) {
 }
 
 /* ---- settling ---- */
+
+/* Copies of the ring that are stepped side by side. */
+static int copies_of(int blades) {
+  const int copies = FULL_LANES / blades;
+  return copies < 1 ? 1 : copies > MHB_LANES ? MHB_LANES : copies;
+}
 
 shb_status mhb_ring_steps(mhb_ring_model *model, double omega, int least, int *steps) {
   for (*steps = least * model->order; *steps <= MOST_STEPS * model->order; *steps *= 2) {
@@ -84,28 +62,33 @@ typedef struct {
   const mhb_wave        *wave;
   const mhb_lasting_run *how;
   mhb_ring_model        *model;
-  mhb_start              slot[SLOTS];
-  int                    lead, next;     /* slots of the largest motion, and of the next start */
+  mhb_starts             starts;
+  mhb_motion_group      *group;          /* [MHB_LASTING_MOTIONS] */
   double                 scale, highest; /* m, the wave's peak; of a blade over the mean of all */
-  double                *peaks;          /* space: of two starts */
+  double                *peaks;          /* space: of a start in each copy */
+  double                 share;          /* of five lines beside the wave, of the largest motion */
   bool                   stopped;
   mhb_lasting           *result;
 } settling;
 
-/* Mean over the blades of the wave's own peak, in the same steps. */
-static double wave_peak(mhb_start *s, const mhb_wave *wave) {
-  double sum = 0;
-  mhb_ring_start(&s->ring, wave->n_harmonics, wave->force);
+/* All copies on the wave, in the steps that are set. scale <- mean over the blades of its peak. */
+static shb_status start_on_wave(settling *w, mhb_ring_state *wave) {
+  mhb_starts *s    = &w->starts;
+  const int   used = mhb_ring_model_used(w->model);
+  double      sum  = 0;
+  mhb_ring_start(&s->ring, w->wave->n_harmonics, w->wave->force);
+  if (wave) SHB_TRY(mhb_ring_save(&s->ring, 0, s->output.space, wave));
   mhb_ring_period(&s->ring);
   mhb_ring_peaks(&s->ring, &s->output);
-  for (int b = 0; b < s->ring.model->blades; b++) sum += s->output.peak[b];
-  return sum / s->ring.model->blades;
+  for (int l = 0; l < used; l++) sum += s->output.peak[l];
+  s->scale = sum / used;
+  return SHB_OK;
 }
 
 /* Of a mistuned ring: the motion of the balance in place of the wave, for the spread. Returns the
  * highest amplitude of a blade over the mean of all; 1 of a wave. */
-static double set_pattern(mhb_start s[SLOTS], const mhb_wave *wave) {
-  const mhb_ring_model *m    = s[0].ring.model;
+static double set_pattern(mhb_starts *s, const mhb_wave *wave) {
+  const mhb_ring_model *m    = s->ring.model;
   double                most = 0, sum = 0, square = 0;
   double complex        first[3 * m->blades];
   if (!m->ring) return 1;
@@ -118,7 +101,7 @@ static double set_pattern(mhb_start s[SLOTS], const mhb_wave *wave) {
     square += own / m->blades;
   }
   for (int i = 0; i < 3 * m->blades && square > 0; i++)
-    for (int k = 0; k < SLOTS; k++) s[k].pattern[i] = conj(first[i]) / sqrt(square);
+    s->pattern[i] = conj(first[i]) / sqrt(square);
   return sum > 0 ? most / sum : 1;
 }
 
@@ -142,10 +125,10 @@ static void leave_wave(const mhb_ring_model *m, double *y) {
 }
 
 /* Strongest side wave of a start, and the share of five lines in the power beside the wave. */
-static shb_status find_side_wave(const mhb_start *s, mhb_lasting *result, double *share) {
-  const mhb_ring_model *m = s->ring.model;
-  mhb_side_waves        found;
-  int                   periods = MHB_START_LINES, now = s->periods % MHB_START_LINES;
+static shb_status find_side_wave(const mhb_ring_model *m, const mhb_start *s, mhb_lasting *result,
+                                 double *share) {
+  mhb_side_waves found;
+  int            periods = MHB_START_LINES, now = s->periods % MHB_START_LINES;
   size_t part = (size_t)MHB_SIDE_SAMPLES * 3 * (size_t)m->blades, size = part * MHB_START_LINES;
   const double *x     = s->sample;
   shb_arena     arena = {0};
@@ -164,102 +147,151 @@ static shb_status find_side_wave(const mhb_start *s, mhb_lasting *result, double
   return SHB_OK;
 }
 
-/* false: stopped. */
-static bool advance(settling *w, int slot, int blocks) {
-  const mhb_lasting_run *how = w->how;
-  const int              old = w->slot[slot].periods;
-  const bool go = mhb_start_advance(&w->slot[slot], blocks, w->scale, how->go_on, how->context);
-  w->result->periods += w->slot[slot].periods - old;
-  w->stopped = w->stopped || !go;
-  return go;
+/* ---- where starts lead ---- */
+
+static shb_status explore(settling *w, mhb_exploration *x) {
+  x->starts  = &w->starts;
+  x->go_on   = w->how->go_on;
+  x->context = w->how->context;
+  x->peaks   = w->peaks;
+  x->group   = w->group;
+  x->last    = -1;
+  SHB_TRY(mhb_explore(x));
+  w->stopped = x->stopped;
+  w->result->periods += x->periods;
+  w->result->error = larger(w->result->error, x->error);
+  return SHB_OK;
 }
 
-static void disturb(settling *w, int slot, double size, mhb_noise *noise) {
-  mhb_start *s = &w->slot[slot];
-  mhb_start_begin(s);
-  mhb_ring_start(&s->ring, w->wave->n_harmonics, w->wave->force);
-  mhb_ring_disturb(&s->ring, &s->output, size, noise);
+/* From disturbed starts, in the steps that are set. patient: none is told apart early. */
+static shb_status explore_beside_wave(settling *w, bool patient, int *n) {
+  mhb_noise       noise = {.state = 20};
+  mhb_ring_state  wave  = {.omega = 0};
+  mhb_exploration x     = {
+          .from = &wave, .noise = &noise, .patient = patient, .most_periods = w->how->most_periods};
+  shb_status status = start_on_wave(w, &wave);
+  if (status == SHB_OK && w->starts.scale > 0) status = explore(w, &x);
+  w->result->starts = x.told;
+  *n                = x.n_groups;
+  shb_arena_free(&wave.arena);
+  return status;
 }
 
-/* The first two starts, side by side, say what is to be expected. */
-static void first_two(settling *w, mhb_noise *noise) {
+/* ---- the motions, measured ---- */
+
+/* A motion of the result, whose start is in a copy. It may be one that is known. */
+static shb_status take_motion(settling *w, const mhb_motion *m, int copy) {
   mhb_lasting *r    = w->result;
-  const size_t most = MHB_START_BLOCKS * MHB_START_BLOCK * (size_t)w->model->blades;
-  disturb(w, 0, LEAST_START, noise);
-  disturb(w, 1, MOST_START, noise);
-  for (int t = 0; r->n_motions == 0; t++) {
-    mhb_lasting_series both[2];
-    for (size_t i = 0; i < 2; i++) {
-      if (!advance(w, (int)i, targets[t])) return;
-      both[i] = mhb_start_series(&w->slot[i], w->peaks + i * most);
-    }
-    r->n_motions = mhb_lasting_judge(both, targets[t] == MHB_START_BLOCKS, r->motion, &w->lead);
-  }
-  r->starts = 2;
-}
-
-/* Take a motion that no start has reached before; the slot may become that of the largest. */
-static void take_motion(settling *w, const mhb_motion *m) {
-  mhb_lasting *r    = w->result;
+  mhb_starts  *s    = &w->starts;
   bool         lead = true;
-  if (r->n_motions == MHB_LASTING_MOTIONS) return;
-  for (int i = 0; i < r->n_motions; i++) lead = lead && is_larger(m, &r->motion[i]);
-  r->motion[r->n_motions++] = *m;
-  if (!lead) return;
-  const int overtaken = w->lead;
-  w->lead             = w->next;
-  w->next             = overtaken;
-}
-
-/* The motion that is nearest, and its distance. */
-static int nearest(const mhb_lasting *r, const mhb_motion *m, double *away) {
-  int best = 0;
-  *away    = INFINITY;
   for (int i = 0; i < r->n_motions; i++) {
-    const double d = mhb_motion_distance(&r->motion[i], m);
-    if (d < *away) best = i;
-    *away = fmin(d, *away);
+    lead = lead && is_larger(m, &r->motion[i]);
+    if (mhb_motion_distance(&r->motion[i], m) >= 1) continue;
+    r->motion[i].starts += m->starts;
+    return SHB_OK;
   }
-  return best;
+  if (r->n_motions == MHB_LASTING_MOTIONS) return SHB_OK;
+  r->motion[r->n_motions++] = *m;
+  if (!lead) return SHB_OK;
+  SHB_TRY(find_side_wave(w->model, &s->start[copy], r, &w->share));
+  return w->how->state ? mhb_ring_save(&s->ring, copy, s->output.space, w->how->state) : SHB_OK;
 }
 
-/* A further start, in its slot, until it is told apart: it has reached a motion that is known, or
- * another one. What does not settle is no start that counts, but leaves its error. */
-static void further_start(settling *w) {
-  mhb_lasting *r = w->result;
-  mhb_motion   m = {.starts = 1};
-  for (size_t t = 0; t < sizeof further / sizeof *further; t++) {
-    const bool last = further[t] == MHB_START_BLOCKS;
-    if (!advance(w, w->next, further[t])) return;
-    const mhb_lasting_series series = mhb_start_series(&w->slot[w->next], w->peaks);
-    m                               = mhb_motion_of(&series, last);
-    double     away;
-    const int  known = nearest(r, &m, &away);
-    const bool told  = m.wave || m.settled;
-    if (told && away > DIFFERENT && further[t] >= SEVERAL_BLOCKS) {
-      take_motion(w, &m);
-    } else if ((told && away < 1) || (last && away <= DIFFERENT)) {
-      r->motion[known].starts++;
-    } else {
-      continue;
+/* Groups that are measured side by side: copy c measures group c % n. */
+typedef struct {
+  const mhb_motion_group *group;
+  int                     n;
+  int                     copies[MHB_LANES];          /* [n] of each group */
+  int                     copy[MHB_LANES][MHB_LANES]; /* [n][copies] */
+  mhb_motion              motion[MHB_LANES];          /* [n] */
+} measured;
+
+/* From the ends of starts that reached each of n groups. */
+static void begin_measuring(settling *w, const mhb_motion_group *group, int n, measured *all) {
+  mhb_starts *s = &w->starts;
+  *all          = (measured){.group = group, .n = n};
+  for (int c = 0; c < w->model->copies; c++) {
+    const int               i = c % n, k = c / n;
+    const mhb_motion_group *g = &group[i];
+    mhb_ring_load(&s->ring, c, &g->state[k % g->n_states], s->output.space);
+    mhb_start_begin(s, c);
+    s->runs[c] = k < g->n_states;
+    if (s->runs[c]) all->copy[i][all->copies[i]++] = c;
+  }
+}
+
+/* The motion that n copies show together. */
+static mhb_motion motion_of(const settling *w, int n, const int *copy) {
+  double                   mean[MHB_START_BLOCKS], spread[MHB_START_BLOCKS];
+  const int                periods = w->starts.start[copy[0]].periods;
+  const mhb_lasting_series series  = mhb_starts_series(&w->starts, n, copy, mean, spread, w->peaks);
+  return mhb_motion_of(&series, periods == MHB_START_BLOCKS * MHB_START_BLOCK);
+}
+
+static bool is_told(const mhb_motion *m) {
+  return m->wave || m->settled;
+}
+
+/* Read the motions after some blocks. Returns whether all are told. */
+static bool read_motions(const settling *w, int blocks, measured *all) {
+  bool told = true;
+  for (int i = 0; i < all->n; i++) {
+    const int   n = all->copies[i];
+    mhb_motion *m = &all->motion[i];
+    *m            = motion_of(w, n, all->copy[i]);
+    m->starts     = all->group[i].motion.starts;
+    told          = told && is_told(m) && n * (blocks - blocks / 2) >= LEAST_COUNTED;
+  }
+  return told || blocks == MHB_START_BLOCKS;
+}
+
+/* Take the motion of a group; each copy's own where one differs. *far: they differ, or it is not
+ * the motion that the starts showed. */
+static shb_status take_measured(settling *w, const measured *all, int i, bool *far) {
+  const mhb_motion *m = &all->motion[i], *shown = &all->group[i].motion;
+  const int         n = all->copies[i];
+  mhb_motion        own[MHB_LANES];
+  bool              differ = false;
+  for (int k = 0; k < n && n > 1; k++) {
+    own[k]        = motion_of(w, 1, &all->copy[i][k]);
+    own[k].starts = k > 0 ? 1 : m->starts - (n - 1);
+    differ        = differ || (is_told(&own[k]) && mhb_motion_distance(&own[k], m) > DIFFERENT);
+  }
+  *far =
+      *far || differ || (is_told(m) && is_told(shown) && mhb_motion_distance(m, shown) > DIFFERENT);
+  if (!differ) return take_motion(w, m, all->copy[i][0]);
+  for (int k = 0; k < n; k++) SHB_TRY(take_motion(w, &own[k], all->copy[i][k]));
+  return SHB_OK;
+}
+
+/* Measure n groups, as many as there are copies at most. *far: one is another motion than its
+ * starts showed. */
+static shb_status measure(settling *w, const mhb_motion_group *group, int n, bool *far) {
+  measured all;
+  begin_measuring(w, group, n, &all);
+  for (int t = 0, blocks = 0; t == 0 || !read_motions(w, blocks, &all); t++)
+    for (; blocks < targets[t]; blocks++) {
+      w->stopped = !mhb_starts_block(&w->starts, w->how->go_on, w->how->context);
+      if (w->stopped) return SHB_OK;
+      for (int i = 0; i < n; i++) w->result->periods += all.copies[i] * MHB_START_BLOCK;
     }
-    r->starts++;
-    return;
-  }
-  r->error = larger(r->error, m.half.error);
+  for (int i = 0; i < n; i++) SHB_TRY(take_measured(w, &all, i, far));
+  return SHB_OK;
 }
 
-static void further_starts(settling *w, mhb_noise *noise) {
-  const int most = w->how->most_periods > 0 ? w->how->most_periods : INT_MAX;
-  for (int i = 1; i < MHB_LASTING_STARTS - 1 && !w->stopped && w->result->periods < most; i++) {
-    disturb(w, w->next, LEAST_START + (MOST_START - LEAST_START) * i / (MHB_LASTING_STARTS - 1),
-            noise);
-    further_start(w);
-  }
+static shb_status measure_all(settling *w, int n, bool *far) {
+  const int copies     = w->model->copies;
+  w->result->n_motions = 0;
+  *far                 = false;
+  SHB_TRY(start_on_wave(w, NULL));
+  w->scale = w->starts.scale;
+  for (int i = 0; i < n && !w->stopped; i += copies)
+    SHB_TRY(measure(w, w->group + i, n - i < copies ? n - i : copies, far));
+  return SHB_OK;
 }
 
 /* The numbers of the result from the motions that were reached. */
-static const mhb_motion *report(const settling *w) {
+static void report(settling *w) {
   mhb_lasting      *r    = w->result;
   const mhb_motion *most = &r->motion[0], *least = most;
   for (int i = 1; i < r->n_motions; i++) {
@@ -271,90 +303,95 @@ static const mhb_motion *report(const settling *w) {
   r->error   = larger(r->error, mhb_motion_error(most, most->wave));
   r->reached = most->starts;
   r->size    = mhb_motion_worst(most, most->wave) * w->scale * (most->wave ? w->highest : 1);
-  if (r->n_motions == 1) return most;
-  r->kind        = MHB_LASTING_SEVERAL;
+  r->kind    = mhb_lasting_kind_of(r->n_motions, most, w->share);
+  if (r->n_motions == 1) return;
   r->least       = mhb_motion_mean(least, least->wave);
   r->least_worst = mhb_motion_worst(least, least->wave) / (least->wave ? 1 : w->highest);
-  return most;
 }
 
-/* The result with side wave and state of the largest motion. */
-static shb_status finish(settling *w) {
-  const mhb_motion *most  = report(w);
-  const mhb_start  *s     = &w->slot[w->lead];
-  double            share = 0;
-  SHB_TRY(find_side_wave(s, w->result, &share));
-  w->result->kind = mhb_lasting_kind_of(w->result->n_motions, most, share);
-  return w->how->state ? mhb_ring_save(&s->ring, w->how->state) : SHB_OK;
-}
-
-static shb_status settle(settling *w) {
-  mhb_noise noise = {.state = 20};
-  first_two(w, &noise);
-  if (!w->stopped) further_starts(w, &noise);
-  return w->stopped ? SHB_OK : finish(w);
+/* Starts are told apart in coarse steps. A motion that is another one when it is measured was told
+ * too early, or the steps are too coarse: all is done again then. */
+static shb_status settle(settling *w, const int steps[2]) {
+  bool far = true;
+  int  n   = 0;
+  for (int i = 0; i < 2 && far && !w->stopped; i++) {
+    mhb_motion_groups_free(w->group, MHB_LASTING_MOTIONS);
+    memset(w->group, 0, MHB_LASTING_MOTIONS * sizeof *w->group);
+    w->result->error = 0;
+    SHB_TRY(mhb_ring_model_set(w->model, w->wave->omega, steps[i]));
+    SHB_TRY(explore_beside_wave(w, i > 0, &n));
+    if (w->stopped || n == 0) return SHB_OK;
+    SHB_TRY(mhb_ring_model_set(w->model, w->wave->omega, steps[1]));
+    SHB_TRY(measure_all(w, n, &far));
+  }
+  if (!w->stopped) report(w);
+  return SHB_OK;
 }
 
 /* One start from the state of a neighbour. It is no start of chance, so it does not count. */
 static shb_status carry(settling *w) {
   mhb_lasting      *r      = w->result;
   const mhb_lasting before = *r;
-  const int         slot   = w->next;
-  mhb_start        *s      = &w->slot[slot];
-  mhb_start_begin(s);
-  mhb_ring_load(&s->ring, w->how->from, s->output.space);
-  further_start(w);
-  if (r->n_motions == before.n_motions) {
+  mhb_exploration   x      = {.from = w->how->from, .n_groups = r->n_motions};
+  for (int i = 0; i < r->n_motions; i++) w->group[i].motion = r->motion[i];
+  SHB_TRY(start_on_wave(w, NULL));
+  w->scale = w->starts.scale;
+  SHB_TRY(explore(w, &x));
+  if (w->stopped || x.n_groups == before.n_motions) {
     *r = before;
     return SHB_OK;
   }
-  r->starts                          = before.starts;
-  r->motion[before.n_motions].starts = 0;
-  if (w->lead == slot) return finish(w);
+  mhb_motion m = w->group[before.n_motions].motion;
+  m.starts     = 0;
+  SHB_TRY(take_motion(w, &m, x.last));
   report(w);
   return SHB_OK;
 }
 
-static shb_status run(settling *w) {
+static shb_status run(settling *w, const int steps[2]) {
   const size_t most  = (size_t)(MHB_START_BLOCKS * MHB_START_BLOCK) * (size_t)w->model->blades;
   shb_arena    arena = {0};
-  w->peaks           = shb_arena_take(&arena, 2 * most, sizeof *w->peaks);
-  SHB_CHECK(w->peaks, SHB_ERR_IO, "out of memory");
-  w->scale          = wave_peak(&w->slot[0], w->wave);
-  w->highest        = set_pattern(w->slot, w->wave);
-  shb_status status = SHB_OK;
-  if (w->scale > 0) status = w->how->from ? carry(w) : settle(w);
+  w->peaks = shb_arena_take(&arena, most / 2 * (size_t)w->model->copies, sizeof *w->peaks);
+  w->group = shb_arena_take(&arena, MHB_LASTING_MOTIONS, sizeof *w->group);
+  SHB_CHECK(w->peaks && w->group, SHB_ERR_IO, "out of memory");
+  w->highest        = set_pattern(&w->starts, w->wave);
+  shb_status status = w->how->from ? carry(w) : settle(w, steps);
+  mhb_motion_groups_free(w->group, MHB_LASTING_MOTIONS);
   shb_arena_free(&arena);
   return status;
 }
 
 double mhb_lasting_bytes(int blades, int pairs, int modes, bool mistuned) {
   enum { OF_A_PAIR = 9 + 5, OF_OUTPUT = 1 + 6 + 3 + 6, FREE = 12 }; /* numbers a blade */
-  const double most    = modes + 6. * pairs;                        /* with merged ones */
+  const int    copies  = copies_of(blades);
+  const double most    = modes + 6. * pairs; /* with merged ones */
   const double samples = MHB_START_LINES * MHB_SIDE_SAMPLES * 3;
   const double peaks   = MHB_START_BLOCKS * MHB_START_BLOCK;
   const double state   = 4 * most + OF_A_PAIR * pairs + OF_OUTPUT + 3 * MHB_RING_SAMPLES;
+  const double kept    = MHB_LASTING_MOTIONS * (2 * most + 8 * pairs); /* ends of starts */
   const double lines = samples + 2 * samples + 2 * MHB_START_LINES; /* in order, spectrum, power */
   const double model = mistuned ? most * (1 + MHB_RING_LANE_SIZE + MHB_RING_MAP) : 0;
-  return sizeof(double) * mhb_whole_lanes(blades) *
-         (SLOTS * (peaks + samples + state) + fmax(2 * peaks, lines) + model + FREE * (pairs + 1));
+  return sizeof(double) * (mhb_whole_lanes(blades * copies) *
+                               (state + model + FREE * (pairs + 1) + peaks + samples + peaks / 2) +
+                           blades * (lines + kept));
 }
 
 shb_status mhb_lasting_settle(const modal_model *modal, const mhb_settings *settings,
                               const mhb_wave *wave, const mhb_lasting_run *how,
                               mhb_lasting *result) {
-  static const mhb_lasting_run plain = {.go_on = NULL};
-  settling w = {.wave = wave, .how = how ? how : &plain, .next = 2, .result = result};
-  int      steps;
+  static const mhb_lasting_run plain  = {.go_on = NULL};
+  settling                     w      = {.wave = wave, .how = how ? how : &plain, .result = result};
+  const double                 lowest = wave->lowest > 0 ? wave->lowest : wave->omega;
+  const int copies = w.how->from ? 1 : copies_of(settings->to_ground ? 1 : settings->blades);
+  int       steps[2];
   if (!w.how->from) *result = (mhb_lasting){.diameter = -1};
-  const double lowest = wave->lowest > 0 ? wave->lowest : wave->omega;
-  SHB_TRY(mhb_ring_model_create(modal, settings, wave->n0, lowest, &w.model));
-  shb_status status = mhb_ring_steps(w.model, wave->omega, STEPS, &steps);
-  for (int i = 0; i < SLOTS && status == SHB_OK && steps > 0; i++)
-    status = mhb_start_create(w.model, &w.slot[i]);
-  if (status == SHB_OK && steps > 0) status = run(&w);
+  SHB_TRY(mhb_ring_model_create_copies(modal, settings, wave->n0, lowest, copies, &w.model));
+  shb_status status = mhb_ring_steps(w.model, wave->omega, COARSE, &steps[0]);
+  if (status == SHB_OK) status = mhb_ring_steps(w.model, wave->omega, STEPS, &steps[1]);
+  if (status == SHB_OK && steps[1] > 0) status = mhb_starts_create(w.model, &w.starts);
+  if (status == SHB_OK && steps[1] > 0) status = run(&w, steps);
   if (w.stopped && !w.how->from) *result = (mhb_lasting){.diameter = -1};
-  for (int i = 0; i < SLOTS; i++) mhb_start_destroy(&w.slot[i]);
+  mhb_starts_destroy(&w.starts);
   mhb_ring_model_destroy(w.model);
   return status;
 }

@@ -1,10 +1,10 @@
 /* The motion that lasts near a wave: the ring is integrated from disturbed starts, each until it is
  * told apart.
  *
- * The positions and velocities of every blade of the wave are disturbed by 3 to 10 %. The first two
- * starts go on until their statistics are settled and agree, or differ (motions.h). Each further
- * one goes on until it has reached a motion that is known, or has settled at another. There are 17:
- * the chance that all of them miss a motion that one start in six reaches is (5/6)^17 = 4.5 %.
+ * The positions and velocities of every blade of the wave are disturbed by 3 to 10 %. A start goes
+ * on in coarse steps until it has reached a motion that is known, or has settled at another
+ * (exploration.h). Each motion is then measured in fine steps, from the ends of its starts. There
+ * are 17: the chance that all miss a motion that one start in six reaches is (5/6)^17 = 4.5 %.
  * A start may also come from the state of a neighbour, whose motion is larger.
  *
  * Of a mistuned ring the wave is the motion of the balance: a_b is over that of the balance, and is
@@ -16,10 +16,7 @@
 #include <complex.h>
 
 #include "mhb/response/response_types.h"
-#include "mhb/ring/disturbed_start.h"
-
-/* MHB_LASTING_STARTS: the fewest with (5/6)^n < 0.05. */
-enum { MHB_LASTING_STARTS = 17, MHB_LASTING_MOTIONS = 32 };
+#include "mhb/ring/exploration.h"
 
 /* A wave to start on. */
 typedef struct {
@@ -69,13 +66,6 @@ double mhb_lasting_bytes(int blades, int pairs, int modes, bool mistuned);
 shb_status mhb_lasting_settle(const modal_model *modal, const mhb_settings *settings,
                               const mhb_wave *wave, const mhb_lasting_run *how,
                               mhb_lasting *result);
-
-/* ---- the decision ---- */
-
-/* From the series of the first two starts: 1 or 2 motions, 0 if more blocks are wanted. last: no
- * more can be had. lead: start with the larger worst. */
-int mhb_lasting_judge(const mhb_lasting_series series[2], bool last, mhb_motion motion[2],
-                      int *lead);
 
 /* Kind from the number of motions, the largest of them, and its share of five lines. */
 int mhb_lasting_kind_of(int n, const mhb_motion *largest, double share);

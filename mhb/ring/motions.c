@@ -5,7 +5,8 @@
 enum { FEW_BLOCKS = 16, PARTS = 4 }; /* fewer blocks show no decay */
 
 static const double ON_WAVE = 2e-3, ON_MOTION = 1e-2, NEAR_WAVE = 0.02, FALLS = 0.92;
-static const double STEADY = 0.05, SAME_MEAN = 0.01, SAME_WORST = 0.03, WORST_SHARE = 0.999;
+static const double RESOLVES = 0.03, STEADY = 0.05, SAME_MEAN = 0.01, SAME_WORST = 0.03,
+                    WORST_SHARE = 0.999;
 
 /* Blocks that count: the second half. */
 static mhb_block_mean second_half(const mhb_lasting_series *s) {
@@ -46,7 +47,9 @@ static bool is_steady(const mhb_lasting_series *s) {
 mhb_motion mhb_motion_of(const mhb_lasting_series *s, bool last) {
   mhb_motion m = {
       .wave = is_wave(s), .starts = 1, .half = second_half(s), .last = s->mean[s->blocks - 1]};
-  m.settled     = mhb_block_mean_is_settled(&m.half) && (last || is_steady(s));
+  m.settled = mhb_block_mean_is_settled(&m.half) && (last || is_steady(s));
+  m.calm =
+      mhb_block_mean_is_level(&m.half) && is_steady(s) && m.half.error < RESOLVES * m.half.mean;
   m.worst_error = percentile_error(s->peak, s->n_peaks);
   m.worst       = mhb_percentile(s->peak, s->n_peaks, WORST_SHARE);
   return m;

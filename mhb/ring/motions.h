@@ -16,7 +16,7 @@
 typedef struct {
   int           blocks, n_peaks;
   const double *mean, *spread;
-  double       *peak;     /* mhb_motion_of sorts them */
+  double       *peak;     /* mhb_motion_of reorders them */
   bool          mistuned; /* steps err differently in every blade: a spread of 1 % is none */
 } mhb_lasting_series;
 
@@ -24,6 +24,7 @@ typedef struct {
 typedef struct {
   bool           wave;        /* on a wave, or coming back to one */
   bool           settled;     /* its statistics */
+  bool           calm;        /* they do not drift, and tell motions 10 % apart */
   int            starts;      /* that reached it */
   mhb_block_mean half;        /* of the blocks that count, over the wave's */
   double         last;        /* mean of the last block */

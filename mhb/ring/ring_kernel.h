@@ -40,7 +40,7 @@ INSIDE void NAME(one_pair)(const mhb_ring_modes *a, size_t at, size_t block, boo
   NAME(vector) behind[3]; /* forces of the left neighbour; loads across two cache lines */
   for (int i = 0; i < 3; i++) {
     right[i] = left[i] = out[i] = (NAME(vector)){0};
-    behind[i]                   = NAME(load)(p + (size_t)i * a->row - 1);
+    behind[i]                   = NAME(load)(p + (size_t)i * a->row - a->copies);
   }
   for (int k = 0; k < a->modes; k++, c += a->stride, z += 2 * MHB_LANES) {
     NAME(vector) row[6], next;
@@ -110,7 +110,7 @@ INSIDE void NAME(many_pairs)(const mhb_ring_modes *a, size_t at, size_t block, b
     NAME(vector) p[3], q[3];
     for (int i = 0; i < 3; i++) {
       p[i] = NAME(load)(force + (size_t)i * a->row);
-      q[i] = NAME(load)(force + (size_t)i * a->row - 1);
+      q[i] = NAME(load)(force + (size_t)i * a->row - a->copies);
     }
     for (int k = 0; k < a->modes; k++) {
       const double *r   = a->coefficient + (size_t)k * a->stride + MHB_RING_ROWS + 6 * j;

@@ -89,9 +89,10 @@ static void set_lanes(const mhb_ring_model *m, int k, const double complex *a, i
   size_t half = 3 * (size_t)m->lanes;
   for (int b = 0; b < m->blades; b++, a += next) {
     double complex turn = next ? 1 : cexp(-I * mhb_ring_model_lag(m, k, b));
-    for (int axis = 0; axis < 3; axis++) {
-      out[(size_t)(axis * m->lanes + b)]        = creal(a[axis] * turn);
-      out[half + (size_t)(axis * m->lanes + b)] = k ? -cimag(a[axis] * turn) : 0;
+    for (int i = 0; i < 3 * m->copies; i++) {
+      const int axis = i / m->copies, at = axis * m->lanes + b * m->copies + i % m->copies;
+      out[at]                = creal(a[axis] * turn);
+      out[half + (size_t)at] = k ? -cimag(a[axis] * turn) : 0;
     }
   }
 }
@@ -243,7 +244,7 @@ static void set_own_modes(mhb_ring_model *m) {
   const modal_model *modal = m->receptance->model;
   for (int i = 0; i < m->kept; i++) {
     double *shape = m->shape + (size_t)(6 * i) * (size_t)m->pairs;
-    m->w[i]       = SHB_TWO_PI * modal->frequency[i];
+    m->w[i]       = fmax(SHB_TWO_PI * modal->frequency[i], m->receptance->hold);
     m->zeta[i]    = modal->damping_ratio[i];
     for (int k = 0; k < 6 * m->pairs; k++)
       shape[k] = shape_of(m, k / (3 * m->pairs), k % (3 * m->pairs), i) / m->w[i];
@@ -318,9 +319,11 @@ static void set_stretch(mhb_ring_model *m, const mhb_mistuned_ring *ring) {
   const bool uniform = is_uniform(ring);
   for (int i = 0; i < m->modes; i++)
     for (int l = 0; l < m->lanes; l++) {
-      const double *of = ring->deviation + (size_t)(l < m->blades ? l : 0) * (size_t)ring->n_modes;
+      const bool    used           = l < mhb_ring_model_used(m);
+      const int     blade          = used ? l / m->copies : 0;
+      const double *of             = ring->deviation + (size_t)blade * (size_t)ring->n_modes;
       const double  deviation      = i < m->kept ? of[i] : uniform ? of[0] : 0;
-      m->stretch[i * m->lanes + l] = 1 + (l < m->blades ? deviation : 0);
+      m->stretch[i * m->lanes + l] = 1 + (used ? deviation : 0);
     }
 }
 
@@ -332,7 +335,7 @@ static shb_status make(mhb_ring_model *m, const modal_model *modal, double n0, d
   m->settings.ring = NULL;
   SHB_TRY(mhb_receptance_create(modal, &m->settings, nu * top, &m->receptance));
   m->blades = m->settings.to_ground ? 1 : m->settings.blades;
-  m->lanes  = mhb_whole_lanes(m->blades);
+  m->lanes  = mhb_whole_lanes(mhb_ring_model_used(m));
   m->pairs  = modal->n_pairs;
   m->order  = nu;
   m->probe  = modal->n_probes > 0 ? 0 : -1;
@@ -353,8 +356,15 @@ static shb_status make(mhb_ring_model *m, const modal_model *modal, double n0, d
 
 shb_status mhb_ring_model_create(const modal_model *modal, const mhb_settings *settings, double n0,
                                  double lowest, mhb_ring_model **out) {
+  return mhb_ring_model_create_copies(modal, settings, n0, lowest, 1, out);
+}
+
+shb_status mhb_ring_model_create_copies(const modal_model *modal, const mhb_settings *settings,
+                                        double n0, double lowest, int copies,
+                                        mhb_ring_model **out) {
   mhb_ring_model *m = calloc(1, sizeof *m);
   SHB_CHECK(m, SHB_ERR_IO, "out of memory");
+  m->copies         = copies;
   m->settings       = *settings;
   shb_status status = make(m, modal, n0, lowest);
   if (status != SHB_OK) {

@@ -19,7 +19,9 @@
  * of z are those of the tuned blade. A mode and blade then has three numbers of its own: trace, det
  * and the gain of its kicks. The gain is its s M_01 h/w over that of the tuned blade.
  *
- * Lanes are blades, their number rounded up to eight. Derivation: docs/theory/lasting.md. */
+ * Lanes are blades, their number rounded up to eight. Copies of the ring may be stepped side by
+ * side, each in its own state: lane c + copies b is blade b of copy c. Few blades then fill lanes.
+ * Derivation: docs/theory/lasting.md. */
 #ifndef MHB_RING_RING_MODEL_H
 #define MHB_RING_RING_MODEL_H
 
@@ -42,7 +44,7 @@ enum { MHB_RING_MAP = 6 };
 typedef struct {
   mhb_settings    settings;
   mhb_receptance *receptance;
-  int             blades, lanes, pairs, modes, order;
+  int             blades, copies, lanes, pairs, modes, order;
   int             probe; /* whose motion is the output; -1: that of pair 0 */
   int             kept;  /* modes that are the model's own */
   double         *w;     /* [mode] rad/s; INFINITY of a merged one without inertia */
@@ -68,7 +70,7 @@ typedef struct {
   shb_arena       arena, table;
 } mhb_ring_model;
 
-/* Structure and laws at a preload; of the ring in settings->ring if there is one.
+/* Structure and laws at a preload, of one ring; of the ring in settings->ring if there is one.
  *   n0      in  N, total of the leading interface
  *   lowest  in  rad/s, lowest frequency of the excitation that will be set
  * The modal model must outlive it.
@@ -76,6 +78,11 @@ typedef struct {
  * SHB_ERR_IO no memory. */
 shb_status mhb_ring_model_create(const modal_model *modal, const mhb_settings *settings, double n0,
                                  double lowest, mhb_ring_model **model);
+
+/* The same for copies of the ring, 1 to MHB_LANES. */
+shb_status mhb_ring_model_create_copies(const modal_model *modal, const mhb_settings *settings,
+                                        double n0, double lowest, int copies,
+                                        mhb_ring_model **model);
 void       mhb_ring_model_destroy(mhb_ring_model *model);
 
 /* Coefficients at a frequency of the excitation (rad/s) and a number of steps a period of the
@@ -97,6 +104,11 @@ double mhb_ring_model_work(const mhb_ring_model *model);
  * receptance at the frequency set. force: as of mhb_ring_start, of a mistuned ring. */
 void mhb_ring_model_first(const mhb_ring_model *model, int n_harmonics, const double complex *force,
                           double complex *first);
+
+/* Lanes that bear blades. */
+static inline int mhb_ring_model_used(const mhb_ring_model *m) {
+  return m->blades * m->copies;
+}
 
 /* M of a mode of a blade, w and scale. */
 static inline const double *mhb_ring_model_map(const mhb_ring_model *m, int mode, int lane) {

@@ -58,27 +58,32 @@ MHB_HOT static void find_harmonics(int n, size_t width, const double *x, const d
 }
 
 void mhb_ring_first_harmonics(const mhb_ring *ring, mhb_ring_output *o) {
-  int    blades = ring->model->blades, lanes = ring->model->lanes;
-  size_t width = 3 * (size_t)lanes;
+  const int    used = mhb_ring_model_used(ring->model), lanes = ring->model->lanes;
+  const size_t width = 3 * (size_t)lanes;
   find_harmonics(ring->n_samples, width, ring->output, o->turn, o->parts, o->parts + width);
   for (int axis = 0; axis < 3; axis++)
-    for (int b = 0; b < blades; b++) {
-      const double *at            = o->parts + axis * lanes + b;
-      o->first[axis * blades + b] = CMPLX(at[0], at[width]);
+    for (int l = 0; l < used; l++) {
+      const double *at          = o->parts + axis * lanes + l;
+      o->first[axis * used + l] = CMPLX(at[0], at[width]);
     }
 }
 
-void mhb_ring_disturb(mhb_ring *ring, mhb_ring_output *o, double size, mhb_noise *noise) {
+void mhb_ring_disturb_copy(mhb_ring *ring, int copy, mhb_ring_output *o, double size,
+                           mhb_noise *noise) {
   const mhb_ring_model *m    = ring->model;
   size_t                half = (size_t)m->modes * (size_t)m->lanes;
-  mhb_ring_get(ring, o->space, o->space + half);
-  for (int b = 0; b < m->blades; b++) {
+  mhb_ring_get_copy(ring, copy, o->space, o->space + half);
+  for (int l = copy; l < mhb_ring_model_used(m); l += m->copies) {
     double position = 1 + size * mhb_noise_normal(noise);
     double velocity = 1 + size * mhb_noise_normal(noise);
     for (int k = 0; k < m->modes; k++) {
-      o->space[(size_t)(k * m->lanes + b)] *= position;
-      o->space[half + (size_t)(k * m->lanes + b)] *= velocity;
+      o->space[(size_t)(k * m->lanes + l)] *= position;
+      o->space[half + (size_t)(k * m->lanes + l)] *= velocity;
     }
   }
-  mhb_ring_put(ring, o->space, o->space + half);
+  mhb_ring_put_copy(ring, copy, o->space, o->space + half);
+}
+
+void mhb_ring_disturb(mhb_ring *ring, mhb_ring_output *o, double size, mhb_noise *noise) {
+  mhb_ring_disturb_copy(ring, 0, o, size, noise);
 }

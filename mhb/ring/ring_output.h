@@ -7,7 +7,7 @@
 
 typedef struct {
   double         *peak;  /* [lanes] m: largest distance of the output from its mean of the period */
-  double complex *first; /* [3][blades] m: harmonic of the excitation */
+  double complex *first; /* [3][used lanes] m: harmonic of the excitation */
   double         *mean;  /* [3][lanes] m, scratch */
   double         *turn;  /* [samples][2] 2/n exp(-j phase) */
   double         *parts; /* [2 (re, im)][3][lanes] scratch */
@@ -25,7 +25,11 @@ void mhb_ring_peaks(const mhb_ring *ring, mhb_ring_output *output);
 /* First harmonics of the last period. */
 void mhb_ring_first_harmonics(const mhb_ring *ring, mhb_ring_output *output);
 
-/* Multiply positions and velocities of every blade by 1 + size N(0, 1). */
+/* Multiply positions and velocities of every blade of a copy by 1 + size N(0, 1). */
+void mhb_ring_disturb_copy(mhb_ring *ring, int copy, mhb_ring_output *output, double size,
+                           mhb_noise *noise);
+
+/* Those of a ring without copies. */
 void mhb_ring_disturb(mhb_ring *ring, mhb_ring_output *output, double size, mhb_noise *noise);
 
 #endif

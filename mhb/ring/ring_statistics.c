@@ -1,7 +1,6 @@
 #include "mhb/ring/ring_statistics.h"
 
 #include <math.h>
-#include <stdlib.h>
 
 static const double SETTLED = 0.01, MOST_CORRELATION = 0.9;
 
@@ -21,17 +20,41 @@ mhb_block_mean mhb_block_mean_of(const double *x, int n) {
                           .drift = mean_of(x + n - n / 2, n / 2) - mean_of(x, n / 2)};
 }
 
-bool mhb_block_mean_is_settled(const mhb_block_mean *a) {
-  return a->error < SETTLED * a->mean && fabs(a->drift) < fmax(SETTLED * a->mean, 2 * a->error);
+bool mhb_block_mean_is_level(const mhb_block_mean *a) {
+  return fabs(a->drift) < fmax(SETTLED * a->mean, 2 * a->error);
 }
 
-static int ascending(const void *a, const void *b) {
-  double x = *(const double *)a, y = *(const double *)b;
-  return (x > y) - (x < y);
+bool mhb_block_mean_is_settled(const mhb_block_mean *a) {
+  return a->error < SETTLED * a->mean && mhb_block_mean_is_level(a);
+}
+
+static void swap(double *a, double *b) {
+  const double x = *a;
+  *a             = *b;
+  *b             = x;
+}
+
+/* Hoare's selection: what is left and right of `at` is not larger, and not smaller. */
+static double select_at(double *x, int n, int at) {
+  for (int low = 0, high = n - 1; low < high;) {
+    const double pivot = x[low + (high - low) / 2];
+    int          i = low, j = high;
+    while (i <= j) {
+      while (x[i] < pivot) i++;
+      while (x[j] > pivot) j--;
+      if (i <= j) swap(&x[i++], &x[j--]);
+    }
+    if (at <= j)
+      high = j;
+    else if (at >= i)
+      low = i;
+    else
+      break;
+  }
+  return x[at];
 }
 
 double mhb_percentile(double *x, int n, double share) {
-  int at = (int)ceil(share * n) - 1;
-  qsort(x, (size_t)n, sizeof *x, ascending);
-  return x[at < 0 ? 0 : at < n ? at : n - 1];
+  const int at = (int)ceil(share * n) - 1;
+  return select_at(x, n, at < 0 ? 0 : at < n ? at : n - 1);
 }

@@ -10,13 +10,16 @@ typedef struct {
 } mhb_block_mean;
 
 /* error = s/sqrt(n) sqrt((1 + r)/(1 - r)), s the standard deviation of the n block means, r their
- * correlation with the next one, within 0 to 0.9. n >= 4. */
+ * correlation with the next one, within 0 to 0.9. n >= 3. */
 mhb_block_mean mhb_block_mean_of(const double *block, int n);
 
-/* error below 1 % of the mean, drift below 1 % or two errors. */
+/* Drift below 1 % of the mean, or two errors. */
+bool mhb_block_mean_is_level(const mhb_block_mean *a);
+
+/* Error below 1 % of the mean, and level. */
 bool mhb_block_mean_is_settled(const mhb_block_mean *a);
 
-/* Smallest value that at least `share` of x[n] do not exceed; x is sorted. */
+/* Smallest value that at least `share` of x[n] do not exceed; x is reordered. */
 double mhb_percentile(double *x, int n, double share);
 
 #endif

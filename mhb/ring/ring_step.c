@@ -5,7 +5,7 @@
 /* What a step of the modes reads and writes. */
 typedef struct {
   int           modes, pairs, newest, oldest;
-  size_t        lanes, row, stride;
+  size_t        lanes, row, stride, copies;
   const double *coefficient, *own, *p;  /* own: NULL of equal blades */
   double       *z, *right, *left, *out; /* out: NULL where it is not sampled */
 } mhb_ring_modes;
@@ -96,11 +96,12 @@ MHB_HOT static void flow(const mhb_slip_law *law, int lanes, size_t row, const d
 
 /* Blades that are not there bear nothing; the last blade is the left neighbour of the first. */
 static void close_ring(const mhb_ring *ring) {
-  const mhb_ring_model *m = ring->model;
+  const mhb_ring_model *m    = ring->model;
+  const int             used = mhb_ring_model_used(m);
   for (int i = 0; i < 3 * m->pairs; i++) {
     double *p = ring->p + (size_t)i * ring->row + MHB_LANES;
-    for (int b = m->blades; b < m->lanes; b++) p[b] = 0;
-    p[-1] = p[m->blades - 1];
+    for (int l = used; l < m->lanes; l++) p[l] = 0;
+    for (int c = 1; c <= m->copies; c++) p[-c] = p[used - c];
   }
 }
 
@@ -111,8 +112,9 @@ MHB_HOT static void add_sides(const mhb_ring *ring, int pair, double *u) {
     size_t        at    = ((size_t)(3 * pair) + i) * ring->row + MHB_LANES;
     const double *right = ring->right + at;
     double       *left  = ring->left + at;
-    left[m->blades]     = left[0];
-    for (int l = 0; l < m->lanes; l++) u[i * ring->row + (size_t)l] = right[l] + left[l + 1];
+    for (int c = 0; c < m->copies; c++) left[mhb_ring_model_used(m) + c] = left[c];
+    for (int l = 0; l < m->lanes; l++)
+      u[i * ring->row + (size_t)l] = right[l] + left[l + m->copies];
   }
 }
 
@@ -150,6 +152,7 @@ void mhb_ring_period(mhb_ring *ring) {
                                  .lanes       = (size_t)m->lanes,
                                  .row         = ring->row,
                                  .stride      = (size_t)m->stride,
+                                 .copies      = (size_t)m->copies,
                                  .coefficient = m->coefficient,
                                  .own         = m->own,
                                  .p           = ring->p,
@@ -186,15 +189,16 @@ static double kick(const mhb_ring *ring, int mode, int lane) {
   for (int i = 0; i < 3 * m->pairs; i++) {
     const double *p = ring->p + (size_t)i * ring->row + MHB_LANES + lane;
     const double *r = row + 6 * (i / 3) + i % 3;
-    sum -= r[0] * p[0] + r[3] * p[-1];
+    sum -= r[0] * p[0] + r[3] * p[-m->copies];
   }
   return m->own ? sum * *mhb_ring_model_own(m, mode, lane, MHB_RING_GAIN) : sum;
 }
 
-void mhb_ring_get(const mhb_ring *ring, double *q, double *v) {
+/* Lanes `first`, first + next, ... below the last used one. */
+static void get(const mhb_ring *ring, int first, int next, double *q, double *v) {
   const mhb_ring_model *m = ring->model;
   for (int k = 0; k < m->modes; k++)
-    for (int l = 0; l < m->blades; l++) {
+    for (int l = first; l < mhb_ring_model_used(m); l += next) {
       const double *z = place(ring, k, l), *M = mhb_ring_model_map(m, k, l);
       double        now = z[ring->newest], last = z[MHB_LANES - ring->newest];
       double        y = M[2] * last + M[3] * (now - M[0] * last) / M[1]; /* before the kick */
@@ -204,10 +208,10 @@ void mhb_ring_get(const mhb_ring *ring, double *q, double *v) {
     }
 }
 
-void mhb_ring_put(mhb_ring *ring, const double *q, const double *v) {
+static void put(const mhb_ring *ring, int first, int next, const double *q, const double *v) {
   const mhb_ring_model *m = ring->model;
   for (int k = 0; k < m->modes; k++)
-    for (int l = 0; l < m->blades; l++) {
+    for (int l = first; l < mhb_ring_model_used(m); l += next) {
       const double *M = mhb_ring_model_map(m, k, l);
       double       *z = place(ring, k, l), det = M[0] * M[3] - M[1] * M[2];
       double        now = q[k * m->lanes + l] / M[5];
@@ -217,18 +221,36 @@ void mhb_ring_put(mhb_ring *ring, const double *q, const double *v) {
     }
 }
 
-/* q, v += sign times the motion of the model's own modes without contact, at phase 0. */
-static void add_free_modes(const mhb_ring_model *m, double sign, double *q, double *v) {
+void mhb_ring_get(const mhb_ring *ring, double *q, double *v) {
+  get(ring, 0, 1, q, v);
+}
+
+void mhb_ring_put(mhb_ring *ring, const double *q, const double *v) {
+  put(ring, 0, 1, q, v);
+}
+
+void mhb_ring_get_copy(const mhb_ring *ring, int copy, double *q, double *v) {
+  get(ring, copy, ring->model->copies, q, v);
+}
+
+void mhb_ring_put_copy(mhb_ring *ring, int copy, const double *q, const double *v) {
+  put(ring, copy, ring->model->copies, q, v);
+}
+
+/* q, v += sign times the motion of the model's own modes without contact, at phase 0, in the lanes
+ * `first`, first + next, ... */
+static void add_free_modes(const mhb_ring_model *m, double sign, int first, int next, double *q,
+                           double *v) {
   for (int j = 0; j < m->n_free; j++)
-    for (int b = 0; b < m->blades; b++) {
-      int                   k    = m->harmonic[j];
+    for (int l = first; l < mhb_ring_model_used(m); l += next) {
+      int                   k = m->harmonic[j], b = l / m->copies;
       const mhb_receptance *r    = m->ring ? m->ring->ring->blade[b] : m->receptance;
       double complex        turn = m->ring ? 1 : cexp(-I * mhb_ring_model_lag(m, k, b));
       for (int i = 0; i < m->kept; i++) {
         double complex a =
             m->w[i] * r->scale * r->lambda[k * r->n_modes + i] * r->F[k * r->n_modes + i] * turn;
-        q[i * m->lanes + b] += sign * creal(a);
-        v[i * m->lanes + b] += sign * creal(I * (k * m->omega / m->order) * a);
+        q[i * m->lanes + l] += sign * creal(a);
+        v[i * m->lanes + l] += sign * creal(I * (k * m->omega / m->order) * a);
       }
     }
 }
@@ -237,39 +259,64 @@ shb_status mhb_ring_move(mhb_ring *ring, double omega, double *space) {
   mhb_ring_model *m = ring->model;
   double         *q = space, *v = space + (size_t)m->modes * (size_t)m->lanes;
   mhb_ring_get(ring, q, v);
-  add_free_modes(m, 1, q, v);
+  add_free_modes(m, 1, 0, 1, q, v);
   SHB_TRY(mhb_ring_model_set(m, omega, m->steps));
-  add_free_modes(m, -1, q, v);
+  add_free_modes(m, -1, 0, 1, q, v);
   mhb_ring_put(ring, q, v);
   return SHB_OK;
 }
 
-shb_status mhb_ring_save(const mhb_ring *ring, mhb_ring_state *state) {
-  const mhb_ring_model *m = ring->model;
-  const size_t          n = (size_t)m->modes * (size_t)m->lanes, row = (size_t)m->pairs * ring->row;
-  shb_arena_free(&state->arena);
-  *state         = (mhb_ring_state){.omega = m->omega};
+/* packed[n][blades] <- rows [n][row] of the lanes of a copy, and back. */
+static void pack(const mhb_ring_model *m, int copy, int n, size_t row, const double *rows,
+                 double *packed) {
+  for (int i = 0; i < n; i++)
+    for (int b = 0; b < m->blades; b++)
+      packed[i * m->blades + b] = rows[(size_t)i * row + (size_t)(b * m->copies + copy)];
+}
+
+static void unpack(const mhb_ring_model *m, int copy, int n, size_t row, const double *packed,
+                   double *rows) {
+  for (int i = 0; i < n; i++)
+    for (int b = 0; b < m->blades; b++)
+      rows[(size_t)i * row + (size_t)(b * m->copies + copy)] = packed[i * m->blades + b];
+}
+
+/* Arrays of a state, unless it has them. */
+static shb_status prepare_state(const mhb_ring_model *m, mhb_ring_state *state) {
+  const size_t blades = (size_t)m->blades, n = (size_t)m->modes * blades;
+  if (state->q) return SHB_OK;
   state->q       = shb_arena_take(&state->arena, n, sizeof(double));
   state->v       = shb_arena_take(&state->arena, n, sizeof(double));
-  state->p       = shb_arena_take(&state->arena, 3 * row, sizeof(double));
-  state->contact = shb_arena_take(&state->arena, 5 * row, sizeof(double));
+  state->p       = shb_arena_take(&state->arena, 3 * (size_t)m->pairs * blades, sizeof(double));
+  state->contact = shb_arena_take(&state->arena, 5 * (size_t)m->pairs * blades, sizeof(double));
   SHB_CHECK(!state->arena.failed, SHB_ERR_IO, "out of memory");
-  mhb_ring_get(ring, state->q, state->v);
-  add_free_modes(m, 1, state->q, state->v);
-  memcpy(state->p, ring->p, 3 * row * sizeof(double));
-  memcpy(state->contact, ring->contact, 5 * row * sizeof(double));
   return SHB_OK;
 }
 
-void mhb_ring_load(mhb_ring *ring, const mhb_ring_state *state, double *space) {
-  const mhb_ring_model *m = ring->model;
-  const size_t          n = (size_t)m->modes * (size_t)m->lanes, row = (size_t)m->pairs * ring->row;
-  memcpy(space, state->q, n * sizeof(double));
-  memcpy(space + n, state->v, n * sizeof(double));
-  memcpy(ring->p, state->p, 3 * row * sizeof(double));
-  memcpy(ring->contact, state->contact, 5 * row * sizeof(double));
-  add_free_modes(m, -1, space, space + n);
-  mhb_ring_put(ring, space, space + n);
+shb_status mhb_ring_save(const mhb_ring *ring, int copy, double *space, mhb_ring_state *state) {
+  const mhb_ring_model *m    = ring->model;
+  double               *half = space + (size_t)m->modes * (size_t)m->lanes;
+  SHB_TRY(prepare_state(m, state));
+  state->omega = m->omega;
+  mhb_ring_get_copy(ring, copy, space, half);
+  add_free_modes(m, 1, copy, m->copies, space, half);
+  pack(m, copy, m->modes, (size_t)m->lanes, space, state->q);
+  pack(m, copy, m->modes, (size_t)m->lanes, half, state->v);
+  pack(m, copy, 3 * m->pairs, ring->row, ring->p + MHB_LANES, state->p);
+  pack(m, copy, 5 * m->pairs, ring->row, ring->contact + MHB_LANES, state->contact);
+  return SHB_OK;
+}
+
+void mhb_ring_load(mhb_ring *ring, int copy, const mhb_ring_state *state, double *space) {
+  const mhb_ring_model *m    = ring->model;
+  double               *half = space + (size_t)m->modes * (size_t)m->lanes;
+  unpack(m, copy, m->modes, (size_t)m->lanes, state->q, space);
+  unpack(m, copy, m->modes, (size_t)m->lanes, state->v, half);
+  unpack(m, copy, 3 * m->pairs, ring->row, state->p, ring->p + MHB_LANES);
+  unpack(m, copy, 5 * m->pairs, ring->row, state->contact, ring->contact + MHB_LANES);
+  close_ring(ring);
+  add_free_modes(m, -1, copy, m->copies, space, half);
+  mhb_ring_put_copy(ring, copy, space, half);
 }
 
 /* ---- the start ---- */
@@ -287,9 +334,9 @@ static void add_harmonic(mhb_ring *ring, int k, const double complex *p) {
       sum -= (r[0] + conj(phase) * r[3]) * p[row];
     }
     sum /= turn - c[MHB_RING_TRACE] + c[MHB_RING_DET] / turn;
-    for (int b = 0; b < m->blades; b++) {
-      double complex a = sum * cexp(-I * mhb_ring_model_lag(m, k, b));
-      double        *z = place(ring, i, b);
+    for (int l = 0; l < mhb_ring_model_used(m); l++) {
+      double complex a = sum * cexp(-I * mhb_ring_model_lag(m, k, l / m->copies));
+      double        *z = place(ring, i, l);
       z[ring->newest] += creal(a);
       z[MHB_LANES - ring->newest] += creal(a / turn);
     }
@@ -301,8 +348,9 @@ static void add_own_harmonic(mhb_ring *ring, int k, const double complex *p) {
   const mhb_ring_model *m    = ring->model;
   const int             n3   = 3 * m->pairs;
   const double complex  turn = cexp(I * (k * m->omega / m->order) * m->h);
-  for (int i = 0; i < m->modes * m->blades; i++) {
-    const int             mode = i / m->blades, b = i % m->blades;
+  const int             used = mhb_ring_model_used(m);
+  for (int i = 0; i < m->modes * used; i++) {
+    const int             mode = i / used, lane = i % used, b = lane / m->copies;
     const double         *c     = m->coefficient + (size_t)mode * (size_t)m->stride + MHB_RING_ROWS;
     const double complex *right = p + b * n3, *left = p + (b > 0 ? b - 1 : m->blades - 1) * n3;
     double complex        sum = 0;
@@ -310,10 +358,10 @@ static void add_own_harmonic(mhb_ring *ring, int k, const double complex *p) {
       const double *r = c + 6 * (row / 3) + row % 3;
       sum -= r[0] * right[row] + r[3] * left[row];
     }
-    sum *= *mhb_ring_model_own(m, mode, b, MHB_RING_GAIN) /
-           (turn - *mhb_ring_model_own(m, mode, b, MHB_RING_TRACE) +
-            *mhb_ring_model_own(m, mode, b, MHB_RING_DET) / turn);
-    double *z = place(ring, mode, b);
+    sum *= *mhb_ring_model_own(m, mode, lane, MHB_RING_GAIN) /
+           (turn - *mhb_ring_model_own(m, mode, lane, MHB_RING_TRACE) +
+            *mhb_ring_model_own(m, mode, lane, MHB_RING_DET) / turn);
+    double *z = place(ring, mode, lane);
     z[ring->newest] += creal(sum);
     z[MHB_LANES - ring->newest] += creal(sum / turn);
   }
@@ -321,32 +369,33 @@ static void add_own_harmonic(mhb_ring *ring, int k, const double complex *p) {
 
 /* Motion at phase 0 and the state of the contacts; friction within its limit. */
 static void settle_contacts(mhb_ring *ring) {
-  const mhb_ring_model *m = ring->model;
+  const mhb_ring_model *m    = ring->model;
+  const int             used = mhb_ring_model_used(m);
   double                u[3 * ring->row];
   for (int i = 0; i < 3 * m->pairs; i++)
-    for (int b = 0; b < m->blades; b++) {
-      size_t at       = (size_t)i * ring->row + MHB_LANES + (size_t)b;
+    for (int l = 0; l < used; l++) {
+      size_t at       = (size_t)i * ring->row + MHB_LANES + (size_t)l;
       ring->right[at] = ring->left[at] = 0;
       for (int k = 0; k < m->modes; k++) {
         const double *r =
             m->coefficient + (size_t)k * (size_t)m->stride + MHB_RING_ROWS + 6 * (i / 3) + i % 3;
-        ring->right[at] += r[0] * place(ring, k, b)[ring->newest];
-        ring->left[at] += r[3] * place(ring, k, b)[ring->newest];
+        ring->right[at] += r[0] * place(ring, k, l)[ring->newest];
+        ring->left[at] += r[3] * place(ring, k, l)[ring->newest];
       }
     }
   for (int pair = 0; pair < m->pairs; pair++) {
     const mhb_slip_law *law = &m->law[pair];
     add_sides(ring, pair, u);
     add_free(m, pair, 0, ring->row, u);
-    for (size_t b = 0; b < (size_t)m->blades; b++) {
+    for (size_t l = 0; l < (size_t)used; l++) {
       size_t  row     = ring->row;
-      double *p       = ring->p + (size_t)(3 * pair) * row + MHB_LANES + b;
-      double *contact = ring->contact + (size_t)(5 * pair) * row + MHB_LANES + b;
-      double  n = law->n0 + law->kv * u[b], limit = n > 0 ? law->mu * n : 0;
+      double *p       = ring->p + (size_t)(3 * pair) * row + MHB_LANES + l;
+      double *contact = ring->contact + (size_t)(5 * pair) * row + MHB_LANES + l;
+      double  n = law->n0 + law->kv * u[l], limit = n > 0 ? law->mu * n : 0;
       double  size = hypot(p[row], p[2 * row]), part = size > limit ? limit / size : 1;
       contact[0]       = n;
-      contact[row]     = u[row + b];
-      contact[2 * row] = u[2 * row + b];
+      contact[row]     = u[row + l];
+      contact[2 * row] = u[2 * row + l];
       contact[3 * row] = p[row] = part * p[row];
       contact[4 * row] = p[2 * row] = part * p[2 * row];
       p[0]                          = (n > 0 ? n : 0) - law->offset;
@@ -367,9 +416,9 @@ void mhb_ring_start(mhb_ring *ring, int n_harmonics, const double complex *force
       add_own_harmonic(ring, k, p);
     else
       add_harmonic(ring, k, p);
-    for (int b = 0; b < m->blades; b++)
-      for (int i = 0; i < n3; i++)
-        ring->p[(size_t)i * ring->row + MHB_LANES + (size_t)b] +=
+    for (int l = 0; l < mhb_ring_model_used(m); l++)
+      for (int i = 0, b = l / m->copies; i < n3; i++)
+        ring->p[(size_t)i * ring->row + MHB_LANES + (size_t)l] +=
             creal(m->ring ? p[b * n3 + i] : p[i] * cexp(-I * mhb_ring_model_lag(m, k, b)));
   }
   settle_contacts(ring);

@@ -20,12 +20,12 @@ typedef struct {
   shb_arena arena;
 } mhb_ring;
 
-/* A state at the end of a period, as mhb_ring_save leaves it. */
+/* A state of one ring at the end of a period, as mhb_ring_save leaves it. */
 typedef struct {
-  double    omega; /* rad/s of the excitation */
-  double   *q, *v; /* [mode][lanes] as of mhb_ring_get, with the motion without contact */
-  double   *p, *contact;
-  shb_arena arena; /* shb_arena_free ends it */
+  double    omega;       /* rad/s of the excitation */
+  double   *q, *v;       /* [mode][blades] as of mhb_ring_get, with the motion without contact */
+  double   *p, *contact; /* [3 pairs][blades], [5 pairs][blades] */
+  shb_arena arena;       /* shb_arena_free ends it */
 } mhb_ring_state;
 
 /* A ring at rest. The model must outlive it. SHB_ERR_IO: no memory. */
@@ -35,7 +35,7 @@ void       mhb_ring_destroy(mhb_ring *ring);
 /* Integrate a period of the fundamental. */
 void mhb_ring_period(mhb_ring *ring);
 
-/* Start on a wave at phase 0: the steady motion of the steps under its contact forces.
+/* Start all copies on a wave at phase 0: the steady motion of the steps under its contact forces.
  *   force  in  [3 pairs][n_harmonics + 1] N of blade 0, harmonics of the fundamental; of a mistuned
  *              ring [blades][3 pairs][n_harmonics + 1] of all contacts */
 void mhb_ring_start(mhb_ring *ring, int n_harmonics, const double complex *force);
@@ -45,13 +45,18 @@ void mhb_ring_start(mhb_ring *ring, int n_harmonics, const double complex *force
 void mhb_ring_get(const mhb_ring *ring, double *q, double *v);
 void mhb_ring_put(mhb_ring *ring, const double *q, const double *v);
 
+/* The same for the lanes of one copy. */
+void mhb_ring_get_copy(const mhb_ring *ring, int copy, double *q, double *v);
+void mhb_ring_put_copy(mhb_ring *ring, int copy, const double *q, const double *v);
+
 /* Continue at another frequency of the excitation, rad/s. Positions and velocities of the blades
  * are kept, with their motion without contact. space: [2][mode][lanes]. */
 shb_status mhb_ring_move(mhb_ring *ring, double omega, double *space);
 
-/* Keep a state, and continue from one, of a ring with the same modes. The frequency may be another
- * one: the blades keep their positions and velocities. SHB_ERR_IO: no memory. */
-shb_status mhb_ring_save(const mhb_ring *ring, mhb_ring_state *state);
-void       mhb_ring_load(mhb_ring *ring, const mhb_ring_state *state, double *space);
+/* Keep the state of a copy, and continue one from a state, of a ring with the same modes. The
+ * frequency and the steps may be others: the blades keep their positions and velocities. A state is
+ * empty, or of such a ring. space: [2][mode][lanes]. SHB_ERR_IO: no memory. */
+shb_status mhb_ring_save(const mhb_ring *ring, int copy, double *space, mhb_ring_state *state);
+void       mhb_ring_load(mhb_ring *ring, int copy, const mhb_ring_state *state, double *space);
 
 #endif

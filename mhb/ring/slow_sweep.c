@@ -46,7 +46,7 @@ static double frequency_of(const march_state *s, double step) {
 static shb_status keep_state(const march_state *s, int step, mhb_slow_sweep *out) {
   const int from = step - s->window / 2;
   if (from < 0 || from % s->stride != 0 || from / s->stride >= s->n) return SHB_OK;
-  return mhb_ring_save(&s->ring, &out->state[from / s->stride]);
+  return mhb_ring_save(&s->ring, 0, s->output.space, &out->state[from / s->stride]);
 }
 
 /* finished <- false: stopped. */

@@ -199,12 +199,24 @@ static shb_status make_speed_derivative(mhb_receptance *r, const mhb_settings *s
   return status;
 }
 
+/* Roots at 0 of modes that Coriolis terms couple share one shape. */
+static shb_status check_coriolis(const modal_model *model) {
+  for (int i = 0; i < model->n_modes && model->coriolis; i++)
+    SHB_CHECK(
+        model->frequency[i] > 0, SHB_ERR_INPUT,
+        "/modes/frequency: value %d (from 0) is at 0 Hz; with Coriolis terms (/modes/coriolis) "
+        "every mode must be above 0: hold the body, or leave the terms out",
+        i);
+  return SHB_OK;
+}
+
 /* Everything that does not depend on omega. */
 static shb_status set_blade(mhb_receptance *r, const mhb_settings *settings,
                             const mhb_residual_terms *like) {
   const double step  = settings->to_ground ? 0 : phase_step(settings);
   const int contacts = r->ring ? r->ring->blades : settings->contacts > 1 ? settings->contacts : 1;
   r->hold            = HOLD * SHB_TWO_PI * fmin(settings->frequency[0], settings->frequency[1]);
+  SHB_TRY(check_coriolis(r->model));
   SHB_TRY(mhb_interfaces_match(r->model, settings, r->interface));
   mhb_pair_shares(r->model->n_pairs, mhb_interfaces(settings), r->interface, r->model->area,
                   contacts, r->share);

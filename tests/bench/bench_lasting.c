@@ -4,6 +4,7 @@
  *   bench_lasting           a modulated ring of six blades
  *   bench_lasting --quick   the same, one point
  *   bench_lasting --starts [FILE]   other starts beside what is told
+ *   bench_lasting --cost [FILE]     what is told alone, with its cost
  *
  * At every point whose lasting motion the program settles, the ring starts on the wave with 10 % of
  * noise and is integrated for 1000 periods. A row gives the mean of the peaks over blades and the
@@ -142,43 +143,43 @@ static void take_ending(const mhb_lasting *found, const mhb_motion *m, endings *
 static shb_status other_starts(const modal_model *model, const mhb_settings *s,
                                const mhb_wave *wave, const mhb_lasting *found, endings *to) {
   mhb_ring_model *m;
-  mhb_start       start = {.periods = 0};
-  mhb_noise       noise = {.state = 777};
-  int             steps;
+  mhb_starts      starts = {.scale = 1};
+  mhb_noise       noise  = {.state = 777};
+  int             steps, copy = 0;
+  double          mean[BLOCKS], spread[BLOCKS];
   double         *peaks = NULL;
   SHB_TRY(mhb_ring_model_create(model, s, wave->n0, wave->omega, &m));
   shb_status status = mhb_ring_steps(m, wave->omega, STEPS[1], &steps);
-  if (status == SHB_OK) status = mhb_start_create(m, &start);
+  if (status == SHB_OK) status = mhb_starts_create(m, &starts);
   if (status == SHB_OK) peaks = malloc(sizeof *peaks * BLOCK * BLOCKS * (size_t)m->blades);
-  double scale = 0;
   for (int i = -1; i < OTHERS && peaks; i++) {
-    mhb_start_begin(&start);
-    mhb_ring_start(&start.ring, wave->n_harmonics, wave->force);
+    mhb_start_begin(&starts, 0);
+    mhb_ring_start(&starts.ring, wave->n_harmonics, wave->force);
     if (i < 0) {
-      scale = period_mean(&start.ring, &start.output);
+      starts.scale = period_mean(&starts.ring, &starts.output);
       continue;
     }
-    mhb_ring_disturb(&start.ring, &start.output, 0.03 + 0.07 * i / (OTHERS - 1), &noise);
-    mhb_start_advance(&start, BLOCKS, scale, NULL, NULL);
-    const mhb_lasting_series series = mhb_start_series(&start, peaks);
+    mhb_ring_disturb(&starts.ring, &starts.output, 0.03 + 0.07 * i / (OTHERS - 1), &noise);
+    for (int k = 0; k < BLOCKS; k++) mhb_starts_block(&starts, NULL, NULL);
+    const mhb_lasting_series series = mhb_starts_series(&starts, 1, &copy, mean, spread, peaks);
     const mhb_motion         ending = mhb_motion_of(&series, true);
     take_ending(found, &ending, to);
   }
   free(peaks);
-  mhb_start_destroy(&start);
+  mhb_starts_destroy(&starts);
   mhb_ring_model_destroy(m);
   return status;
 }
 
 /* One row. *missed grows if a larger motion was. */
 static shb_status starts_row(const modal_model *model, const mhb_settings *s, const mhb_wave *wave,
-                             int *missed) {
+                             bool others, double *sum, int *missed) {
   mhb_lasting  found;
   endings      to      = {0};
   const double started = shb_processor_seconds();
   SHB_TRY(mhb_lasting_settle(model, s, wave, NULL, &found));
   const double seconds = shb_processor_seconds() - started;
-  SHB_TRY(other_starts(model, s, wave, &found, &to));
+  if (others) SHB_TRY(other_starts(model, s, wave, &found, &to));
   printf("%9.4g %9.4f %4d %6d %7d %6.2f   %4d %7d %6d %7d %9d  ", wave->n0,
          wave->omega / SHB_TWO_PI, found.kind, found.starts, found.periods, seconds, to.told,
          to.between, to.larger, to.smaller, to.unsettled);
@@ -188,6 +189,7 @@ static shb_status starts_row(const modal_model *model, const mhb_settings *s, co
   printf("\n");
   fflush(stdout);
   *missed += 6 * to.larger >= OTHERS;
+  *sum += seconds;
   return SHB_OK;
 }
 
@@ -197,8 +199,9 @@ static bool is_modulated(const mhb_branch *b, int i) {
 }
 
 /* All curves at evenly spread points. */
-static shb_status starts_table(const modal_model *model, mhb_settings *s, int *fault) {
-  mhb_response *r = NULL;
+static shb_status starts_table(const modal_model *model, mhb_settings *s, bool others, int *fault) {
+  mhb_response *r   = NULL;
+  double        sum = 0;
   int           n = 0, at = 0, missed = 0, rows = 0;
   s->lasting = MHB_LASTING_NEVER;
   SHB_TRY(mhb_forced_response(model, s, NULL, NULL, NULL, &r));
@@ -217,11 +220,13 @@ static shb_status starts_table(const modal_model *model, mhb_settings *s, int *f
       if (!wanted) continue;
       mhb_wave wave = {SHB_TWO_PI * b->frequency[i], b->n0[i], b->n_harmonics,
                        b->force + (size_t)i * row, 0};
-      status        = starts_row(model, s, &wave, &missed);
+      status        = starts_row(model, s, &wave, others, &sum, &missed);
       rows++;
     }
   }
-  printf("%d of %d points miss a larger motion that one start in six reaches\n", missed, rows);
+  printf("%.2f s a point\n", sum / fmax(1, rows));
+  if (others)
+    printf("%d of %d points miss a larger motion that one start in six reaches\n", missed, rows);
   mhb_response_destroy(r);
   *fault += rows == 0 || missed > 1 + rows / 20;
   return status;
@@ -260,7 +265,8 @@ static mhb_settings six_blades(void) {
 }
 
 int main(int argc, char **argv) {
-  const bool starts = argc > 1 && !strcmp(argv[1], "--starts");
+  const bool others = argc > 1 && !strcmp(argv[1], "--starts");
+  const bool starts = others || (argc > 1 && !strcmp(argv[1], "--cost"));
   const bool quick = argc > 1 && !strcmp(argv[1], "--quick"), from_file = argc > 1 + starts + quick;
   int        fault = 0;
   modal_model  model;
@@ -276,8 +282,8 @@ int main(int argc, char **argv) {
     for (int i = 0; i < model.n_modes; i++) model.damping_ratio[i] = 0.003;
   }
   if (status == SHB_OK)
-    status =
-        starts ? starts_table(&model, &s, &fault) : table(&model, &s, quick ? 1 : 1000, &fault);
+    status = starts ? starts_table(&model, &s, others, &fault)
+                    : table(&model, &s, quick ? 1 : 1000, &fault);
   if (status != SHB_OK) {
     fprintf(stderr, "bench_lasting: %s\n", shb_message());
     return 1;
