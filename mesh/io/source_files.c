@@ -9,6 +9,7 @@
 #include <strings.h>
 #include <sys/stat.h>
 
+#include "mesh/base/memory.h"
 #include "mesh/base/publish.h"
 #include "mesh/core/file_format.h"
 
@@ -22,14 +23,11 @@ typedef struct {
 
 /* Add the file `name` of n characters beside another one, if it is a file and not there yet. */
 static shb_status add(file_list *list, const char *from, const char *name, size_t n) {
-  struct stat  about;
-  const char  *slash  = strrchr(from, '/');
-  const int    folder = slash && name[0] != '/' ? (int)(slash + 1 - from) : 0;
-  const size_t size   = (size_t)folder + n + 1;
-  char        *path   = malloc(size);
-  SHB_CHECK(path, SHB_ERR_IO, "out of memory");
-  snprintf(path, size, "%.*s%.*s", folder, from, (int)n, name);
-  bool known = stat(path, &about) != 0 || !S_ISREG(about.st_mode);
+  struct stat about;
+  const char *slash  = strrchr(from, '/');
+  const int   folder = slash && name[0] != '/' ? (int)(slash + 1 - from) : 0;
+  char       *path   = shb_text_of("%.*s%.*s", folder, from, (int)n, name);
+  bool        known  = stat(path, &about) != 0 || !S_ISREG(about.st_mode);
   for (int i = 0; i < list->n && !known; i++) known = strcmp(list->path[i], path) == 0;
   if (known || list->n == MOST_FILES) free(path);
   SHB_CHECK(known || list->n < MOST_FILES, SHB_ERR_INPUT, "%s: includes more than %d files",
@@ -70,7 +68,7 @@ static shb_status add_cards(file_list *list, const char *from, const char *text)
 static char *text_of(const char *path) {
   struct stat about;
   FILE       *file = stat(path, &about) == 0 && S_ISREG(about.st_mode) ? fopen(path, "rb") : NULL;
-  char       *text = file ? malloc((size_t)about.st_size + 1) : NULL;
+  char       *text = file ? shb_alloc((size_t)about.st_size + 1, 1) : NULL;
   if (text) text[fread(text, 1, (size_t)about.st_size, file)] = '\0';
   if (file) fclose(file);
   return text;
@@ -103,8 +101,7 @@ static shb_status hash(const file_list *list, char out[17]) {
 }
 
 shb_status mesh_source_fingerprint(const char *path, char out[17]) {
-  file_list list = {1, {strdup(path)}};
-  SHB_CHECK(list.path[0], SHB_ERR_IO, "out of memory");
+  file_list  list   = {1, {shb_text(path)}};
   shb_status status = SHB_OK;
   for (int i = 0; i < list.n && status == SHB_OK; i++) status = add_included(&list, list.path[i]);
   if (status == SHB_OK) status = hash(&list, out);
