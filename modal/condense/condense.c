@@ -6,11 +6,12 @@
 
 #include "fem/solver/petsc_error.h"
 #include "mesh/base/constants.h"
+#include "mesh/base/memory.h"
 #include "modal/common/phases.h"
 #include "modal/condense/few_columns.h"
 #include "modal/condense/many_columns.h"
 
-static shb_status allocate(const modal_condensation *to, int n_modes, modal_model *model) {
+static void allocate(const modal_condensation *to, int n_modes, modal_model *model) {
   const size_t m = (size_t)n_modes, pairs = (size_t)to->n_pairs, nc = (size_t)to->contact.n;
   const size_t q3 = (size_t)to->probe.n, k = (size_t)to->load.n_harmonics + 1;
   model->n_modes  = n_modes;
@@ -39,16 +40,12 @@ static shb_status allocate(const modal_condensation *to, int n_modes, modal_mode
                                         &model->load_inertia,        &model->load_fourth,
                                         &model->probe_load_residual, &model->probe_load_inertia,
                                         &model->probe_load_fourth};
-  bool                   made        = true;
   for (size_t i = 0; i < sizeof real / sizeof *real; i++)
-    if (real[i].n > 0) made = (*real[i].array = calloc(real[i].n, sizeof(double))) && made;
+    if (real[i].n > 0) *real[i].array = shb_alloc_zeroed(real[i].n, sizeof(double));
   for (size_t i = 0; i < sizeof complexes / sizeof *complexes; i++) {
     const size_t n = i == 0 ? m : i < 4 ? nc : q3;
-    *complexes[i]  = calloc(k * n + 1, sizeof(double complex));
-    made           = *complexes[i] && made;
+    *complexes[i]  = shb_alloc_zeroed(k * n + 1, sizeof(double complex));
   }
-  SHB_CHECK(made, SHB_ERR_IO, "out of memory for a modal model of %zu contact dofs", nc);
-  return SHB_OK;
 }
 
 static PetscErrorCode fill_shapes(const fem_system *system, const modal_eigen *eigen,
@@ -120,7 +117,7 @@ shb_status modal_condense(const fem_system *system, const modal_eigen *eigen,
                           const modal_condensation *to, shb_progress *progress,
                           modal_model *model) {
   memset(model, 0, sizeof *model);
-  SHB_TRY(allocate(to, eigen->n, model));
+  allocate(to, eigen->n, model);
   SHB_TRY(fill_modes(system, eigen, to, model));
   return fill_terms(system, eigen, to, progress, model);
 }
