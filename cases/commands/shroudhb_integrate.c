@@ -115,7 +115,7 @@ static shb_status integrate(const case_file *file, case_model *model, const mhb_
                                  provenance, progress, response);
   modal_model  dense;
   mhb_settings settings;
-  shb_status   status;
+  shb_status   status = SHB_OK;
   SHB_CHECK(!model->disc_run_up, SHB_ERR_INPUT,
             "mhb.run_up: the sectors of a disc are integrated at one speed; leave it out, and give "
             "a case for each rotor.speed");
@@ -124,7 +124,7 @@ static shb_status integrate(const case_file *file, case_model *model, const mhb_
     status = mhb_dense_disc(&model->settings, &dense);
     mhb_dense_disc_settings(&model->settings, &settings);
   } else {
-    status = mhb_dense_ring(model->ring, &dense);
+    mhb_dense_ring(model->ring, &dense);
     mhb_dense_ring_settings(&model->settings, &settings);
   }
   if (status == SHB_OK)

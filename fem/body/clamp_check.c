@@ -3,6 +3,8 @@
 #include <stdbool.h>
 #include <stdlib.h>
 
+#include "mesh/base/memory.h"
+
 /* Root of a node in the union-find forest, with path halving. */
 static int find(int *parent, int i) {
   while (parent[i] != i) {
@@ -21,8 +23,7 @@ shb_status fem_clamp_check(const mesh_fe *mesh) {
   const mesh_topology *topology = mesh_topology_of(mesh->kind);
   const int            nodes    = topology->nodes;
   const mesh_face_set *root     = &mesh->set[MESH_ROOT];
-  int                 *parent   = malloc((size_t)mesh->n_nodes * sizeof *parent + 1);
-  SHB_CHECK(parent, SHB_ERR_IO, "out of memory for %d nodes", mesh->n_nodes);
+  int                 *parent   = shb_alloc((size_t)mesh->n_nodes, sizeof *parent);
   for (int i = 0; i < mesh->n_nodes; i++) parent[i] = i;
   for (int e = 0; e < mesh->n_elements; e++)
     join(parent, mesh->connectivity + nodes * (size_t)e, nodes);

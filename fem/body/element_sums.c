@@ -3,6 +3,7 @@
 #include <omp.h>
 #include <stdlib.h>
 
+#include "mesh/base/memory.h"
 #include "mesh/core/element_topology.h"
 
 /* CHUNK: elements that are computed, then added. BAND: block rows in a row that a thread owns. */
@@ -82,18 +83,16 @@ static void add_all(work *w) {
   }
 }
 
-bool fem_element_sums_add(const fem_elements *elements, int threads, const fem_sums *sums) {
+void fem_element_sums_add(const fem_elements *elements, int threads, const fem_sums *sums) {
   const size_t pairs = (size_t)elements->nodes * (size_t)elements->nodes;
   work         w     = {.elements = elements,
                         .sums     = sums,
                         .threads  = threads,
                         .K_size   = 9 * pairs,
                         .M_size   = (sums->blocks ? 9 : 1) * pairs};
-  w.K                = malloc(w.K_size * CHUNK * sizeof *w.K);
-  w.M                = malloc(w.M_size * CHUNK * sizeof *w.M);
-  const bool made    = w.K && w.M;
-  if (made) add_all(&w);
+  w.K                = shb_alloc(w.K_size * CHUNK, sizeof *w.K);
+  w.M                = shb_alloc(w.M_size * CHUNK, sizeof *w.M);
+  add_all(&w);
   free(w.K);
   free(w.M);
-  return made;
 }

@@ -32,8 +32,7 @@ typedef struct {
 } fem_elements;
 
 /* Add K and M of all elements.
- *   threads  in  number of threads, 1 or more
- * Returns false when out of memory. */
-bool fem_element_sums_add(const fem_elements *elements, int threads, const fem_sums *sums);
+ *   threads  in  number of threads, 1 or more */
+void fem_element_sums_add(const fem_elements *elements, int threads, const fem_sums *sums);
 
 #endif

@@ -7,6 +7,7 @@
 
 #include "fem/body/tangent.h"
 #include "fem/solver/factor.h"
+#include "mesh/base/memory.h"
 
 enum {
   MAX_ITERATIONS = 25,  /* Newton iterations in a load step */
@@ -251,9 +252,8 @@ PetscErrorCode fem_equilibrium_solve(const fem_body *body, fem_system *system,
 
   PetscFunctionBeginUser;
   memset(out, 0, sizeof *out);
-  out->displacement = calloc(size + 1, sizeof(double));
-  PetscCheck(out->displacement, PETSC_COMM_SELF, PETSC_ERR_MEM, "no memory for displacements");
-  n.u = out->displacement;
+  out->displacement = shb_alloc_zeroed(size + 1, sizeof(double));
+  n.u               = out->displacement;
   PetscCall(PetscMalloc2(size, &n.step, size, &n.trial));
   PetscCall(MatCreateVecs(system->K, &n.d, &n.R));
   PetscErrorCode code = create_solver(&n);

@@ -4,6 +4,7 @@
 #include <stdlib.h>
 
 #include "fem/supernodal/hot.h"
+#include "mesh/base/memory.h"
 
 enum { TOGETHER = 4, ROWS = 256 }; /* columns that one pass over M serves; rows at a time */
 
@@ -81,8 +82,7 @@ static PetscErrorCode multiply_by_nodes(const fem_mass_rows *m, Mat X, Mat Y) {
   PetscCall(MatDenseGetLDA(Y, &ldy));
   PetscCall(MatDenseGetArrayRead(X, &x));
   PetscCall(MatDenseGetArrayWrite(Y, &y));
-  work = aligned_alloc(sizeof *work, (3 * (size_t)m->n + 1) * sizeof *work);
-  PetscCheck(work, PETSC_COMM_SELF, PETSC_ERR_MEM, "no memory for products with the mass");
+  work = shb_alloc_aligned(sizeof *work, 3 * (size_t)m->n + 1, sizeof *work);
   for (PetscInt c = 0; c < columns; c += TOGETHER) {
     const int count = (int)PetscMin(TOGETHER, columns - c);
     interleave(m, count, x + (size_t)c * (size_t)ldx, (size_t)ldx, work);

@@ -3,15 +3,14 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Uses malloc, as mesh_fe_free frees the mesh. */
+#include "mesh/base/memory.h"
+
+/* The arrays are those that mesh_fe_free frees. */
 static PetscErrorCode share(MPI_Comm comm, int rank, void **data, size_t count, MPI_Datatype type) {
   int size;
   PetscFunctionBeginUser;
   PetscCallMPI(MPI_Type_size(type, &size));
-  if (rank != 0) {
-    *data = malloc(count * (size_t)size + 1);
-    PetscCheck(*data, PETSC_COMM_SELF, PETSC_ERR_MEM, "no memory for the mesh");
-  }
+  if (rank != 0) *data = shb_alloc(count, (size_t)size);
   PetscCallMPI(MPI_Bcast(*data, (int)count, type, 0, comm));
   PetscFunctionReturn(0);
 }

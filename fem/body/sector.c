@@ -7,6 +7,7 @@
 #include "fem/body/pressure.h"
 #include "fem/element/finite_strain.h"
 #include "mesh/base/constants.h"
+#include "mesh/base/memory.h"
 
 /* ------------------------------------------------------------------ stiffness */
 
@@ -20,12 +21,10 @@ static PetscErrorCode copy_stiffness(Mat K, fem_sector *s) {
   PetscCall(MatGetRowIJ(K, 0, PETSC_FALSE, PETSC_TRUE, &n, &start, &column, &done));
   PetscCheck(done, PETSC_COMM_SELF, PETSC_ERR_SUP, "no rows");
   const size_t count      = (size_t)start[n];
-  int         *own_start  = malloc(((size_t)n + 1) * sizeof *own_start);
-  int         *own_column = malloc((count + 1) * sizeof *own_column);
+  int         *own_start  = shb_alloc((size_t)n + 1, sizeof *own_start);
+  int         *own_column = shb_alloc(count + 1, sizeof *own_column);
   s->blocks               = (fem_blocks){(int)n, own_start, own_column};
-  s->stiffness            = malloc((9 * count + 1) * sizeof *s->stiffness);
-  PetscCheck(own_start && own_column && s->stiffness, PETSC_COMM_SELF, PETSC_ERR_MEM,
-             "no memory for a sector");
+  s->stiffness            = shb_alloc(9 * count + 1, sizeof *s->stiffness);
   memcpy(own_start, start, ((size_t)n + 1) * sizeof *own_start);
   memcpy(own_column, column, count * sizeof *own_column);
   PetscCall(MatSeqSBAIJGetArray(K, &value));
@@ -146,17 +145,14 @@ static signed char exponent_of(const double K[9], const double cosine[9], const 
 
 static PetscErrorCode find_coupling(const fem_body *body, const double *state,
                                     const fem_system *system, fem_sector *s) {
-  int *slot = calloc((size_t)s->blocks.start[s->blocks.n] + 1, sizeof *slot);
+  int *slot = shb_alloc_zeroed((size_t)s->blocks.start[s->blocks.n] + 1, sizeof *slot);
   PetscFunctionBeginUser;
-  PetscCheck(slot, PETSC_COMM_SELF, PETSC_ERR_MEM, "no memory for a sector");
   PetscCall(visit_all(body, state, system, s, slot, count_coupling));
   const size_t count = (size_t)s->n_coupled + 1;
-  s->coupled         = calloc(count, sizeof *s->coupled);
-  s->cosine          = calloc(count, sizeof *s->cosine);
-  s->sine            = calloc(count, sizeof *s->sine);
-  s->exponent        = calloc(count, sizeof *s->exponent);
-  PetscCheck(s->coupled && s->cosine && s->sine && s->exponent, PETSC_COMM_SELF, PETSC_ERR_MEM,
-             "no memory for a sector");
+  s->coupled         = shb_alloc_zeroed(count, sizeof *s->coupled);
+  s->cosine          = shb_alloc_zeroed(count, sizeof *s->cosine);
+  s->sine            = shb_alloc_zeroed(count, sizeof *s->sine);
+  s->exponent        = shb_alloc_zeroed(count, sizeof *s->exponent);
   PetscCall(visit_all(body, state, system, s, slot, add_coupling));
   for (int q = 0; q < s->n_coupled; q++)
     s->exponent[q] =
@@ -188,18 +184,11 @@ void fem_sector_coupled(const fem_sector *s, double complex phase, double comple
 
 /* ------------------------------------------------------------------ mass */
 
-/* Elements around each node: element[start[i]] .. element[start[i + 1] - 1]. NULL start when out of
- * memory. */
+/* Elements around each node: element[start[i]] .. element[start[i + 1] - 1]. */
 static int *elements_around(const mesh_fe *mesh, int **element) {
   const int each = mesh_topology_of(mesh->kind)->nodes, total = each * mesh->n_elements;
-  int      *start = calloc((size_t)mesh->n_nodes + 2, sizeof *start);
-  *element        = malloc(((size_t)total + 1) * sizeof **element);
-  if (!start || !*element) {
-    free(start);
-    free(*element);
-    *element = NULL;
-    return NULL;
-  }
+  int      *start = shb_alloc_zeroed((size_t)mesh->n_nodes + 2, sizeof *start);
+  *element        = shb_alloc((size_t)total + 1, sizeof **element);
   for (int i = 0; i < total; i++) start[mesh->connectivity[i] + 2]++;
   for (int i = 0; i < mesh->n_nodes; i++) start[i + 2] += start[i + 1];
   for (int i = 0; i < total; i++) (*element)[start[mesh->connectivity[i] + 1]++] = i / each;
@@ -222,25 +211,22 @@ static int list_neighbours(const mesh_fe *mesh, const int *start, const int *ele
   return end;
 }
 
-static bool mass_pattern(const mesh_fe *mesh, fem_sector *s) {
+static void mass_pattern(const mesh_fe *mesh, fem_sector *s) {
   int *element, *start = elements_around(mesh, &element);
-  int *seen     = calloc((size_t)mesh->n_nodes + 1, sizeof *seen);
-  s->mass_start = calloc((size_t)mesh->n_nodes + 1, sizeof *s->mass_start);
-  bool good     = start && seen && s->mass_start;
-  for (int pass = 0; good && pass < 2; pass++) {
+  int *seen     = shb_alloc_zeroed((size_t)mesh->n_nodes + 1, sizeof *seen);
+  s->mass_start = shb_alloc_zeroed((size_t)mesh->n_nodes + 1, sizeof *s->mass_start);
+  for (int pass = 0; pass < 2; pass++) {
     memset(seen, 0, (size_t)mesh->n_nodes * sizeof *seen);
     for (int i = 0; i < mesh->n_nodes; i++)
       s->mass_start[i + 1] = list_neighbours(mesh, start, element, i, s->mass_start[i], seen, s);
     if (pass > 0) continue;
     const size_t count = (size_t)s->mass_start[mesh->n_nodes] + 1;
-    s->mass_node       = malloc(count * sizeof *s->mass_node);
-    s->mass            = calloc(count, sizeof *s->mass);
-    good               = s->mass_node && s->mass;
+    s->mass_node       = shb_alloc(count, sizeof *s->mass_node);
+    s->mass            = shb_alloc_zeroed(count, sizeof *s->mass);
   }
   free(element);
   free(start);
   free(seen);
-  return good;
 }
 
 static void add_mass(const fem_body *body, int e, fem_sector *s) {
@@ -346,28 +332,25 @@ void fem_sector_mass_diagonal(const fem_sector *s, double *diagonal) {
 
 /* ------------------------------------------------------------------ together */
 
-static PetscErrorCode copy_rows(const fem_system *system, fem_sector *s) {
+static void copy_rows(const fem_system *system, fem_sector *s) {
   const size_t n = (size_t)system->n_nodes;
-  PetscFunctionBeginUser;
-  s->n_nodes = system->n_nodes;
-  s->n_rows  = (int)system->n_free;
-  s->row     = malloc((n + 1) * sizeof *s->row);
-  s->turned  = malloc((n + 1) * sizeof *s->turned);
-  PetscCheck(s->row && s->turned, PETSC_COMM_SELF, PETSC_ERR_MEM, "no memory for a sector");
+  s->n_nodes     = system->n_nodes;
+  s->n_rows      = (int)system->n_free;
+  s->row         = shb_alloc(n + 1, sizeof *s->row);
+  s->turned      = shb_alloc(n + 1, sizeof *s->turned);
   for (size_t i = 0; i < n; i++) s->row[i] = (int)system->row[i];
   memcpy(s->turned, system->turned, n * sizeof *s->turned);
   memcpy(s->turn, system->turn, sizeof s->turn);
-  PetscFunctionReturn(0);
 }
 
 PetscErrorCode fem_sector_create(const fem_body *body, const double *state,
                                  const fem_system *system, fem_sector *s) {
   PetscFunctionBeginUser;
   memset(s, 0, sizeof *s);
-  PetscCall(copy_rows(system, s));
+  copy_rows(system, s);
   PetscCall(copy_stiffness(system->K, s));
   PetscCall(find_coupling(body, state, system, s));
-  PetscCheck(mass_pattern(body->mesh, s), PETSC_COMM_SELF, PETSC_ERR_MEM, "no memory for a sector");
+  mass_pattern(body->mesh, s);
   for (int e = 0; e < body->mesh->n_elements; e++) add_mass(body, e, s);
   PetscFunctionReturn(0);
 }

@@ -7,6 +7,7 @@
 #include "fem/element/finite_strain.h"
 #include "fem/supernodal/hot.h"
 #include "fem/supernodal/large_pages.h"
+#include "mesh/base/memory.h"
 #include "mesh/base/vec3.h"
 
 /* Extrapolation from the points of a rule to the nodes by a linear function of the reference
@@ -110,24 +111,17 @@ static void find_owners(const fem_body *body, int *owner) {
 }
 
 static void recovery_destroy(recovery *r) {
-  if (!r) return;
   free(r->volume);
   free(r->owner);
   free(r);
 }
 
-/* NULL: no memory. */
 static recovery *recovery_create(const fem_body *body) {
   const mesh_fe       *mesh     = body->mesh;
   const mesh_topology *topology = mesh_topology_of(mesh->kind);
-  recovery            *r        = calloc(1, sizeof *r);
-  if (!r) return NULL;
-  r->volume = calloc((size_t)mesh->n_nodes, sizeof *r->volume);
-  r->owner  = mesh->region ? malloc((size_t)mesh->n_nodes * sizeof *r->owner) : NULL;
-  if (!r->volume || (mesh->region && !r->owner)) {
-    recovery_destroy(r);
-    return NULL;
-  }
+  recovery            *r        = shb_alloc_zeroed(1, sizeof *r);
+  r->volume                     = shb_alloc_zeroed((size_t)mesh->n_nodes, sizeof *r->volume);
+  r->owner = mesh->region ? shb_alloc((size_t)mesh->n_nodes, sizeof *r->owner) : NULL;
   fit(topology, &body->element->straight, &r->to[0]);
   fit(topology, &body->element->curved, &r->to[1]);
   if (r->owner) find_owners(body, r->owner);
@@ -164,13 +158,9 @@ static bool join_volumes(const mesh_fe *mesh, int node, recovery *r) {
   return true;
 }
 
-PetscErrorCode fem_nodal_stress(const fem_body *body, const double *u,
-                                double (*stress)[FEM_STRESSES]) {
+void fem_nodal_stress(const fem_body *body, const double *u, double (*stress)[FEM_STRESSES]) {
   const mesh_fe *mesh = body->mesh;
   recovery      *r    = recovery_create(body);
-
-  PetscFunctionBeginUser;
-  PetscCheck(r, PETSC_COMM_SELF, PETSC_ERR_MEM, "no memory for nodal stresses");
   memset(stress, 0, (size_t)mesh->n_nodes * sizeof *stress);
   for (int e = 0; e < mesh->n_elements; e++) {
     const int *node = mesh->connectivity + body->element->n * (size_t)e;
@@ -198,7 +188,6 @@ PetscErrorCode fem_nodal_stress(const fem_body *body, const double *u,
   for (int i = 0; i < mesh->n_nodes; i++)
     for (int c = 0; c < FEM_STRESSES; c++) stress[i][c] /= r->volume[i];
   recovery_destroy(r);
-  PetscFunctionReturn(0);
 }
 
 /* Motions at work on together. */
@@ -295,15 +284,14 @@ static void sum_changes(const fem_body *body, const double *u, double complex ph
   }
 }
 
-/* Up to LANES motions. false: no memory. */
-static bool change_few(const fem_body *body, const double *u, int n, const double *motion,
+/* Up to LANES motions. */
+static void change_few(const fem_body *body, const double *u, int n, const double *motion,
                        float *stress) {
   const size_t nodes        = (size_t)body->mesh->n_nodes;
   recovery    *r            = recovery_create(body);
-  lanes(*sum)[FEM_STRESSES] = fem_large_malloc(nodes * sizeof *sum);
-  const bool made           = r && sum;
-  if (made) sum_changes(body, u, 1, n, motion, r, sum);
-  for (int l = 0; made && l < n; l++) {
+  lanes(*sum)[FEM_STRESSES] = fem_large_alloc(nodes, sizeof *sum);
+  sum_changes(body, u, 1, n, motion, r, sum);
+  for (int l = 0; l < n; l++) {
     float *out = stress + FEM_STRESSES * nodes * (size_t)l;
     for (size_t i = 0; i < nodes; i++)
       for (int c = 0; c < FEM_STRESSES; c++)
@@ -311,35 +299,27 @@ static bool change_few(const fem_body *body, const double *u, int n, const doubl
   }
   free(sum);
   recovery_destroy(r);
-  return made;
 }
 
-PetscErrorCode fem_nodal_stress_changes(const fem_body *body, const double *u, int n_sets,
-                                        const fem_motions *set) {
+void fem_nodal_stress_changes(const fem_body *body, const double *u, int n_sets,
+                              const fem_motions *set) {
   const size_t nodes  = (size_t)body->mesh->n_nodes;
   int          groups = 0;
-  bool         good   = true;
-  PetscFunctionBeginUser;
   for (int s = 0; s < n_sets; s++) groups += (set[s].n + LANES - 1) / LANES;
-#pragma omp parallel for schedule(dynamic, 1) reduction(&& : good)
+#pragma omp parallel for schedule(dynamic, 1)
   for (int g = 0; g < groups; g++) {
     int s = 0, first = LANES * g;
     for (; first >= set[s].n; s++) first -= (set[s].n + LANES - 1) / LANES * LANES;
     const size_t at = nodes * (size_t)first;
-    good            = change_few(body, u, PetscMin(LANES, set[s].n - first), set[s].motion + 3 * at,
-                                 set[s].stress + FEM_STRESSES * at) &&
-           good;
+    change_few(body, u, PetscMin(LANES, set[s].n - first), set[s].motion + 3 * at,
+               set[s].stress + FEM_STRESSES * at);
   }
-  PetscCheck(good, PETSC_COMM_SELF, PETSC_ERR_MEM, "no memory for nodal stresses");
-  PetscFunctionReturn(0);
 }
 
-PetscErrorCode fem_nodal_stress_change(const fem_body *body, const double *u, int n,
-                                       const double *motion, float *stress) {
+void fem_nodal_stress_change(const fem_body *body, const double *u, int n, const double *motion,
+                             float *stress) {
   const fem_motions all = {n, motion, stress};
-  PetscFunctionBeginUser;
-  PetscCall(fem_nodal_stress_changes(body, u, 1, &all));
-  PetscFunctionReturn(0);
+  fem_nodal_stress_changes(body, u, 1, &all);
 }
 
 /* Work arrays of waves. */
@@ -366,14 +346,13 @@ static void change_waves(const fem_body *body, const double *u, double complex p
             w->sum[i][c][2 * l] / w->r->volume[i], w->sum[i][c][2 * l + 1] / w->r->volume[i]);
 }
 
-shb_status fem_nodal_stress_wave(const fem_body *body, const double *u, double complex phase, int n,
-                                 const double complex *motion, float complex *stress) {
+void fem_nodal_stress_wave(const fem_body *body, const double *u, double complex phase, int n,
+                           const double complex *motion, float complex *stress) {
   const size_t    nodes = (size_t)body->mesh->n_nodes;
   const wave_work w     = {.r    = recovery_create(body),
-                           .part = malloc(LANES * 3 * nodes * sizeof *w.part),
-                           .sum  = fem_large_malloc(nodes * sizeof *w.sum)};
-  const bool      made  = w.r && w.part && w.sum;
-  for (int first = 0; made && first < n; first += LANES / 2) {
+                           .part = shb_alloc(LANES * 3 * nodes, sizeof *w.part),
+                           .sum  = fem_large_alloc(nodes, sizeof *w.sum)};
+  for (int first = 0; first < n; first += LANES / 2) {
     const int    count = n - first < LANES / 2 ? n - first : LANES / 2;
     const size_t at    = nodes * (size_t)first;
     change_waves(body, u, phase, count, motion + 3 * at, &w, stress + FEM_STRESSES * at);
@@ -381,8 +360,6 @@ shb_status fem_nodal_stress_wave(const fem_body *body, const double *u, double c
   free(w.part);
   free(w.sum);
   recovery_destroy(w.r);
-  SHB_CHECK(made, SHB_ERR_IO, "out of memory for the stress of a wave");
-  return SHB_OK;
 }
 
 PetscErrorCode fem_unbalanced_forces(const fem_body *body, const double *u, double (*unbalanced)[3],

@@ -18,19 +18,16 @@ enum { FEM_STRESSES = 6 }; /* xx, yy, zz, xy, yz, xz, as VTK orders a symmetric 
  * second order in the element size; linear stress fields are exact. Where materials meet, only the
  * elements of the stiffest material count (greatest E; of equal ones the first). On cyclic sides
  * the elements of both sectors count.
- *   u  in  [n_nodes][3] m
- * Errors: PETSC_ERR_MEM. */
-PetscErrorCode fem_nodal_stress(const fem_body *body, const double *u,
-                                double (*stress)[FEM_STRESSES]);
+ *   u  in  [n_nodes][3] m */
+void fem_nodal_stress(const fem_body *body, const double *u, double (*stress)[FEM_STRESSES]);
 
 /* Change of these stresses by small motions about a state: their derivative along each motion. It
  * is rounded to single precision, 6e-8 relative.
  *   u       in   [n_nodes][3] m, the state; NULL: at rest
  *   motion  in   [n][n_nodes][3], mode shapes for example
- *   stress  out  [n][n_nodes][6], Pa for each metre of the motion
- * Errors: PETSC_ERR_MEM. */
-PetscErrorCode fem_nodal_stress_change(const fem_body *body, const double *u, int n,
-                                       const double *motion, float *stress);
+ *   stress  out  [n][n_nodes][6], Pa for each metre of the motion */
+void fem_nodal_stress_change(const fem_body *body, const double *u, int n, const double *motion,
+                             float *stress);
 
 /* Some motions and where their stresses go, as above. */
 typedef struct {
@@ -40,17 +37,16 @@ typedef struct {
 } fem_motions;
 
 /* The same for several sets of motions. Eight motions are a piece of work for a thread. */
-PetscErrorCode fem_nodal_stress_changes(const fem_body *body, const double *u, int n_sets,
-                                        const fem_motions *set);
+void fem_nodal_stress_changes(const fem_body *body, const double *u, int n_sets,
+                              const fem_motions *set);
 
 /* The same of motions of a sector at one nodal diameter, the right side e^(-j theta) T times the
  * left. Free of PETSc: several threads may each work on a nodal diameter.
  *   phase   in   e^(-j theta) (fem/body/sector.h)
  *   motion  in   [n][n_nodes][3]
- *   stress  out  [n][n_nodes][6]
- * Errors: SHB_ERR_IO no memory. */
-shb_status fem_nodal_stress_wave(const fem_body *body, const double *u, double complex phase, int n,
-                                 const double complex *motion, float complex *stress);
+ *   stress  out  [n][n_nodes][6] */
+void fem_nodal_stress_wave(const fem_body *body, const double *u, double complex phase, int n,
+                           const double complex *motion, float complex *stress);
 
 /* Internal forces less loads at every node, clamped ones included, N. They vanish in equilibrium at
  * free nodes. At clamped nodes they are the clamp forces.

@@ -3,6 +3,8 @@
 #include <stdbool.h>
 #include <stdlib.h>
 
+#include "mesh/base/memory.h"
+
 enum { FACES = 6, CORNERS = 4 };
 
 /* Opposite faces of the hexahedron of mesh_topology. */
@@ -58,21 +60,19 @@ shb_status fem_hourglass_check(const mesh_fe *mesh) {
   const size_t n    = FACES * (size_t)mesh->n_elements;
   size_t       more = 1;
   for (int s = 0; s < 3; s++) more += (size_t)mesh->set[held[s]].n;
-  face_key *keys      = malloc((n + more) * sizeof *keys);
-  char     *supported = calloc(n + 1, 1);
+  face_key *keys      = shb_alloc(n + more, sizeof *keys);
+  char     *supported = shb_alloc_zeroed(n + 1, 1);
   int       bad = 0, first = -1;
-  if (keys && supported) find_supported(mesh, keys, supported);
-  for (int e = 0; keys && supported && e < mesh->n_elements; e++) {
+  find_supported(mesh, keys, supported);
+  for (int e = 0; e < mesh->n_elements; e++) {
     int free_pairs = 0;
     for (int d = 0; d < 3; d++)
       free_pairs +=
           !supported[FACES * e + opposite[d][0]] && !supported[FACES * e + opposite[d][1]];
     if (free_pairs >= 2 && bad++ == 0) first = e;
   }
-  bool complete = keys && supported;
   free(keys);
   free(supported);
-  SHB_CHECK(complete, SHB_ERR_IO, "out of memory for the faces of %d elements", mesh->n_elements);
   SHB_CHECK(bad == 0, SHB_ERR_INPUT,
             "%d hexahedra (the first has tag %ld) stand in a column one by one: 2x2x2 points leave "
             "them motions without energy; mesh with two elements across, or give "

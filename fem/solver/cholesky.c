@@ -8,6 +8,7 @@
 #include "fem/supernodal/large_pages.h"
 #include "fem/supernodal/supernodal_factor.h"
 #include "fem/supernodal/supernodal_solve.h"
+#include "mesh/base/memory.h"
 
 /* MANY: right-hand sides from which BLAS is faster. BLOCK: most columns that a thread solves at
  * once. */
@@ -62,35 +63,28 @@ static PetscErrorCode give_back_blocks(Mat A, block_rows *b) {
 
 /* ------------------------------------------------------------------ analysis */
 
+/* Returns false where the factor is too large for CHOLMOD's indices. */
 static bool analyse(const block_rows *b, fem_cholesky *factor) {
   const fem_blocks pattern = pattern_of(b);
   cholmod_factor  *L       = fem_block_analyse(&pattern, &factor->common, factor->place);
-  const bool       good    = L && fem_supernodes_create(L, &factor->panels);
+  const bool       fits    = L != NULL;
+  if (fits) fem_supernodes_create(L, &factor->panels);
   cholmod_free_factor(&L, &factor->common);
-  return good;
+  return fits;
 }
 
-PetscErrorCode fem_cholesky_create(Mat A, bool *fits, fem_cholesky **out) {
+PetscErrorCode fem_cholesky_create(Mat A, fem_cholesky **out) {
   block_rows    b;
-  fem_cholesky *factor = calloc(1, sizeof *factor);
-  bool          good   = false;
+  fem_cholesky *factor = shb_alloc_zeroed(1, sizeof *factor);
 
   PetscFunctionBeginUser;
-  *out = NULL;
-  PetscCheck(factor, PETSC_COMM_SELF, PETSC_ERR_MEM, "CHOLMOD");
   fem_cholmod_start(&factor->common);
   PetscCall(borrow_blocks(A, &b));
   factor->n     = (int)b.n;
-  factor->place = malloc((size_t)b.n * sizeof *factor->place);
-  if (factor->place) good = analyse(&b, factor);
+  factor->place = shb_alloc((size_t)b.n, sizeof *factor->place);
+  *out          = analyse(&b, factor) ? factor : NULL;
   PetscCall(give_back_blocks(A, &b));
-  *fits = factor->common.status != CHOLMOD_TOO_LARGE;
-  if (good) {
-    *out = factor;
-    PetscFunctionReturn(0);
-  }
-  fem_cholesky_destroy(factor);
-  PetscCheck(!*fits, PETSC_COMM_SELF, PETSC_ERR_MEM, "CHOLMOD");
+  if (!*out) fem_cholesky_destroy(factor);
   PetscFunctionReturn(0);
 }
 
@@ -106,20 +100,16 @@ void fem_cholesky_bytes(const fem_cholesky *factor, double *factor_bytes, double
 PetscErrorCode fem_cholesky_update(fem_cholesky *factor, Mat A, bool *definite) {
   block_rows        b;
   fem_lower_pattern lower;
-  fem_factorised    end = FEM_NO_MEMORY;
 
   PetscFunctionBeginUser;
   if (!factor->value)
-    factor->value = fem_large_malloc((factor->panels.n_values + 1) * sizeof *factor->value);
+    factor->value = fem_large_alloc(factor->panels.n_values + 1, sizeof *factor->value);
   PetscCall(borrow_blocks(A, &b));
   const fem_blocks pattern = pattern_of(&b);
-  const bool       listed  = fem_lower_pattern_create(&pattern, factor->place, &lower);
-  if (listed && factor->value)
-    end = fem_supernodal_factorise(&factor->panels, &lower, b.value, NULL, factor->value);
+  fem_lower_pattern_create(&pattern, factor->place, &lower);
+  *definite = fem_supernodal_factorise(&factor->panels, &lower, b.value, NULL, factor->value);
   fem_lower_pattern_free(&lower);
   PetscCall(give_back_blocks(A, &b));
-  PetscCheck(end != FEM_NO_MEMORY, PETSC_COMM_SELF, PETSC_ERR_MEM, "factor");
-  *definite = end == FEM_FACTORISED;
   PetscFunctionReturn(0);
 }
 
@@ -132,24 +122,17 @@ static void free_blocks(fem_cholesky *factor) {
 
 /* Room for so many blocks of columns, kept between solves. glibc does not always use freed memory
  * of an alignment again: the heap would grow. */
-static PetscErrorCode make_block_room(fem_cholesky *factor, int blocks, size_t width) {
+static void make_block_room(fem_cholesky *factor, int blocks, size_t width) {
   const size_t most = (size_t)factor->panels.most_rows, rows = 3 * (size_t)factor->n + most;
-  PetscFunctionBeginUser;
   if (factor->width < width) {
     free_blocks(factor);
     factor->width = width;
   }
-  if (factor->n_blocks >= blocks) PetscFunctionReturn(0);
-  double **more = realloc(factor->block, (size_t)blocks * sizeof *more);
-  PetscCheck(more, PETSC_COMM_SELF, PETSC_ERR_MEM, "no memory");
-  factor->block = more;
-  for (; factor->n_blocks < blocks; factor->n_blocks++) {
-    double *own = fem_large_malloc(rows * factor->width * sizeof *own + most * sizeof(int));
-    PetscCheck(own, PETSC_COMM_SELF, PETSC_ERR_MEM, "no memory for %d solutions",
-               (int)factor->width);
-    factor->block[factor->n_blocks] = own;
-  }
-  PetscFunctionReturn(0);
+  if (factor->n_blocks >= blocks) return;
+  factor->block = shb_realloc(factor->block, (size_t)blocks, sizeof *factor->block);
+  for (; factor->n_blocks < blocks; factor->n_blocks++)
+    factor->block[factor->n_blocks] =
+        fem_large_alloc(rows * factor->width * sizeof(double) + most * sizeof(int), 1);
 }
 
 /* Solve for one block of columns by BLAS; own: that of the thread. */
@@ -170,45 +153,39 @@ static void solve_block(const fem_cholesky *factor, double *own, const bool *nee
 
 /* Two threads share even few columns. The blocks do not depend on the number of threads, and so the
  * numbers do not. */
-static PetscErrorCode solve_many(fem_cholesky *factor, const bool *needed, size_t count,
-                                 const double *b, size_t ldb, double *x, size_t ldx) {
+static void solve_many(fem_cholesky *factor, const bool *needed, size_t count, const double *b,
+                       size_t ldb, double *x, size_t ldx) {
   const size_t half = (count + 1) / 2, width = half < BLOCK ? half : BLOCK;
   const int    all = (int)((count + width - 1) / width), most = omp_get_max_threads();
   const int    threads = all < most ? all : most;
-  PetscFunctionBeginUser;
-  PetscCall(make_block_room(factor, threads, width));
+  make_block_room(factor, threads, width);
 #pragma omp parallel for schedule(dynamic, 1) num_threads(threads)
   for (size_t c = 0; c < count; c += width) {
     const size_t here = count - c < width ? count - c : width;
     solve_block(factor, factor->block[omp_get_thread_num()], needed, here, b + c * ldb, ldb,
                 x + c * ldx, ldx);
   }
-  PetscFunctionReturn(0);
 }
 
 /* Workspace for few right-hand sides, kept between solves. */
-static PetscErrorCode make_room(fem_cholesky *factor) {
+static void make_room(fem_cholesky *factor) {
   const size_t alignment = 64;
   const int    threads   = omp_get_max_threads();
-  PetscFunctionBeginUser;
-  if (factor->few && factor->threads == threads) PetscFunctionReturn(0);
+  if (factor->few && factor->threads == threads) return;
   const fem_supernodes *s    = &factor->panels;
   const size_t          rows = (size_t)s->most_rows * (size_t)threads;
   free(factor->few);
   free(factor->few_work);
-  factor->threads = threads;
-  factor->few = aligned_alloc(alignment, ((size_t)s->n_extended + 1) / 2 * 2 * sizeof(fem_lanes));
-  factor->few_work = aligned_alloc(alignment, (rows + 1) / 2 * 2 * sizeof(fem_lanes));
-  PetscCheck(factor->few && factor->few_work, PETSC_COMM_SELF, PETSC_ERR_MEM, "no memory");
-  PetscFunctionReturn(0);
+  factor->threads  = threads;
+  factor->few      = shb_alloc_aligned(alignment, (size_t)s->n_extended, sizeof(fem_lanes));
+  factor->few_work = shb_alloc_aligned(alignment, rows, sizeof(fem_lanes));
 }
 
 /* Solve for count <= FEM_LANES columns; unused lanes are zero. */
-static PetscErrorCode solve_few(fem_cholesky *factor, size_t count, const double *b, size_t ldb,
-                                double *x, size_t ldx) {
+static void solve_few(fem_cholesky *factor, size_t count, const double *b, size_t ldb, double *x,
+                      size_t ldx) {
   const size_t n = (size_t)factor->n;
-  PetscFunctionBeginUser;
-  PetscCall(make_room(factor));
+  make_room(factor);
 #pragma omp parallel for schedule(static)
   for (size_t i = 0; i < n; i++)
     for (size_t d = 0; d < 3; d++) {
@@ -223,40 +200,35 @@ static PetscErrorCode solve_few(fem_cholesky *factor, size_t count, const double
       const fem_lanes *at = factor->few + 3 * (size_t)factor->place[i] + d;
       for (size_t c = 0; c < count; c++) x[c * ldx + 3 * i + d] = (*at)[c];
     }
-  PetscFunctionReturn(0);
 }
 
-PetscErrorCode fem_cholesky_solve(fem_cholesky *factor, int count, const double *b, size_t ldb,
-                                  double *x, size_t ldx) {
+void fem_cholesky_solve(fem_cholesky *factor, int count, const double *b, size_t ldb, double *x,
+                        size_t ldx) {
   const size_t all = (size_t)count;
-  PetscFunctionBeginUser;
   if (all >= MANY) {
-    PetscCall(solve_many(factor, NULL, all, b, ldb, x, ldx));
-    PetscFunctionReturn(0);
+    solve_many(factor, NULL, all, b, ldb, x, ldx);
+    return;
   }
   for (size_t c = 0; c < all; c += FEM_LANES) {
     size_t here = all - c < FEM_LANES ? all - c : FEM_LANES;
-    PetscCall(solve_few(factor, here, b + c * ldb, ldb, x + c * ldx, ldx));
+    solve_few(factor, here, b + c * ldb, ldb, x + c * ldx, ldx);
   }
-  PetscFunctionReturn(0);
 }
 
 fem_tree fem_cholesky_tree(const fem_cholesky *factor) {
   return (fem_tree){&factor->panels, factor->value, factor->place};
 }
 
-PetscErrorCode fem_cholesky_solve_at(fem_cholesky *factor, const bool *node, int count,
-                                     const double *b, size_t ldb, double *x, size_t ldx) {
-  bool *row, *needed;
-  PetscFunctionBeginUser;
-  PetscCall(PetscMalloc2((size_t)factor->panels.n + 1, &row, (size_t)factor->panels.n_panels + 1,
-                         &needed));
+void fem_cholesky_solve_at(fem_cholesky *factor, const bool *node, int count, const double *b,
+                           size_t ldb, double *x, size_t ldx) {
+  bool *row    = shb_alloc((size_t)factor->panels.n, sizeof *row);
+  bool *needed = shb_alloc((size_t)factor->panels.n_panels, sizeof *needed);
   for (int i = 0; i < factor->n; i++)
     for (int d = 0; d < 3; d++) row[3 * factor->place[i] + d] = node[i];
   fem_supernodes_needed(&factor->panels, row, needed);
-  PetscCall(solve_many(factor, needed, (size_t)count, b, ldb, x, ldx));
-  PetscCall(PetscFree2(row, needed));
-  PetscFunctionReturn(0);
+  solve_many(factor, needed, (size_t)count, b, ldb, x, ldx);
+  free(row);
+  free(needed);
 }
 
 void fem_cholesky_destroy(fem_cholesky *factor) {

@@ -16,31 +16,28 @@
 typedef struct fem_cholesky fem_cholesky;
 
 /* Order and analyse the pattern of A.
- *   A     in   sequential SBAIJ of block size 3
- *   fits  out  false: counted by nodes, the factor would have 2^31 entries or more, which CHOLMOD
- *              cannot index
- *   out   out  NULL if it does not fit
- * Errors: PETSC_ERR_MEM. */
-PetscErrorCode fem_cholesky_create(Mat A, bool *fits, fem_cholesky **out);
+ *   A    in   sequential SBAIJ of block size 3
+ *   out  out  NULL: counted by nodes, the factor would have 2^31 entries or more, which CHOLMOD
+ *             cannot index */
+PetscErrorCode fem_cholesky_create(Mat A, fem_cholesky **out);
 
 /* Bytes of the factor, and of the workspace of the factorisation. */
 void fem_cholesky_bytes(const fem_cholesky *factor, double *factor_bytes, double *workspace);
 
 /* Factorise A, which has the pattern of _create; may be repeated after its values have changed.
- *   definite  out  false: A is not positive definite, and there is no factor
- * Errors: PETSC_ERR_MEM. */
+ *   definite  out  false: A is not positive definite, and there is no factor */
 PetscErrorCode fem_cholesky_update(fem_cholesky *factor, Mat A, bool *definite);
 
 /* Solve A x = b for count columns; x may be b.
  *   ldb, ldx  in  entries from one column to the next */
-PetscErrorCode fem_cholesky_solve(fem_cholesky *factor, int count, const double *b, size_t ldb,
-                                  double *x, size_t ldx);
+void fem_cholesky_solve(fem_cholesky *factor, int count, const double *b, size_t ldb, double *x,
+                        size_t ldx);
 
 /* The same where only the rows of some nodes are wanted. Such a solution reads little of the factor
  * on its way back.
  *   node  in   [block rows of A] true: wanted; the other rows of x mean nothing */
-PetscErrorCode fem_cholesky_solve_at(fem_cholesky *factor, const bool *node, int count,
-                                     const double *b, size_t ldb, double *x, size_t ldx);
+void fem_cholesky_solve_at(fem_cholesky *factor, const bool *node, int count, const double *b,
+                           size_t ldb, double *x, size_t ldx);
 
 /* The numbers and their order, until the next update. */
 fem_tree fem_cholesky_tree(const fem_cholesky *factor);

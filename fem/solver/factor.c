@@ -87,7 +87,7 @@ static PetscErrorCode analyse_mumps(fem_factor *factor, Mat A, double *mine) {
 }
 
 static PetscErrorCode analyse(fem_factor *factor, Mat A, double *mine) {
-  bool   mumps = false, fits = false;
+  bool   mumps = false;
   int    n_ranks;
   double own, workspace;
   PetscFunctionBeginUser;
@@ -95,8 +95,8 @@ static PetscErrorCode analyse(fem_factor *factor, Mat A, double *mine) {
   PetscCall(fem_factor_mumps_asked(&mumps));
   mumps = mumps || n_ranks > 1;
   if (!mumps) {
-    PetscCall(fem_cholesky_create(A, &fits, &factor->cholesky));
-    mumps = !fits;
+    PetscCall(fem_cholesky_create(A, &factor->cholesky));
+    mumps = !factor->cholesky;
   }
   if (mumps) {
     PetscCall(analyse_mumps(factor, A, mine));
@@ -175,7 +175,7 @@ PetscErrorCode fem_factor_solve(fem_factor *factor, Vec b, Vec x) {
   PetscCall(VecGetLocalSize(b, &n));
   PetscCall(VecGetArrayRead(b, &from));
   PetscCall(VecGetArrayWrite(x, &to));
-  PetscCall(fem_cholesky_solve(factor->cholesky, 1, from, (size_t)n, to, (size_t)n));
+  fem_cholesky_solve(factor->cholesky, 1, from, (size_t)n, to, (size_t)n);
   PetscCall(VecRestoreArrayWrite(x, &to));
   PetscCall(VecRestoreArrayRead(b, &from));
   PetscFunctionReturn(0);
@@ -198,10 +198,9 @@ static PetscErrorCode solve_columns(fem_factor *factor, const bool *node, Mat B,
   PetscCall(MatDenseGetArrayRead(B, &from));
   PetscCall(MatDenseGetArrayWrite(X, &to));
   if (node)
-    PetscCall(fem_cholesky_solve_at(factor->cholesky, node, (int)count, from, (size_t)ldb, to,
-                                    (size_t)ldx));
+    fem_cholesky_solve_at(factor->cholesky, node, (int)count, from, (size_t)ldb, to, (size_t)ldx);
   else
-    PetscCall(fem_cholesky_solve(factor->cholesky, (int)count, from, (size_t)ldb, to, (size_t)ldx));
+    fem_cholesky_solve(factor->cholesky, (int)count, from, (size_t)ldb, to, (size_t)ldx);
   PetscCall(MatDenseRestoreArrayWrite(X, &to));
   PetscCall(MatDenseRestoreArrayRead(B, &from));
   PetscFunctionReturn(0);

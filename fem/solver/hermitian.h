@@ -25,26 +25,22 @@ typedef struct fem_hermitian_order fem_hermitian_order;
 typedef struct fem_hermitian       fem_hermitian;
 
 /* Order, analyse, and factorise what is real. The arrays of A must outlive the order. Errors:
- * SHB_ERR_IO no memory; SHB_ERR_INPUT the machine has too little, or the factor cannot be
- * indexed. */
+ * SHB_ERR_INPUT the machine has too little memory, or the factor cannot be indexed. */
 shb_status fem_hermitian_analyse(const fem_hermitian_matrix *A, fem_hermitian_order **out);
 void       fem_hermitian_order_free(fem_hermitian_order *order); /* NULL: nothing */
 
 /* Bytes of the factor of one theta with the workspace of its making, beside the real part. */
 double fem_hermitian_bytes(const fem_hermitian_order *order);
 
-/* Factorise.
- *   turn      in   e^(j theta)
- *   value     in   [n_coupled][9] the coupled blocks at theta
- *   definite  out  false: not positive definite, and *out is NULL
- * Errors: SHB_ERR_IO no memory. */
-shb_status fem_hermitian_create(const fem_hermitian_order *order, double complex turn,
-                                const double complex (*value)[9], bool *definite,
-                                fem_hermitian **out);
+/* Factorise. Returns NULL where A is not positive definite.
+ *   turn   in  e^(j theta)
+ *   value  in  [n_coupled][9] the coupled blocks at theta */
+fem_hermitian *fem_hermitian_create(const fem_hermitian_order *order, double complex turn,
+                                    const double complex (*value)[9]);
 
-/* Solve A x = b for count columns [3 n]; x may be b. Errors: SHB_ERR_IO no memory. */
-shb_status fem_hermitian_solve(fem_hermitian *factor, int count, const double complex *b,
-                               double complex *x);
+/* Solve A x = b for count columns [3 n]; x may be b. */
+void fem_hermitian_solve(fem_hermitian *factor, int count, const double complex *b,
+                         double complex *x);
 
 void fem_hermitian_free(fem_hermitian *factor); /* NULL: nothing */
 

@@ -17,8 +17,8 @@ void fem_cholmod_start(cholmod_common *common);
 /* Order the nodes by nested dissection, and factorise their pattern symbolically. It has a third of
  * the columns of the dofs' and a ninth of its entries; the order is as good.
  *   place  out  [n] index of a block row in the factor
- * Returns the supernodal factor of the nodes: each of its rows and columns is three of A. NULL when
- * out of memory or too large. */
+ * Returns the supernodal factor of the nodes: each of its rows and columns is three of A. NULL: it
+ * is too large for CHOLMOD's indices. */
 cholmod_factor *fem_block_analyse(const fem_blocks *b, cholmod_common *common, int *place);
 
 /* The permuted lower triangle by block columns. Block (r, c) is the block-th of the pattern, or the
@@ -29,8 +29,7 @@ typedef struct {
   int *row, *block; /* [start[n]] */
 } fem_lower_pattern;
 
-/* Returns false when out of memory; free then too. */
-bool fem_lower_pattern_create(const fem_blocks *b, const int *place, fem_lower_pattern *out);
+void fem_lower_pattern_create(const fem_blocks *b, const int *place, fem_lower_pattern *out);
 void fem_lower_pattern_free(fem_lower_pattern *lower);
 
 #endif

@@ -3,6 +3,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "mesh/base/memory.h"
+
 /* SMALLEST: nodes of a part that is not dissected further. FEWER: the nodes must be so many times
  * those that are dissected. */
 enum { SMALLEST = 10, FEWER = 2 };
@@ -22,15 +24,15 @@ typedef struct {
 
 /* ------------------------------------------------------------------ neighbours */
 
-static bool list_neighbours(const cholmod_sparse *graph, neighbours *out) {
+static void list_neighbours(const cholmod_sparse *graph, neighbours *out) {
   const int   *start = graph->p, *column = graph->i;
   const size_t n = graph->ncol, most = 2 * (size_t)start[n];
   int         *next;
   out->n     = (int)n;
-  out->start = calloc(n + 1, sizeof(int));
-  out->node  = malloc((most + 1) * sizeof(int));
-  next       = malloc((n + 1) * sizeof(int));
-  for (int pass = 0; out->start && out->node && next && pass < 2; pass++) {
+  out->start = shb_alloc_zeroed(n + 1, sizeof(int));
+  out->node  = shb_alloc(most + 1, sizeof(int));
+  next       = shb_alloc(n + 1, sizeof(int));
+  for (int pass = 0; pass < 2; pass++) {
     for (int r = 0; r < out->n; r++)
       for (int k = start[r]; k < start[r + 1]; k++) {
         const int c = column[k];
@@ -45,9 +47,7 @@ static bool list_neighbours(const cholmod_sparse *graph, neighbours *out) {
     for (size_t r = 0; pass == 0 && r < n; r++) out->start[r + 1] += out->start[r];
     memcpy(next, out->start, (n + 1) * sizeof(int));
   }
-  const bool good = out->start && out->node && next;
   free(next);
-  return good;
 }
 
 static void free_neighbours(neighbours *g) {
@@ -80,16 +80,14 @@ static void dominate(const neighbours *g, int a, int *mark, bool *dominated) {
   }
 }
 
-/* number [n] of the nodes that nobody dominates, -1 for the others. Returns how many; -1: no
- * memory. */
+/* number [n] of the nodes that nobody dominates, -1 for the others. Returns how many. */
 static int number_kept(const neighbours *g, int *number) {
   const size_t n    = (size_t)g->n;
-  int         *mark = calloc(n + 1, sizeof *mark), kept = mark ? 0 : -1;
-  bool        *dominated = calloc(n + 1, sizeof *dominated);
-  if (!dominated) kept = -1;
-  for (int a = 0; kept == 0 && a < g->n; a++)
+  int         *mark = shb_alloc_zeroed(n + 1, sizeof *mark), kept = 0;
+  bool        *dominated = shb_alloc_zeroed(n + 1, sizeof *dominated);
+  for (int a = 0; a < g->n; a++)
     if (!dominated[a]) dominate(g, a, mark, dominated);
-  for (int i = 0; kept >= 0 && i < g->n; i++) number[i] = dominated[i] ? -1 : kept++;
+  for (int i = 0; i < g->n; i++) number[i] = dominated[i] ? -1 : kept++;
   free(mark);
   free(dominated);
   return kept;
@@ -194,13 +192,12 @@ static void spread(const neighbours *g, const separators *t, const int *number, 
 static bool order_by(const neighbours *g, cholmod_sparse *graph, cholmod_common *common,
                      int *number, int *set, int *order) {
   const int kept = number_kept(g, number);
-  if (kept <= 0 || FEWER * (size_t)kept > (size_t)g->n) return false;
-  const size_t    room     = ((size_t)kept + 1) * sizeof(int);
-  separators      tree     = {malloc(room), malloc(room)};
-  int            *kept_set = malloc(room);
+  if (kept == 0 || FEWER * (size_t)kept > (size_t)g->n) return false;
+  const size_t    room     = (size_t)kept + 1;
+  separators      tree     = {shb_alloc(room, sizeof(int)), shb_alloc(room, sizeof(int))};
+  int            *kept_set = shb_alloc(room, sizeof(int));
   cholmod_sparse *few      = kept_graph(g, number, kept, common);
-  bool            good     = tree.parent && tree.first && kept_set && few;
-  good                     = good && dissect(few, common, &tree, kept_set, order) > 0;
+  const bool      good     = few && dissect(few, common, &tree, kept_set, order) > 0;
   if (good) spread(g, &tree, number, kept_set, set);
   cholmod_free_sparse(&few, common);
   free(tree.parent);
@@ -210,11 +207,11 @@ static bool order_by(const neighbours *g, cholmod_sparse *graph, cholmod_common 
 }
 
 bool fem_coarse_order(cholmod_sparse *graph, cholmod_common *common, int *order) {
-  const size_t room   = (graph->ncol + 1) * sizeof(int);
-  neighbours   g      = {0};
-  int         *number = malloc(room), *set = malloc(room);
-  const bool   good = list_neighbours(graph, &g) && number && set &&
-                    order_by(&g, graph, common, number, set, order);
+  neighbours g      = {0};
+  int       *number = shb_alloc(graph->ncol + 1, sizeof *number);
+  int       *set    = shb_alloc(graph->ncol + 1, sizeof *set);
+  list_neighbours(graph, &g);
+  const bool good = order_by(&g, graph, common, number, set, order);
   free_neighbours(&g);
   free(number);
   free(set);

@@ -13,7 +13,7 @@
 
 /*   graph  in   symmetric pattern of n nodes, lower triangle by columns, with the diagonal
  *   order  out  [n] node by its place in the order
- * Returns false where too few nodes are dominated, or out of memory. */
+ * Returns false where too few nodes are dominated, or CHOLMOD finds no order. */
 bool fem_coarse_order(cholmod_sparse *graph, cholmod_common *common, int *order);
 
 #endif

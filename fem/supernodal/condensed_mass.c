@@ -7,6 +7,7 @@
 #include "fem/supernodal/hot.h"
 #include "fem/supernodal/large_pages.h"
 #include "fem/supernodal/supernodal_solve.h"
+#include "mesh/base/memory.h"
 
 /* LEAF: columns of a small subtree, at most, that is condensed in one step. CHUNK: numbers of a row
  * that are summed in registers. SHARE: coordinates that a thread takes at once. */
@@ -93,17 +94,14 @@ void fem_condensed_free(fem_condensed *c) {
 
 /* Room for the matrices of the last part, whose coordinates are taken over. */
 static fem_condensed *make_room(part *last) {
-  fem_condensed *c = malloc(sizeof *c);
-  if (!c) return NULL;
-  *c             = last->of;
+  fem_condensed *c = shb_alloc(1, sizeof *c);
+  *c               = last->of;
   const size_t b = (size_t)c->beyond, l = (size_t)c->loads;
-  c->Q = (fem_lower){malloc((fem_lower_numbers(c->size) + 1) * sizeof *c->Q.at), c->size, 0};
-  c->U = malloc((b * l + 1) * sizeof *c->U);
-  c->F = malloc((l * l + 1) * sizeof *c->F);
+  c->Q = (fem_lower){shb_alloc(fem_lower_numbers(c->size) + 1, sizeof *c->Q.at), c->size, 0};
+  c->U = shb_alloc(b * l + 1, sizeof *c->U);
+  c->F = shb_alloc(l * l + 1, sizeof *c->F);
   last->of.row = last->of.load = NULL;
-  if (c->Q.at && c->U && c->F) return c;
-  fem_condensed_free(c);
-  return NULL;
+  return c;
 }
 
 static void copy_matrices(const part *last, fem_condensed *to) {
@@ -129,47 +127,42 @@ static void list_load(workspace *w, fem_condensed *to, int load) {
 }
 
 /* Loads of the step's rows and of the parts below. */
-static bool list_loads(workspace *w, const step *s, const part *child) {
+static void list_loads(workspace *w, const step *s, const part *child) {
   const fem_loaded_body *b    = w->body;
   fem_condensed         *to   = &s->to->of;
   const int              from = b->entry[s->first_row], end = b->entry[s->first_row + s->rows];
   int                    most = end - from;
   for (const part *c = child; c; c = c->next) most += c->of.loads;
-  to->load = malloc(((size_t)most + 1) * sizeof *to->load);
-  if (!to->load) return false;
+  to->load = shb_alloc((size_t)most + 1, sizeof *to->load);
   for (int e = from; e < end; e++) list_load(w, to, b->load[e]);
   for (const part *c = child; c; c = c->next)
     for (int i = 0; i < c->of.loads; i++) list_load(w, to, c->of.load[i]);
   qsort(to->load, (size_t)to->loads, sizeof *to->load, compare_ints);
   for (int i = 0; i < to->loads; i++) w->place[to->load[i]] = i;
-  return true;
 }
 
 /* The part that the step leaves, and where its nodes and loads stand in it. */
-static bool begin(workspace *w, step *s, const part *child) {
+static void begin(workspace *w, step *s, const part *child) {
   const fem_supernodes *p    = w->body->panels;
   const fem_panel      *last = &p->panel[s->last - 1];
-  s->to                      = calloc(1, sizeof *s->to);
-  if (!s->to) return false;
-  fem_condensed *to = &s->to->of;
-  s->first_row      = p->panel[s->first].first;
-  s->rows           = last->first + last->columns - s->first_row;
-  to->beyond        = last->rows - last->columns;
-  to->row           = malloc(((size_t)to->beyond + 1) * sizeof *to->row);
-  if (!to->row) return false;
+  s->to                      = shb_alloc_zeroed(1, sizeof *s->to);
+  fem_condensed *to          = &s->to->of;
+  s->first_row               = p->panel[s->first].first;
+  s->rows                    = last->first + last->columns - s->first_row;
+  to->beyond                 = last->rows - last->columns;
+  to->row                    = shb_alloc((size_t)to->beyond + 1, sizeof *to->row);
   for (int i = 0; i < to->beyond; i++)
     to->row[i] = fem_supernodes_row(p, last->row + (size_t)(last->columns + i));
-  if (!list_loads(w, s, child)) return false;
+  list_loads(w, s, child);
   to->size = to->beyond + to->loads + w->body->modes;
   for (int i = 0; i < s->rows / 3; i++) w->local[s->first_row / 3 + i] = i;
   for (int i = 0; i < to->beyond / 3; i++) w->local[to->row[3 * i] / 3] = s->rows / 3 + i;
-  return true;
 }
 
 static void end(workspace *w, step *s) {
   const fem_condensed *to = &s->to->of;
   for (int i = 0; i < s->rows / 3; i++) w->local[s->first_row / 3 + i] = NOWHERE;
-  for (int i = 0; to->row && i < to->beyond / 3; i++) w->local[to->row[3 * i] / 3] = NOWHERE;
+  for (int i = 0; i < to->beyond / 3; i++) w->local[to->row[3 * i] / 3] = NOWHERE;
   for (int i = 0; i < to->loads; i++) w->place[to->load[i]] = NOWHERE;
 }
 
@@ -494,21 +487,20 @@ static void add_others(const step *s, const part *c, const run *runs, int n) {
 }
 
 /* Q and Z += the mass of the parts below, but for that among the step's rows. */
-static bool add_parts(const workspace *w, const step *s, const part *child) {
+static void add_parts(const workspace *w, const step *s, const part *child) {
   int longest = 0;
   memset(s->Z, 0, (size_t)s->rows * (size_t)s->to->of.size * sizeof *s->Z);
   memset(s->own, 0, (size_t)s->rows * (size_t)s->rows * sizeof *s->own);
   for (const part *c = child; c; c = c->next)
     if (c->of.size > longest) longest = c->of.size;
-  run *runs = malloc(((size_t)longest + 1) * sizeof *runs);
-  for (const part *c = child; runs && c; c = c->next) {
+  run *runs = shb_alloc((size_t)longest + 1, sizeof *runs);
+  for (const part *c = child; c; c = c->next) {
     int       n_own;
     const int n_runs = list_runs(w, s, &c->of, &n_own, runs);
     add_own(w, s, c, n_own, runs, n_runs);
     if (!s->goes_on || c != child) add_others(s, c, runs, n_runs);
   }
   free(runs);
-  return runs != NULL;
 }
 
 /* Solve L^T E = E, then Z += own E. */
@@ -530,10 +522,10 @@ static void finish_motion(const workspace *w, const step *s) {
 /* ------------------------------------------------------------------ steps */
 
 /* Q += (E^T Z + Z^T E) / 2, Z = M_SS E + 2 M_Sa with the parts below. */
-static bool run_step(const workspace *w, const step *s, const part *child) {
+static void run_step(const workspace *w, const step *s, const part *child) {
   forward_loads(w, s, child);
   add_flexibility(w, s, child);
-  if (!add_parts(w, s, child)) return false;
+  add_parts(w, s, child);
   if (s->last - s->first == 1) {
     begin_motion(w, s);
     finish_motion(w, s);
@@ -543,50 +535,44 @@ static bool run_step(const workspace *w, const step *s, const part *child) {
   }
   add_mass(w, s);
   fem_lower_add_products(&s->to->of.Q, s->rows, s->E, s->Z);
-  return true;
 }
 
-/* Eliminate the rows of a step. Returns the part that is left, or NULL. */
+/* Eliminate the rows of a step. Returns the part that is left. */
 static part *take_step(workspace *w, int first, int last) {
   part **list = &w->child[last - 1 - w->root_first];
   step   s    = {.first = first, .last = last};
-  bool   good = begin(w, &s, *list);
-  if (good) {
-    *list = put_first(&s, *list);
-    place_arrays(w, &s, *list);
-    if (w->stack) {
-      open_arrays(w, &s, *list);
-      good = run_step(w, &s, *list);
-    }
-    settle(w, &s, *list);
+  begin(w, &s, *list);
+  *list = put_first(&s, *list);
+  place_arrays(w, &s, *list);
+  if (w->stack) {
+    open_arrays(w, &s, *list);
+    run_step(w, &s, *list);
   }
-  if (s.to) end(w, &s);
+  settle(w, &s, *list);
+  end(w, &s);
   free_parts(*list);
   *list = NULL;
-  if (good) return s.to;
-  free_part(s.to);
-  return NULL;
+  return s.to;
 }
 
-static bool create_workspace(workspace *w, int panels) {
+static void create_workspace(workspace *w, int panels) {
   const fem_loaded_body *b       = w->body;
   const int              nodes   = b->panels->n / 3;
   int                    longest = 0;
   for (int i = 0; i < nodes; i++)
     if (b->start[i + 1] - b->start[i] > longest) longest = b->start[i + 1] - b->start[i];
-  w->child  = calloc((size_t)panels + 1, sizeof(part *));
-  w->local  = malloc(((size_t)nodes + 1) * sizeof *w->local);
-  w->place  = malloc(((size_t)b->n_loads + 1) * sizeof *w->place);
-  w->at     = malloc(((size_t)b->panels->most_rows + 1) * sizeof *w->at);
-  w->column = malloc(((size_t)longest + 1) * sizeof *w->column);
-  w->mass   = malloc(((size_t)longest + 1) * sizeof *w->mass);
-  for (int i = 0; w->local && i < nodes; i++) w->local[i] = NOWHERE;
-  for (int i = 0; w->place && i < b->n_loads; i++) w->place[i] = NOWHERE;
-  return w->child && w->local && w->place && w->at && w->column && w->mass;
+  w->child  = shb_alloc_zeroed((size_t)panels + 1, sizeof(part *));
+  w->local  = shb_alloc((size_t)nodes + 1, sizeof *w->local);
+  w->place  = shb_alloc((size_t)b->n_loads + 1, sizeof *w->place);
+  w->at     = shb_alloc((size_t)b->panels->most_rows + 1, sizeof *w->at);
+  w->column = shb_alloc((size_t)longest + 1, sizeof *w->column);
+  w->mass   = shb_alloc((size_t)longest + 1, sizeof *w->mass);
+  for (int i = 0; i < nodes; i++) w->local[i] = NOWHERE;
+  for (int i = 0; i < b->n_loads; i++) w->place[i] = NOWHERE;
 }
 
 static void free_workspace(workspace *w, int panels) {
-  for (int i = 0; w->child && i < panels; i++) free_parts(w->child[i]);
+  for (int i = 0; i < panels; i++) free_parts(w->child[i]);
   free(w->child);
   free(w->local);
   free(w->place);
@@ -614,7 +600,7 @@ static double done_before(const fem_loaded_body *b, int panel) {
   return (double)b->panels->panel[panel].first / b->panels->n;
 }
 
-/* Returns the last part, or NULL. */
+/* Returns the last part; NULL where go_on says so. */
 static part *take_steps(workspace *w, int root) {
   const int first = w->root_first;
   part     *left  = NULL;
@@ -623,7 +609,6 @@ static part *take_steps(workspace *w, int root) {
     const int last = end_of_step(w->body, k, root);
     if (w->stack && !w->body->go_on(w->body->context, done_before(w->body, k))) return NULL;
     left = take_step(w, k, last);
-    if (!left) return NULL;
     if (last <= root) {
       part **list = &w->child[w->body->owner[left->of.row[0]] - first];
       left->next  = *list;
@@ -637,7 +622,8 @@ static part *take_steps(workspace *w, int root) {
 /* All steps of a subtree, with their workspace. */
 static part *eliminate(const fem_loaded_body *body, int root, workspace *w) {
   const int panels = root + 1 - body->below[root];
-  part     *last   = create_workspace(w, panels) ? take_steps(w, root) : NULL;
+  create_workspace(w, panels);
+  part *last = take_steps(w, root);
   free_workspace(w, panels);
   return last;
 }
@@ -645,7 +631,7 @@ static part *eliminate(const fem_loaded_body *body, int root, workspace *w) {
 fem_condensed *fem_condensed_create(const fem_loaded_body *body, int root, size_t *stack) {
   workspace      w    = {.body = body, .root_first = body->below[root]};
   part          *last = eliminate(body, root, &w);
-  fem_condensed *room = last ? make_room(last) : NULL;
+  fem_condensed *room = make_room(last);
   *stack              = w.most;
   free_part(last);
   return room;

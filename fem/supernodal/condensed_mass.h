@@ -39,11 +39,10 @@ typedef struct {
 } fem_condensed;
 
 /* Coordinates of the subtree whose last panel is root, and room for its matrices.
- *   stack  out  numbers that fem_condense needs as scratch
- * Returns NULL when out of memory. */
+ *   stack  out  numbers that fem_condense needs as scratch */
 fem_condensed *fem_condensed_create(const fem_loaded_body *body, int root, size_t *stack);
 
-/* Fill the matrices. Returns false when out of memory, or when the body's go_on says so.
+/* Fill the matrices. Returns false when the body's go_on says so.
  *   stack  scratch */
 bool fem_condense(const fem_loaded_body *body, int root, double *stack, fem_condensed *to);
 

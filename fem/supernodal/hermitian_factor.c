@@ -5,6 +5,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "mesh/base/memory.h"
+
 typedef struct {
   const fem_hermitian_blocks *A;
   fem_hermitian_panels       *f;
@@ -182,17 +184,16 @@ double fem_hermitian_workspace(const fem_supernodes *s) {
   return 4. * s->n + (16. * FEM_PANEL_COLUMNS + 4) * s->most_rows;
 }
 
-fem_factorised fem_hermitian_factorise(const fem_hermitian_blocks *A, fem_hermitian_panels *f) {
+bool fem_hermitian_factorise(const fem_hermitian_blocks *A, fem_hermitian_panels *f) {
   const size_t rows = (size_t)f->s->most_rows + 1;
-  workspace    w    = {A, f, malloc(((size_t)f->s->n + 1) * sizeof *w.place),
-                       malloc(rows * sizeof *w.relative),
-                       malloc(2 * FEM_PANEL_COLUMNS * rows * sizeof *w.update)};
-  const bool   room = w.place && w.relative && w.update;
+  workspace    w    = {A, f, shb_alloc((size_t)f->s->n + 1, sizeof *w.place),
+                       shb_alloc(rows, sizeof *w.relative),
+                       shb_alloc(2 * FEM_PANEL_COLUMNS * rows, sizeof *w.update)};
   bool         good = true;
-  for (int k = 0; room && good && k < f->s->n_panels; k++)
+  for (int k = 0; good && k < f->s->n_panels; k++)
     if (!f->turns->is_real[k]) good = do_panel(&w, k);
   free(w.place);
   free(w.relative);
   free(w.update);
-  return !room ? FEM_NO_MEMORY : good ? FEM_FACTORISED : FEM_NOT_DEFINITE;
+  return good;
 }

@@ -18,6 +18,7 @@ typedef struct {
 
 double fem_hermitian_workspace(const fem_supernodes *s); /* bytes */
 
-fem_factorised fem_hermitian_factorise(const fem_hermitian_blocks *A, fem_hermitian_panels *panels);
+/* Returns false if the matrix is not positive definite. */
+bool fem_hermitian_factorise(const fem_hermitian_blocks *A, fem_hermitian_panels *panels);
 
 #endif

@@ -7,6 +7,8 @@
 #include <stdlib.h>
 #include <sys/mman.h>
 
+#include "mesh/base/memory.h"
+
 enum { FEM_LARGE_PAGE = 1 << 21 };
 
 /* Ask for them in memory that is there and not yet touched. */
@@ -17,12 +19,11 @@ static inline void fem_prefer_large_pages(void *memory, size_t bytes) {
     madvise((char *)memory + (begin - (uintptr_t)memory), end - begin, MADV_HUGEPAGE);
 }
 
-/* As malloc; to be freed by free. It begins at a cache line. Greater alignments leave gaps in
- * glibc's heap. */
-static inline void *fem_large_malloc(size_t bytes) {
+/* As shb_alloc. It begins at a cache line. Greater alignments leave gaps in glibc's heap. */
+static inline void *fem_large_alloc(size_t count, size_t size) {
   const size_t line   = 64;
-  void        *memory = aligned_alloc(line, (bytes + line) / line * line);
-  fem_prefer_large_pages(memory, bytes);
+  void        *memory = shb_alloc_aligned(line, count, size);
+  fem_prefer_large_pages(memory, count * size);
   return memory;
 }
 

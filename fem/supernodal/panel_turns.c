@@ -3,6 +3,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "mesh/base/memory.h"
+
 /* Panels that change a panel first are its children: lists by the number of a panel, -1 ends. */
 typedef struct {
   const fem_supernodes    *s;
@@ -89,40 +91,35 @@ static void judge(const search *w, int k) {
   w->child[up]  = k;
 }
 
-static bool allocate(search *w) {
+static void allocate(search *w) {
   const size_t panels = (size_t)w->s->n_panels + 1, nodes = (size_t)w->s->n / 3 + 1;
   const size_t rows = (size_t)w->s->most_rows / 3 + 1;
-  w->child          = malloc(panels * sizeof(int));
-  w->sibling        = malloc(panels * sizeof(int));
-  w->owner          = malloc(nodes * sizeof(int));
-  w->local          = malloc(nodes * sizeof(int));
-  w->root           = malloc(rows * sizeof(int));
-  w->offset         = malloc(rows * sizeof(int));
-  w->out->is_real   = calloc(panels, sizeof(bool));
-  w->out->turns     = calloc(panels, sizeof(bool));
-  w->out->g         = calloc(w->s->n_rows / 3 + 1, 1);
-  return w->child && w->sibling && w->owner && w->local && w->root && w->offset &&
-         w->out->is_real && w->out->turns && w->out->g;
+  w->child          = shb_alloc(panels, sizeof(int));
+  w->sibling        = shb_alloc(panels, sizeof(int));
+  w->owner          = shb_alloc(nodes, sizeof(int));
+  w->local          = shb_alloc(nodes, sizeof(int));
+  w->root           = shb_alloc(rows, sizeof(int));
+  w->offset         = shb_alloc(rows, sizeof(int));
+  w->out->is_real   = shb_alloc_zeroed(panels, sizeof(bool));
+  w->out->turns     = shb_alloc_zeroed(panels, sizeof(bool));
+  w->out->g         = shb_alloc_zeroed(w->s->n_rows / 3 + 1, 1);
 }
 
-bool fem_panel_turns_create(const fem_supernodes *s, const fem_lower_pattern *lower,
+void fem_panel_turns_create(const fem_supernodes *s, const fem_lower_pattern *lower,
                             const signed char *exponent, fem_panel_turns *out) {
-  search w        = {.s = s, .lower = lower, .exponent = exponent, .out = out};
-  *out            = (fem_panel_turns){0};
-  const bool room = allocate(&w);
-  for (int k = 0; room && k < s->n_panels; k++) {
+  search w = {.s = s, .lower = lower, .exponent = exponent, .out = out};
+  allocate(&w);
+  for (int k = 0; k < s->n_panels; k++) {
     w.child[k] = -1;
     for (int c = 0; c < s->panel[k].columns / 3; c++) w.owner[s->panel[k].first / 3 + c] = k;
   }
-  for (int k = 0; room && k < s->n_panels; k++) judge(&w, k);
+  for (int k = 0; k < s->n_panels; k++) judge(&w, k);
   free(w.child);
   free(w.sibling);
   free(w.owner);
   free(w.local);
   free(w.root);
   free(w.offset);
-  if (!room) fem_panel_turns_free(out);
-  return room;
 }
 
 void fem_panel_turns_free(fem_panel_turns *turns) {

@@ -25,9 +25,8 @@ typedef struct {
 } fem_panel_turns;
 
 /*   lower     in  permuted lower triangle of the pattern
- *   exponent  in  [block] e of upper block (r, c), r <= c before the permutation
- * Returns false when out of memory. */
-bool fem_panel_turns_create(const fem_supernodes *s, const fem_lower_pattern *lower,
+ *   exponent  in  [block] e of upper block (r, c), r <= c before the permutation */
+void fem_panel_turns_create(const fem_supernodes *s, const fem_lower_pattern *lower,
                             const signed char *exponent, fem_panel_turns *out);
 void fem_panel_turns_free(fem_panel_turns *turns); /* also of a zeroed struct */
 

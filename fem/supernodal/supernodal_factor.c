@@ -8,6 +8,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "mesh/base/memory.h"
+
 enum { SPINS = 2000 }; /* looks at a panel in work before the processor is given to others */
 
 typedef struct {
@@ -102,11 +104,10 @@ static void do_panel(factorisation *f, int k, const workspace *w) {
 
 /* ------------------------------------------------------------------ all panels */
 
-static bool create_workspace(const fem_supernodes *s, workspace *w) {
-  w->place    = malloc(((size_t)s->n + 1) * sizeof *w->place);
-  w->relative = malloc(((size_t)s->most_rows + 1) * sizeof *w->relative);
-  w->update   = malloc(FEM_PANEL_COLUMNS * ((size_t)s->most_rows + 1) * sizeof *w->update);
-  return w->place && w->relative && w->update;
+static void create_workspace(const fem_supernodes *s, workspace *w) {
+  w->place    = shb_alloc((size_t)s->n + 1, sizeof *w->place);
+  w->relative = shb_alloc((size_t)s->most_rows + 1, sizeof *w->relative);
+  w->update   = shb_alloc(FEM_PANEL_COLUMNS * ((size_t)s->most_rows + 1), sizeof *w->update);
 }
 
 static void free_workspace(workspace *w) {
@@ -132,23 +133,22 @@ static void work(factorisation *f, const int *top, int n_top, const workspace *w
   }
 }
 
-fem_factorised fem_supernodal_factorise(const fem_supernodes *s, const fem_lower_pattern *lower,
-                                        const double *block, const bool *only, double *value) {
+bool fem_supernodal_factorise(const fem_supernodes *s, const fem_lower_pattern *lower,
+                              const double *block, const bool *only, double *value) {
   const int     most  = omp_get_max_threads();
   factorisation f     = {.s = s, .lower = lower, .block = block, .only = only, .value = value};
-  workspace    *w     = calloc((size_t)most, sizeof *w);
-  int          *top   = malloc(((size_t)s->n_panels + 1) * sizeof *top);
-  int           n_top = 0, ready = 0;
-  f.done = calloc((size_t)s->n_panels + 1, sizeof *f.done);
-  for (; w && ready < most && create_workspace(s, &w[ready]);) ready++;
-  const bool room = ready > 0 && top && f.done;
-  for (int k = 0; room && k < s->n_panels; k++)
+  workspace    *w     = shb_alloc_zeroed((size_t)most, sizeof *w);
+  int          *top   = shb_alloc((size_t)s->n_panels + 1, sizeof *top);
+  int           n_top = 0;
+  f.done              = shb_alloc_zeroed((size_t)s->n_panels + 1, sizeof *f.done);
+  for (int i = 0; i < most; i++) create_workspace(s, &w[i]);
+  for (int k = 0; k < s->n_panels; k++)
     if (s->is_top[k]) top[n_top++] = k;
-#pragma omp parallel num_threads(ready > 0 ? ready : 1) if (room)
-  if (room) work(&f, top, n_top, &w[omp_get_thread_num()]);
-  for (int i = 0; w && i < most; i++) free_workspace(&w[i]);
+#pragma omp parallel num_threads(most)
+  work(&f, top, n_top, &w[omp_get_thread_num()]);
+  for (int i = 0; i < most; i++) free_workspace(&w[i]);
   free(w);
   free(top);
   free(f.done);
-  return !room ? FEM_NO_MEMORY : f.failed ? FEM_NOT_DEFINITE : FEM_FACTORISED;
+  return !f.failed;
 }

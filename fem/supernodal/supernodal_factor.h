@@ -9,16 +9,14 @@
 #include "fem/supernodal/block_order.h"
 #include "fem/supernodal/supernodes.h"
 
-typedef enum { FEM_FACTORISED, FEM_NOT_DEFINITE, FEM_NO_MEMORY } fem_factorised;
-
 /* Bytes of workspace on that many threads. */
 double fem_supernodal_workspace(const fem_supernodes *s, int threads);
 
-/* Factorise a symmetric matrix of 3x3 blocks.
+/* Factorise a symmetric matrix of 3x3 blocks. Returns false if it is not positive definite.
  *   block  in   [block][9] upper triangle in the order of the pattern, each block by columns
  *   only   in   [n_panels] panels that are wanted, with all below them in the tree; NULL: all
  *   value  out  [n_values] */
-fem_factorised fem_supernodal_factorise(const fem_supernodes *s, const fem_lower_pattern *lower,
-                                        const double *block, const bool *only, double *value);
+bool fem_supernodal_factorise(const fem_supernodes *s, const fem_lower_pattern *lower,
+                              const double *block, const bool *only, double *value);
 
 #endif

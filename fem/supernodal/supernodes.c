@@ -3,6 +3,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "mesh/base/memory.h"
+
 enum { SHARES = 16 }; /* a subtree costs at most that part of the whole factorisation */
 
 /* ------------------------------------------------------------------ panels */
@@ -14,7 +16,7 @@ static int pieces_of(int columns) {
   return (columns + FEM_PANEL_COLUMNS - 1) / FEM_PANEL_COLUMNS;
 }
 
-static bool allocate_panels(const cholmod_factor *L, fem_supernodes *out) {
+static void allocate_panels(const cholmod_factor *L, fem_supernodes *out) {
   const int *super = L->super, *pi = L->pi;
   size_t     rows = 0;
   for (size_t s = 0; s < L->nsuper; s++) {
@@ -24,10 +26,9 @@ static bool allocate_panels(const cholmod_factor *L, fem_supernodes *out) {
   }
   const size_t n = (size_t)out->n_panels;
   out->n         = DOFS * (int)L->n;
-  out->panel     = malloc((n + 1) * sizeof *out->panel);
-  out->row       = malloc((rows + 1) * sizeof *out->row);
-  out->is_top    = calloc(n + 1, sizeof *out->is_top);
-  return out->panel && out->row && out->is_top;
+  out->panel     = shb_alloc(n + 1, sizeof *out->panel);
+  out->row       = shb_alloc(rows + 1, sizeof *out->row);
+  out->is_top    = shb_alloc_zeroed(n + 1, sizeof *out->is_top);
 }
 
 /* The rows of a panel that begins done rows below the first one of a supernode.
@@ -81,19 +82,16 @@ static void pass_updates(fem_supernodes *s, const int *owner, int *next) {
   }
 }
 
-static bool list_updates(fem_supernodes *s, const int *owner) {
+static void list_updates(fem_supernodes *s, const int *owner) {
   const size_t n  = (size_t)s->n_panels;
-  s->update_start = calloc(n + 1, sizeof(int));
-  int *next       = malloc((n + 1) * sizeof(int));
-  if (s->update_start && next) {
-    pass_updates(s, owner, NULL);
-    for (size_t k = 0; k < n; k++) s->update_start[k + 1] += s->update_start[k];
-    memcpy(next, s->update_start, (n + 1) * sizeof(int));
-    s->update = malloc(((size_t)s->update_start[n] + 1) * sizeof *s->update);
-    if (s->update) pass_updates(s, owner, next);
-  }
+  s->update_start = shb_alloc_zeroed(n + 1, sizeof(int));
+  int *next       = shb_alloc(n + 1, sizeof(int));
+  pass_updates(s, owner, NULL);
+  for (size_t k = 0; k < n; k++) s->update_start[k + 1] += s->update_start[k];
+  memcpy(next, s->update_start, (n + 1) * sizeof(int));
+  s->update = shb_alloc((size_t)s->update_start[n] + 1, sizeof *s->update);
+  pass_updates(s, owner, next);
   free(next);
-  return s->update != NULL;
 }
 
 /* ------------------------------------------------------------------ subtrees */
@@ -158,18 +156,16 @@ static void point_to_copies(fem_supernodes *s, const fem_subtree *t, const int *
   }
 }
 
-static bool place_copies(fem_supernodes *s, const tree *t, double (*roots)[2]) {
+static void place_copies(fem_supernodes *s, const tree *t, double (*roots)[2]) {
   s->n_extended = s->n;
-  s->subtree    = malloc(((size_t)s->n_subtrees + 1) * sizeof *s->subtree);
-  if (!s->subtree) return false;
+  s->subtree    = shb_alloc((size_t)s->n_subtrees + 1, sizeof *s->subtree);
   for (int i = 0; i < s->n_subtrees; i++) {
     const int        k    = (int)roots[i][1];
     const fem_panel *root = &s->panel[k];
     s->subtree[i] = (fem_subtree){t->first[k], k + 1, s->n_extended, root->rows - root->columns};
     s->n_extended += s->subtree[i].n_copies;
   }
-  s->original = malloc(((size_t)(s->n_extended - s->n) + 1) * sizeof(int));
-  if (!s->original) return false;
+  s->original = shb_alloc((size_t)(s->n_extended - s->n) + 1, sizeof(int));
   for (int i = 0; i < s->n_subtrees; i++) {
     const fem_subtree *sub  = &s->subtree[i];
     const fem_panel   *root = &s->panel[sub->last - 1];
@@ -177,40 +173,32 @@ static bool place_copies(fem_supernodes *s, const tree *t, double (*roots)[2]) {
     memcpy(own, s->row + root->row + root->columns, (size_t)sub->n_copies * sizeof(int));
     point_to_copies(s, sub, own);
   }
-  return true;
 }
 
-static bool find_subtrees(fem_supernodes *s, const int *owner) {
+static void find_subtrees(fem_supernodes *s, const int *owner) {
   const size_t n    = (size_t)s->n_panels;
-  tree         t    = {calloc(n + 1, sizeof(double)), malloc((n + 1) * sizeof(int)),
-                       calloc(n + 1, sizeof(int)), malloc((n + 1) * sizeof(int))};
-  double(*roots)[2] = malloc((n + 1) * sizeof *roots);
-  bool good         = t.cost && t.first && t.size && t.parent && roots;
-  if (good) {
-    climb(s, owner, &t);
-    take_roots(s, &t, roots);
-    good = place_copies(s, &t, roots);
-  }
+  tree         t    = {shb_alloc_zeroed(n + 1, sizeof(double)), shb_alloc(n + 1, sizeof(int)),
+                       shb_alloc_zeroed(n + 1, sizeof(int)), shb_alloc(n + 1, sizeof(int))};
+  double(*roots)[2] = shb_alloc(n + 1, sizeof *roots);
+  climb(s, owner, &t);
+  take_roots(s, &t, roots);
+  place_copies(s, &t, roots);
   free(t.cost);
   free(t.first);
   free(t.size);
   free(t.parent);
   free(roots);
-  return good;
 }
 
-bool fem_supernodes_create(const cholmod_factor *L, fem_supernodes *out) {
+void fem_supernodes_create(const cholmod_factor *L, fem_supernodes *out) {
   memset(out, 0, sizeof *out);
-  int *owner = malloc((DOFS * L->n + 1) * sizeof *owner);
-  bool good  = owner && allocate_panels(L, out);
-  if (good) {
-    cut_panels(L, out);
-    fill_owners(out, owner);
-    good = list_updates(out, owner) && find_subtrees(out, owner);
-  }
+  int *owner = shb_alloc(DOFS * L->n + 1, sizeof *owner);
+  allocate_panels(L, out);
+  cut_panels(L, out);
+  fill_owners(out, owner);
+  list_updates(out, owner);
+  find_subtrees(out, owner);
   free(owner);
-  if (!good) fem_supernodes_free(out);
-  return good;
 }
 
 void fem_supernodes_needed(const fem_supernodes *s, bool *row, bool *needed) {

@@ -47,8 +47,8 @@ typedef struct {
   bool        *is_top;       /* [n_panels] in no subtree */
 } fem_supernodes;
 
-/* From CHOLMOD's symbolic factor of the nodes (block_order.h). Returns false when out of memory. */
-bool fem_supernodes_create(const cholmod_factor *L, fem_supernodes *out);
+/* From CHOLMOD's symbolic factor of the nodes (block_order.h). */
+void fem_supernodes_create(const cholmod_factor *L, fem_supernodes *out);
 void fem_supernodes_free(fem_supernodes *s); /* also of a zeroed struct */
 
 /* Panels that a backward solution for some rows needs: those that hold a row, and all above them.

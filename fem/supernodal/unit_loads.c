@@ -9,6 +9,7 @@
 #include "fem/supernodal/condensed_mass.h"
 #include "fem/supernodal/large_pages.h"
 #include "fem/supernodal/supernodal_solve.h"
+#include "mesh/base/memory.h"
 
 /* WIDTH: columns of a block. SHARE: a subtree has at most that part of the rows. */
 enum { WIDTH = 160, SHARE = 2, NOWHERE = -1 };
@@ -86,10 +87,9 @@ static bool may_be_subtree(const problem *p, int k) {
          columns_below(p->of->tree.panels, p->below, k) <= p->n / SHARE;
 }
 
-static bool cut(problem *p) {
+static void cut(problem *p) {
   const fem_supernodes *s    = p->of->tree.panels;
-  int                  *size = malloc(((size_t)s->n_panels + 1) * sizeof *size);
-  if (!size) return false;
+  int                  *size = shb_alloc((size_t)s->n_panels + 1, sizeof *size);
   find_ranges(p, size);
   free(size);
   for (int k = 0; k < s->n_panels; k++) p->in_top[k] = true;
@@ -104,7 +104,6 @@ static bool cut(problem *p) {
     p->top_node[i] = p->n_top / 3;
     for (int d = 0; d < 3; d++) p->top_row[p->n_top++] = 3 * i + d;
   }
-  return true;
 }
 
 static int row_of(const problem *p, int dof) {
@@ -144,26 +143,24 @@ static void order_modes(problem *p) {
 
 /* ------------------------------------------------------------------ memory */
 
-static bool allocate(problem *p) {
+static void allocate(problem *p) {
   const fem_unit_loads *of = p->of;
   const size_t          n = (size_t)p->n, panels = (size_t)of->tree.panels->n_panels,
                modes = (size_t)of->modes;
   const size_t loads = (size_t)of->n_loads, entries = (size_t)of->start[of->n_loads];
-  p->node     = malloc((n / 3 + 1) * sizeof *p->node);
-  p->owner    = malloc((n + 1) * sizeof *p->owner);
-  p->below    = malloc((panels + 1) * sizeof *p->below);
-  p->in_top   = malloc((panels + 1) * sizeof *p->in_top);
-  p->root     = malloc((panels + 1) * sizeof *p->root);
-  p->top_node = malloc((n / 3 + 1) * sizeof *p->top_node);
-  p->top_row  = malloc((n + 1) * sizeof *p->top_row);
-  p->phi      = malloc((n * modes + 1) * sizeof *p->phi);
-  p->part     = calloc(modes * loads + 1, sizeof *p->part);
-  p->trace    = calloc(modes * loads + 1, sizeof *p->trace);
-  p->entry    = malloc((n + 2) * sizeof *p->entry);
-  p->load     = malloc((entries + 1) * sizeof *p->load);
-  p->weight   = malloc((entries + 1) * sizeof *p->weight);
-  return p->node && p->owner && p->below && p->in_top && p->root && p->top_node && p->top_row &&
-         p->phi && p->part && p->trace && p->entry && p->load && p->weight;
+  p->node     = shb_alloc(n / 3 + 1, sizeof *p->node);
+  p->owner    = shb_alloc(n + 1, sizeof *p->owner);
+  p->below    = shb_alloc(panels + 1, sizeof *p->below);
+  p->in_top   = shb_alloc(panels + 1, sizeof *p->in_top);
+  p->root     = shb_alloc(panels + 1, sizeof *p->root);
+  p->top_node = shb_alloc(n / 3 + 1, sizeof *p->top_node);
+  p->top_row  = shb_alloc(n + 1, sizeof *p->top_row);
+  p->phi      = shb_alloc(n * modes + 1, sizeof *p->phi);
+  p->part     = shb_alloc_zeroed(modes * loads + 1, sizeof *p->part);
+  p->trace    = shb_alloc_zeroed(modes * loads + 1, sizeof *p->trace);
+  p->entry    = shb_alloc(n + 2, sizeof *p->entry);
+  p->load     = shb_alloc(entries + 1, sizeof *p->load);
+  p->weight   = shb_alloc(entries + 1, sizeof *p->weight);
 }
 
 static int width_of(const problem *p, int block) {
@@ -171,26 +168,22 @@ static int width_of(const problem *p, int block) {
   return left < WIDTH ? left : WIDTH;
 }
 
-static bool allocate_top(problem *p) {
+static void allocate_top(problem *p) {
   const size_t rows = (size_t)p->n_top;
   p->n_blocks       = (p->of->n_loads + WIDTH - 1) / WIDTH;
-  p->top_phi        = malloc((rows * (size_t)p->of->modes + 1) * sizeof *p->top_phi);
-  p->subtree        = calloc((size_t)p->n_roots + 1, sizeof(fem_condensed *));
-  p->lag            = calloc((size_t)p->n_roots + 1, sizeof *p->lag);
-  p->V              = calloc((size_t)p->n_blocks + 1, sizeof *p->V);
-  bool good         = p->top_phi && p->subtree && p->lag && p->V;
-  for (int i = 0; good && i < p->n_blocks; i++) {
-    p->V[i] = fem_large_malloc((rows * (size_t)width_of(p, i) + 1) * sizeof(double));
-    good    = p->V[i] != NULL;
-  }
-  return good;
+  p->top_phi        = shb_alloc(rows * (size_t)p->of->modes + 1, sizeof *p->top_phi);
+  p->subtree        = shb_alloc_zeroed((size_t)p->n_roots + 1, sizeof(fem_condensed *));
+  p->lag            = shb_alloc_zeroed((size_t)p->n_roots + 1, sizeof *p->lag);
+  p->V              = shb_alloc_zeroed((size_t)p->n_blocks + 1, sizeof *p->V);
+  for (int i = 0; i < p->n_blocks; i++)
+    p->V[i] = fem_large_alloc(rows * (size_t)width_of(p, i) + 1, sizeof(double));
 }
 
 static void free_problem(problem *p) {
-  for (int i = 0; p->V && i < p->n_blocks; i++) free(p->V[i]);
+  for (int i = 0; i < p->n_blocks; i++) free(p->V[i]);
   for (int i = 0; i < p->n_roots; i++) {
-    if (p->subtree) fem_condensed_free(p->subtree[i]);
-    if (p->lag) free(p->lag[i]);
+    fem_condensed_free(p->subtree[i]);
+    free(p->lag[i]);
   }
   free(p->V);
   free(p->subtree);
@@ -211,18 +204,17 @@ static void free_problem(problem *p) {
   free(p->weight);
 }
 
-static bool create_workspace(const problem *p, workspace *w) {
+static void create_workspace(const problem *p, workspace *w) {
   size_t       size = 0, modes = (size_t)p->of->modes;
   const size_t rows = (size_t)p->of->tree.panels->most_rows;
   for (int i = 0; i < p->n_roots; i++)
     if ((size_t)p->subtree[i]->size > size) size = (size_t)p->subtree[i]->size;
-  w->Z    = fem_large_malloc(((size_t)p->n_top + 1) * WIDTH * sizeof *w->Z);
-  w->q    = malloc((size + 1) * WIDTH * sizeof *w->q);
-  w->Qq   = malloc((size + 1) * WIDTH * sizeof *w->Qq);
-  w->work = malloc((rows + 1) * WIDTH * sizeof *w->work);
-  w->w    = malloc((modes + 1) * WIDTH * sizeof *w->w);
-  w->at   = malloc((rows + 1) * sizeof *w->at);
-  return w->Z && w->q && w->Qq && w->work && w->w && w->at;
+  w->Z    = fem_large_alloc(((size_t)p->n_top + 1) * WIDTH, sizeof *w->Z);
+  w->q    = shb_alloc((size + 1) * WIDTH, sizeof *w->q);
+  w->Qq   = shb_alloc((size + 1) * WIDTH, sizeof *w->Qq);
+  w->work = shb_alloc((rows + 1) * WIDTH, sizeof *w->work);
+  w->w    = shb_alloc((modes + 1) * WIDTH, sizeof *w->w);
+  w->at   = shb_alloc(rows + 1, sizeof *w->at);
 }
 
 static void free_workspace(workspace *w) {
@@ -238,28 +230,24 @@ static void free_workspace(workspace *w) {
 
 /* b^T (phi - G phi_beyond): what a mode moves the loads by beyond the static answer to its motion
  * of the rows beyond. */
-static bool find_lag(problem *p, int i) {
+static void find_lag(problem *p, int i) {
   const fem_condensed  *c     = p->subtree[i];
   const size_t          modes = (size_t)p->of->modes, loads = (size_t)c->loads;
   const fem_supernodes *s     = p->of->tree.panels;
   const int             first = s->panel[p->below[p->root[i]]].first;
   const int             end   = s->panel[p->root[i]].first + s->panel[p->root[i]].columns;
-  double               *lag = p->lag[i] = calloc(loads * modes + 1, sizeof *lag);
-  int                  *place           = malloc(((size_t)p->of->n_loads + 1) * sizeof *place);
-  if (lag && place) {
-    for (int k = 0; k < c->loads; k++) place[c->load[k]] = k;
-    for (int r = first; r < end; r++)
-      for (int e = p->entry[r]; e < p->entry[r + 1]; e++)
-        for (size_t m = 0; m < modes; m++)
-          lag[(size_t)place[p->load[e]] * modes + m] +=
-              p->weight[e] * p->phi[(size_t)r * modes + m];
-    for (int a = 0; a < c->beyond; a++)
-      for (size_t k = 0; k < loads; k++)
-        for (size_t m = 0; m < modes; m++)
-          lag[k * modes + m] -= c->U[(size_t)a * loads + k] * p->phi[(size_t)c->row[a] * modes + m];
-  }
+  double               *lag = p->lag[i] = shb_alloc_zeroed(loads * modes + 1, sizeof *lag);
+  int                  *place           = shb_alloc((size_t)p->of->n_loads + 1, sizeof *place);
+  for (int k = 0; k < c->loads; k++) place[c->load[k]] = k;
+  for (int r = first; r < end; r++)
+    for (int e = p->entry[r]; e < p->entry[r + 1]; e++)
+      for (size_t m = 0; m < modes; m++)
+        lag[(size_t)place[p->load[e]] * modes + m] += p->weight[e] * p->phi[(size_t)r * modes + m];
+  for (int a = 0; a < c->beyond; a++)
+    for (size_t k = 0; k < loads; k++)
+      for (size_t m = 0; m < modes; m++)
+        lag[k * modes + m] -= c->U[(size_t)a * loads + k] * p->phi[(size_t)c->row[a] * modes + m];
   free(place);
-  return lag && place;
 }
 
 static bool ask(problem *p, double share) {
@@ -288,7 +276,6 @@ static double bytes_needed(const problem *p, size_t stack) {
 }
 
 static fem_loads_end condense_subtrees(problem *p) {
-  bool good   = true;
   p->body     = (fem_loaded_body){.panels  = p->of->tree.panels,
                                   .value   = p->of->tree.value,
                                   .owner   = p->owner,
@@ -307,21 +294,18 @@ static fem_loads_end condense_subtrees(problem *p) {
                                   .go_on   = go_on,
                                   .context = p};
   size_t most = 0;
-  for (int i = 0; good && i < p->n_roots; i++) {
+  for (int i = 0; i < p->n_roots; i++) {
     size_t stack  = 0;
     p->subtree[i] = fem_condensed_create(&p->body, p->root[i], &stack);
-    good          = p->subtree[i] != NULL;
     if (stack > most) most = stack;
   }
-  if (!good || bytes_needed(p, most) > p->of->room) return FEM_LOADS_NO_ROOM;
+  if (bytes_needed(p, most) > p->of->room) return FEM_LOADS_NO_ROOM;
   order_modes(p);
-  double *stack = fem_large_malloc((most + 1) * sizeof *stack);
-  good          = stack != NULL;
-  for (int i = 0; good && i < p->n_roots; i++)
-    good = fem_condense(&p->body, p->root[i], stack, p->subtree[i]) && find_lag(p, i);
+  double *stack = fem_large_alloc(most + 1, sizeof *stack);
+  for (int i = 0; i < p->n_roots && !p->stopped; i++)
+    if (fem_condense(&p->body, p->root[i], stack, p->subtree[i])) find_lag(p, i);
   free(stack);
-  if (good) return FEM_LOADS_SOLVED;
-  return p->stopped ? FEM_LOADS_STOPPED : FEM_LOADS_NO_ROOM;
+  return p->stopped ? FEM_LOADS_STOPPED : FEM_LOADS_SOLVED;
 }
 
 /* ------------------------------------------------------------------ rows above the subtrees */
@@ -498,40 +482,38 @@ static bool blocks_go_on(problem *p, double before, int block) {
   return !p->stopped;
 }
 
-static fem_loads_end run_blocks(problem *p) {
+static void run_blocks(problem *p) {
   const int  all = omp_get_max_threads(), most = all < p->n_blocks ? all : p->n_blocks;
-  workspace *w     = calloc((size_t)most + 1, sizeof *w);
-  int        ready = 0;
-  for (; w && ready < most && create_workspace(p, &w[ready]);) ready++;
+  workspace *w = shb_alloc_zeroed((size_t)most + 1, sizeof *w);
+  for (int i = 0; i < most; i++) create_workspace(p, &w[i]);
   const size_t n = (size_t)p->of->n_loads * (size_t)p->of->n_loads;
   memset(p->R, 0, n * sizeof *p->R);
   memset(p->R2, 0, n * sizeof *p->R2);
-  if (ready > 0) {
-#pragma omp parallel num_threads(ready)
-    {
-      const workspace *own = &w[omp_get_thread_num()];
+#pragma omp parallel num_threads(most)
+  {
+    const workspace *own = &w[omp_get_thread_num()];
 #pragma omp for schedule(dynamic, 1)
-      for (int i = 0; i < p->n_blocks; i++)
-        if (blocks_go_on(p, 0, i)) solve_block(p, own, i);
+    for (int i = 0; i < p->n_blocks; i++)
+      if (blocks_go_on(p, 0, i)) solve_block(p, own, i);
 #pragma omp for schedule(dynamic, 1)
-      for (int i = 0; i < p->n_blocks; i++)
-        if (blocks_go_on(p, 0.5, i)) finish_block(p, own, i);
-    }
+    for (int i = 0; i < p->n_blocks; i++)
+      if (blocks_go_on(p, 0.5, i)) finish_block(p, own, i);
   }
-  for (int i = 0; w && i < most; i++) free_workspace(&w[i]);
+  for (int i = 0; i < most; i++) free_workspace(&w[i]);
   free(w);
-  if (p->stopped) return FEM_LOADS_STOPPED;
-  return ready > 0 ? FEM_LOADS_SOLVED : FEM_LOADS_NO_ROOM;
 }
 
 static fem_loads_end solve(problem *p) {
-  if (!allocate(p)) return FEM_LOADS_NO_ROOM;
+  if (p->of->n_loads == 0) return FEM_LOADS_SOLVED;
+  allocate(p);
   for (int i = 0; i < p->n / 3; i++) p->node[p->of->tree.place[i]] = i;
-  if (!cut(p) || !allocate_top(p)) return FEM_LOADS_NO_ROOM;
+  cut(p);
+  allocate_top(p);
   sort_entries(p);
-  fem_loads_end end = condense_subtrees(p);
-  if (end == FEM_LOADS_SOLVED) end = run_blocks(p);
+  const fem_loads_end end = condense_subtrees(p);
   if (end != FEM_LOADS_SOLVED) return end;
+  run_blocks(p);
+  if (p->stopped) return FEM_LOADS_STOPPED;
   remove_trace(p);
   mirror(p);
   return FEM_LOADS_SOLVED;

@@ -3,13 +3,32 @@
 
 #include <fcntl.h>
 #include <signal.h>
+#include <stdatomic.h>
 #include <stdbool.h>
 #include <stdio.h>
 #include <string.h>
 #include <unistd.h>
 
-#include "mesh/base/publish.h"
 #include "mesh/base/status.h"
+
+enum { MAX_FILES = 8 };
+
+/* Files to remove. */
+static struct {
+  volatile sig_atomic_t used;
+  pid_t                 owner;
+  char                  name[1024];
+} file_of_end[MAX_FILES];
+
+void shb_end_removes(const char *name) {
+  static atomic_int next;
+  const int         at = atomic_fetch_add(&next, 1) % MAX_FILES;
+  file_of_end[at].used = 0;
+  if (strlen(name) >= sizeof file_of_end[at].name) return;
+  strcpy(file_of_end[at].name, name);
+  file_of_end[at].owner = getpid();
+  file_of_end[at].used  = 1;
+}
 
 static const int fatal[] = {SIGSEGV, SIGBUS, SIGABRT, SIGFPE, SIGILL};
 
@@ -34,13 +53,23 @@ static struct {
   int   file; /* of the stream */
 } speech;
 
+void shb_end_at_once(const char *line, int code) {
+  static atomic_flag ending = ATOMIC_FLAG_INIT;
+  const int          where  = guard.muted ? speech.file : STDERR_FILENO;
+  if (atomic_flag_test_and_set(&ending)) {
+    sleep(1); /* another thread ends the process meanwhile; or this one has crashed over it */
+  } else {
+    ssize_t done = write(where, line, strlen(line));
+    (void)done;
+  }
+  for (int i = 0; i < MAX_FILES; i++)
+    if (file_of_end[i].used && file_of_end[i].owner == getpid()) unlink(file_of_end[i].name);
+  _exit(code);
+}
+
 static void end_program(int number) {
   (void)number;
-  const int where = guard.muted ? speech.file : STDERR_FILENO;
-  ssize_t   done  = write(where, guard.line, strlen(guard.line));
-  (void)done;
-  shb_publish_abandon();
-  _exit(guard.code);
+  shb_end_at_once(guard.line, guard.code);
 }
 
 static bool make_own_stream(void) {

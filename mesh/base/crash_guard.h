@@ -1,9 +1,20 @@
-/* A damaged file can crash the library that reads it. The program then ends with one line and the
+/* The end of the process at once: by a crash, a second signal, or without memory.
+ *
+ * A damaged file can crash the library that reads it. The program then ends with one line and the
  * exit code SHB_ERR_INPUT. */
 #ifndef MESH_BASE_CRASH_GUARD_H
 #define MESH_BASE_CRASH_GUARD_H
 
 #include <stdbool.h>
+
+/* Remove this file when this process ends at once, not one that it forks. The names of published
+ * and removed files do no harm. The last eight names count, of at most 1023 bytes. */
+void shb_end_removes(const char *name);
+
+/* End the process at once with this exit code. The line, with its line end, goes where the program
+ * speaks; then the files above are removed. Of several threads the first speaks. Safe in a signal
+ * handler. */
+_Noreturn void shb_end_at_once(const char *line, int code);
 
 /* From here to the end of the guard a fatal signal prints "shroudhb: error: PATH: WHY" and ends the
  * process. Temporary files of results are removed. What the C library prints before it aborts leads

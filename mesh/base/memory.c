@@ -2,9 +2,88 @@
 
 #include <malloc.h>
 #include <math.h>
+#include <stdarg.h>
+#include <stdint.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 #include <sys/resource.h>
+#include <unistd.h>
+
+#include "mesh/base/crash_guard.h"
+
+/* ---- arrays ---- */
+
+/* Nothing here allocates memory. A progress line on a terminal is cleared. */
+void shb_out_of_memory(double bytes) {
+  char        line[240], block[64] = "a block";
+  const char *clear = isatty(STDERR_FILENO) ? "\r\033[K" : "";
+  if (bytes > 0) snprintf(block, sizeof block, "a block of %.3g MB", 1e-6 * bytes);
+  snprintf(line, sizeof line,
+           "%sshroudhb: error: out of memory: %s cannot be had; fewer nodes, harmonics, points or "
+           "threads need less\n",
+           clear, block);
+  shb_end_at_once(line, SHB_ERR_IO);
+}
+
+/* Bytes of an array; at least 1. The product must be that of an object of C. */
+static size_t bytes_of(size_t count, size_t size) {
+  if (size > 0 && count > PTRDIFF_MAX / size) shb_out_of_memory((double)count * (double)size);
+  return count * size > 0 ? count * size : 1;
+}
+
+static void *given(void *array, size_t bytes) {
+  if (!array) shb_out_of_memory((double)bytes);
+  return array;
+}
+
+void *shb_alloc(size_t count, size_t size) {
+  const size_t bytes = bytes_of(count, size);
+  return given(malloc(bytes), bytes);
+}
+
+void *shb_alloc_zeroed(size_t count, size_t size) {
+  const size_t bytes = bytes_of(count, size);
+  return given(calloc(1, bytes), bytes);
+}
+
+void *shb_alloc_aligned(size_t alignment, size_t count, size_t size) {
+  const size_t bytes = bytes_of(count, size);
+  const size_t whole = bytes_of((bytes + alignment - 1) / alignment, alignment);
+  return given(aligned_alloc(alignment, whole), whole);
+}
+
+void *shb_realloc(void *array, size_t count, size_t size) {
+  const size_t bytes = bytes_of(count, size);
+  return given(realloc(array, bytes), bytes);
+}
+
+char *shb_text(const char *text) {
+  return shb_text_start(text, SIZE_MAX);
+}
+
+char *shb_text_start(const char *text, size_t most) {
+  const size_t length = strnlen(text, most);
+  char        *copy   = shb_alloc(length + 1, 1);
+  memcpy(copy, text, length);
+  copy[length] = '\0';
+  return copy;
+}
+
+char *shb_text_of(const char *format, ...) {
+  va_list args, again;
+  va_start(args, format);
+  va_copy(again, args);
+  const int length = vsnprintf(NULL, 0, format, args);
+  va_end(args);
+  char *text = shb_alloc((size_t)(length > 0 ? length : 0) + 1, 1);
+  text[0]    = '\0';
+  vsnprintf(text, (size_t)(length > 0 ? length : 0) + 1, format, again);
+  va_end(again);
+  return text;
+}
+
+/* ---- what is left ---- */
 
 enum { LARGE = 1 << 21 };
 

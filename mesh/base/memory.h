@@ -1,8 +1,36 @@
-/* Memory that is left to this process, and the refusal of what does not fit. */
+/* Arrays of this process, the memory that is left to it, and the refusal of what does not fit. */
 #ifndef MESH_BASE_MEMORY_H
 #define MESH_BASE_MEMORY_H
 
+#include <stddef.h>
+
 #include "mesh/base/status.h"
+
+/* An array of count elements of size bytes, also of none. free gives it back.
+ *
+ * Without memory the program ends here: one line, no temporary file left, exit code SHB_ERR_IO.
+ * Results are atomic and work is resumable, so nothing is lost that an error return would keep.
+ * mhb/contact is a library for others: it allocates by the C library and returns errors. */
+void *shb_alloc(size_t count, size_t size)
+    __attribute__((malloc, returns_nonnull, alloc_size(1, 2)));
+void *shb_alloc_zeroed(size_t count, size_t size)
+    __attribute__((malloc, returns_nonnull, alloc_size(1, 2)));
+/* It begins at a multiple of alignment, a power of two. */
+void *shb_alloc_aligned(size_t alignment, size_t count, size_t size)
+    __attribute__((malloc, returns_nonnull, alloc_size(2, 3)));
+/* The array with another count; NULL: a new one. */
+void *shb_realloc(void *array, size_t count, size_t size)
+    __attribute__((returns_nonnull, alloc_size(2, 3), warn_unused_result));
+
+/* A copy of a text, and of at most that many bytes of its start; a text made by printf. */
+char *shb_text(const char *text) __attribute__((malloc, returns_nonnull));
+char *shb_text_start(const char *text, size_t most) __attribute__((malloc, returns_nonnull));
+char *shb_text_of(const char *format, ...)
+    __attribute__((malloc, returns_nonnull, format(printf, 1, 2)));
+
+/* The end of the program, for memory that a library could not get.
+ *   bytes  in  that were asked for; 0: unknown */
+_Noreturn void shb_out_of_memory(double bytes);
 
 /* Bytes that this process can still allocate without swapping. It is the least of the machine's
  * available memory, the limits of its control groups and its address-space limit. Infinite if none

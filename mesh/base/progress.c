@@ -7,7 +7,7 @@
 #include <unistd.h>
 
 #include "mesh/base/clock.h"
-#include "mesh/base/publish.h"
+#include "mesh/base/crash_guard.h"
 
 shb_progress shb_progress_start(const char *stage, bool quiet, bool verbose) {
   shb_progress progress = {.quiet    = quiet,
@@ -81,12 +81,9 @@ void shb_progress_phase(shb_progress *progress, const char *name, const char *fo
 static volatile sig_atomic_t interrupted; /* number of the first signal */
 static volatile sig_atomic_t grace_seconds;
 
-/* Calls only functions that are safe in a signal handler. */
 static void exit_now(void) {
-  static const char text[] = "shroudhb: ended at once; what was published before is kept\n";
-  shb_publish_abandon();
-  if (write(STDERR_FILENO, text, sizeof text - 1) < 0) _exit(128 + interrupted);
-  _exit(128 + interrupted);
+  shb_end_at_once("shroudhb: ended at once; what was published before is kept\n",
+                  128 + interrupted);
 }
 
 static void on_signal(int number) {

@@ -7,7 +7,6 @@
 #include <inttypes.h>
 #include <limits.h>
 #include <signal.h>
-#include <stdatomic.h>
 #include <stdbool.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -15,30 +14,10 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-enum { MAX_TEMPORARY = 8 };
+#include "mesh/base/crash_guard.h"
+#include "mesh/base/memory.h"
 
 static const char MSH[] = ".msh", TEMPORARY[] = ".tmp.";
-
-/* Names of temporary files that may exist. Names of published or removed files do no harm. Longer
- * names are not registered. */
-static struct {
-  volatile sig_atomic_t used;
-  char                  name[1024];
-} temporaries[MAX_TEMPORARY];
-
-static void register_temporary(const char *name) {
-  static atomic_int next;
-  int               at = atomic_fetch_add(&next, 1) % MAX_TEMPORARY;
-  temporaries[at].used = 0;
-  if (strlen(name) >= sizeof temporaries[at].name) return;
-  strcpy(temporaries[at].name, name);
-  temporaries[at].used = 1;
-}
-
-void shb_publish_abandon(void) {
-  for (int i = 0; i < MAX_TEMPORARY; i++)
-    if (temporaries[i].used) unlink(temporaries[i].name);
-}
 
 /* A run over several machines: the processes of the others are not known here. */
 static int is_distributed(void) {
@@ -68,11 +47,17 @@ static bool is_orphan(const char *name, const char *leaf, bool stem) {
   return kill((pid_t)process, 0) != 0 && errno == ESRCH;
 }
 
+/* The folder that a file is in; the caller frees it. */
+static char *folder_of(const char *path) {
+  const char *slash = strrchr(path, '/');
+  return slash ? shb_text_start(path, (size_t)(slash - path) + 1) : shb_text(".");
+}
+
 static void remove_orphans(const char *path, bool stem) {
   if (is_distributed()) return;
   const char *slash  = strrchr(path, '/');
-  char       *folder = slash ? strndup(path, (size_t)(slash - path) + 1) : strdup(".");
-  DIR        *list   = folder ? opendir(folder) : NULL;
+  char       *folder = folder_of(path);
+  DIR        *list   = opendir(folder);
   for (struct dirent *entry; list && (entry = readdir(list)) != NULL;)
     if (is_orphan(entry->d_name, slash ? slash + 1 : path, stem))
       unlinkat(dirfd(list), entry->d_name, 0);
@@ -85,10 +70,8 @@ void shb_publish_clear(const char *stem) {
 }
 
 static char *temporary_name(const char *path, const char *ending) {
-  size_t size = strlen(path) + 36;
-  char  *name = malloc(size);
-  if (name) snprintf(name, size, "%s%s%ld%s", path, TEMPORARY, (long)getpid(), ending);
-  if (name) register_temporary(name);
+  char *name = shb_text_of("%s%s%ld%s", path, TEMPORARY, (long)getpid(), ending);
+  shb_end_removes(name);
   return name;
 }
 
@@ -114,13 +97,7 @@ static int sync_path(const char *path, int flags) {
 
 /* Make the rename itself durable. File systems that cannot sync a folder are skipped. */
 static void sync_folder(const char *path) {
-  const char *slash = strrchr(path, '/');
-  if (!slash) {
-    (void)sync_path(".", O_RDONLY);
-    return;
-  }
-  char *folder = strndup(path, slash == path ? 1 : (size_t)(slash - path));
-  if (!folder) return;
+  char *folder = folder_of(path);
   (void)sync_path(folder, O_RDONLY);
   free(folder);
 }
@@ -150,20 +127,17 @@ static int write_block(const char *folder) {
 
 shb_status shb_publish_check(const char *path) {
   struct stat about;
-  const char *slash = strrchr(path, '/');
   SHB_TRY(check_kind(path));
   SHB_CHECK(stat(path, &about) != 0 || !S_ISDIR(about.st_mode), SHB_ERR_IO,
             "%s: cannot be written: %s", path, strerror(EISDIR));
-  char *folder = slash ? strndup(path, (size_t)(slash - path) + 1) : strdup(".");
-  SHB_CHECK(folder, SHB_ERR_IO, "%s: out of memory", path);
-  const int wrong = write_block(folder);
+  char     *folder = folder_of(path);
+  const int wrong  = write_block(folder);
   free(folder);
   SHB_CHECK(!wrong, SHB_ERR_IO, "%s: cannot be written: %s", path, strerror(wrong));
   return SHB_OK;
 }
 
 shb_status shb_publish_check_freed(char *path) {
-  SHB_CHECK(path, SHB_ERR_IO, "out of memory");
   const shb_status status = shb_publish_check(path);
   free(path);
   return status;
@@ -186,8 +160,7 @@ shb_status shb_publish(const char *temporary, const char *path) {
 }
 
 shb_status shb_make_folder(const char *path) {
-  char *part = strdup(path);
-  SHB_CHECK(part, SHB_ERR_IO, "%s: out of memory", path);
+  char *part = shb_text(path);
   for (char *at = part + 1; *part && *at; at++) {
     if (*at != '/') continue;
     *at = '\0';

@@ -18,11 +18,12 @@ typedef struct {
 /* May a result be written to path? Told before the work: is there a folder that takes a block of
  * bytes, and no folder, link, device or pipe at path itself? Leaves nothing behind. SHB_ERR_IO. */
 shb_status shb_publish_check(const char *path);
-/* The same of a malloc'ed path, which is freed. NULL: out of memory. */
+/* The same of a malloc'ed path, which is freed. */
 shb_status shb_publish_check_freed(char *path);
 
-/* Name of a temporary file beside path; malloc'ed, NULL when out of memory. Those of processes that
- * are gone are removed, unless the run is spread over several machines. */
+/* Name of a temporary file beside path, malloc'ed. The file is removed when this process ends at
+ * once (mesh/base/crash_guard). Those of processes that are gone are removed now, unless the run is
+ * spread over several machines. */
 char *shb_publish_temporary(const char *path);
 
 /* The process whose temporary file this is; 0: it is no such name.
@@ -34,9 +35,6 @@ char *shb_publish_temporary_msh(const char *path);
 
 /* Remove the temporary files of all results STEM.* whose process is gone, likewise. */
 void shb_publish_clear(const char *stem);
-
-/* Remove the temporary files that are not published yet. Safe in a signal handler. */
-void shb_publish_abandon(void);
 
 /* fsync the temporary file, rename it to path, fsync the folder. After an error the temporary file
  * is removed. SHB_ERR_IO. */

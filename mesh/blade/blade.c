@@ -5,6 +5,7 @@
 #include <stdlib.h>
 
 #include "mesh/base/constants.h"
+#include "mesh/base/memory.h"
 #include "mesh/base/vec3.h"
 #include "mesh/blade/airfoil.h"
 #include "mesh/blade/disc.h"
@@ -306,8 +307,7 @@ static shb_status check_shape(const mesh_blade *blade, const mesh_fe *mesh) {
 static shb_status straighten(const mesh_blade *blade, mesh_fe *mesh, shb_progress *progress) {
   int bad = mesh_jacobian_inverted(mesh);
   if (bad == 0 || bad > mesh->n_elements / 100) return check_shape(blade, mesh);
-  char *moved = calloc((size_t)mesh->n_nodes, 1);
-  SHB_CHECK(moved, SHB_ERR_IO, "no memory to straighten elements");
+  char *moved = shb_alloc_zeroed((size_t)mesh->n_nodes, 1);
   mesh_jacobian_straighten(mesh, moved);
   shb_progress_note(progress, "%d inverted elements straightened", bad);
   shb_status status = check_shape(blade, mesh);

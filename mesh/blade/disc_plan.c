@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "mesh/base/constants.h"
+#include "mesh/base/memory.h"
 #include "mesh/blade/disc.h"
 
 static const double HAIR = 1e-9; /* m */
@@ -87,8 +88,7 @@ static void add_strip(strip *s, const mesh_planar *root) {
     }
 }
 
-shb_status mesh_disc_plan_create(const mesh_blade *blade, const mesh_planar *root,
-                                 mesh_planar *plan) {
+void mesh_disc_plan_create(const mesh_blade *blade, const mesh_planar *root, mesh_planar *plan) {
   const double w = blade->root_width / 2, beside = mesh_disc_angle(blade, w);
   double       radius[4];
   mesh_disc_radii(blade, radius);
@@ -97,23 +97,18 @@ shb_status mesh_disc_plan_create(const mesh_blade *blade, const mesh_planar *roo
   const size_t rows    = (size_t)count_edges(root, w) + (size_t)count_edges(root, -w);
   const size_t nodes = (size_t)root->n_nodes, more = (5 * rows + 8) * (size_t)columns;
   const size_t quads = (size_t)root->n_quads + rows * (size_t)columns;
-  int         *work  = malloc(2 * nodes * sizeof *work);
+  int         *work  = shb_alloc(2 * nodes, sizeof *work);
   *plan              = *root;
   plan->contour      = NULL;
   plan->n_contour    = 0;
-  plan->at           = malloc((nodes + more) * sizeof *plan->at);
-  plan->quad         = malloc(quads * sizeof *plan->quad);
-  const bool made    = work && plan->at && plan->quad;
-  if (made) {
-    memcpy(plan->quad, root->quad, (size_t)root->n_quads * sizeof *plan->quad);
-    for (size_t i = 0; i < nodes; i++) {
-      plan->at[i][0] = mesh_disc_angle(blade, root->at[i][0]);
-      plan->at[i][1] = root->at[i][1];
-    }
-    for (int k = 0; k < 2; k++)
-      add_strip(&(strip){blade, plan, k ? -w : w, columns, work, work + nodes}, root);
+  plan->at           = shb_alloc(nodes + more, sizeof *plan->at);
+  plan->quad         = shb_alloc(quads, sizeof *plan->quad);
+  memcpy(plan->quad, root->quad, (size_t)root->n_quads * sizeof *plan->quad);
+  for (size_t i = 0; i < nodes; i++) {
+    plan->at[i][0] = mesh_disc_angle(blade, root->at[i][0]);
+    plan->at[i][1] = root->at[i][1];
   }
+  for (int k = 0; k < 2; k++)
+    add_strip(&(strip){blade, plan, k ? -w : w, columns, work, work + nodes}, root);
   free(work);
-  SHB_CHECK(made, SHB_ERR_IO, "no memory for the plan of the disc");
-  return SHB_OK;
 }

@@ -11,9 +11,7 @@
  * sector have nodes at the same axial places.
  *   root  in   at[]: tangential and axial, m, with equal edges on the block's long sides
  *   plan  out  at[]: angle from the stacking line, rad, and axial, m; the sides are at exactly
- *              +-pi/N. No contour.
- * Errors: SHB_ERR_IO no memory. */
-shb_status mesh_disc_plan_create(const mesh_blade *blade, const mesh_planar *root,
-                                 mesh_planar *plan);
+ *              +-pi/N. No contour. */
+void mesh_disc_plan_create(const mesh_blade *blade, const mesh_planar *root, mesh_planar *plan);
 
 #endif

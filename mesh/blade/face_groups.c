@@ -4,6 +4,7 @@
 #include <stdlib.h>
 
 #include "mesh/base/constants.h"
+#include "mesh/base/memory.h"
 #include "mesh/base/vec3.h"
 #include "mesh/blade/airfoil.h"
 #include "mesh/blade/disc.h"
@@ -40,8 +41,8 @@ static shb_status list_faces(const mesh_frame *frame, face **faces, int *n) {
   size_t n_tags = 0;
   GMSH_TRY("mesh.blade", gmshModelGetEntities(&tags, &n_tags, 2, &ierr));
   *n                = (int)(n_tags / 2);
-  *faces            = malloc((n_tags + 1) * sizeof **faces);
-  shb_status status = *faces ? SHB_OK : shb_fail(SHB_ERR_IO, __FILE__, __LINE__, "no memory");
+  *faces            = shb_alloc(n_tags + 1, sizeof **faces);
+  shb_status status = SHB_OK;
   for (int i = 0; i < *n && status == SHB_OK; i++) {
     (*faces)[i].tag = tags[2 * i + 1];
     status          = measure(frame, &(*faces)[i]);

@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "mesh/base/constants.h"
+#include "mesh/base/memory.h"
 #include "mesh/blade/disc.h"
 #include "mesh/blade/disc_plan.h"
 #include "mesh/blade/face_groups.h"
@@ -169,11 +170,10 @@ static shb_status make_shroud_plan(sweep *s) {
 
 static shb_status make_plans(sweep *s) {
   mesh_section_grid grid = section_grid(s->blade);
-  SHB_TRY(mesh_section_mesh_create(&grid, &s->section, &s->place));
-  s->height = calloc((size_t)s->section.n_nodes, sizeof *s->height);
-  SHB_CHECK(s->height, SHB_ERR_IO, "no memory for the airfoil's mesh");
+  mesh_section_mesh_create(&grid, &s->section, &s->place);
+  s->height = shb_alloc_zeroed((size_t)s->section.n_nodes, sizeof *s->height);
   SHB_TRY(make_root_plan(s));
-  if (s->first == DISC) SHB_TRY(mesh_disc_plan_create(s->blade, &s->root_plan, &s->disc_plan));
+  if (s->first == DISC) mesh_disc_plan_create(s->blade, &s->root_plan, &s->disc_plan);
   return make_shroud_plan(s);
 }
 
@@ -197,7 +197,7 @@ static void make_disc_layers(const mesh_blade *blade, mesh_layers *layers) {
 /* Thin layers lie on both sides of the re-entrant edges, where the airfoil meets root and shroud.
  * Thin layers at the clamp changed frequencies by less than 1e-4 for root blocks of 4 to 18 mm. The
  * shroud has two layers an element size, as it bends like a plate. */
-static shb_status prepare_parts(sweep *s) {
+static void prepare_parts(sweep *s) {
   const mesh_blade  *blade = s->blade;
   const double       size = blade->size, fine = blade->shroud_size > 0 ? blade->shroud_size : size;
   const double       span = blade->section[blade->n_sections - 1].radius - blade->section[0].radius;
@@ -213,13 +213,11 @@ static shb_status prepare_parts(sweep *s) {
   for (int p = s->first; p < PARTS; p++) {
     size_t n         = (size_t)(2 * s->parts[p].layers.n + 1) * (size_t)plan[p]->n_nodes;
     s->parts[p].plan = plan[p];
-    s->parts[p].id   = malloc(n * sizeof *s->parts[p].id);
-    SHB_CHECK(s->parts[p].id, SHB_ERR_IO, "no memory for the blade's mesh");
+    s->parts[p].id   = shb_alloc(n, sizeof *s->parts[p].id);
     for (size_t i = 0; i < n; i++) s->parts[p].id[i] = -1;
     s->mesh.n_elements += s->parts[p].layers.n * plan[p]->n_quads;
     s->mesh.n_nodes += (int)n; /* upper bound */
   }
-  return SHB_OK;
 }
 
 static int *level_of(const part *p, int level) {
@@ -249,9 +247,8 @@ static shb_status make_level(sweep *s, int which, int level, const int *known, i
 }
 
 static shb_status make_nodes(sweep *s, shb_progress *progress) {
-  s->mesh.coordinates = malloc(3 * (size_t)s->mesh.n_nodes * sizeof *s->mesh.coordinates);
-  SHB_CHECK(s->mesh.coordinates, SHB_ERR_IO, "no memory for the blade's mesh");
-  s->mesh.n_nodes = 0;
+  s->mesh.coordinates = shb_alloc(3 * (size_t)s->mesh.n_nodes, sizeof *s->mesh.coordinates);
+  s->mesh.n_nodes     = 0;
   for (int which = s->first; which < PARTS; which++) {
     const part *below  = which > s->first ? &s->parts[which - 1] : NULL;
     const int  *known  = below ? level_of(below, 2 * below->layers.n) : NULL;
@@ -290,41 +287,36 @@ static mesh_set_id side_group(const sweep *s, int which, int middle) {
   return side > 0 ? MESH_CONTACT_RIGHT : side < 0 ? MESH_CONTACT_LEFT : MESH_N_SETS;
 }
 
-static shb_status add_face(mesh_face_set *set, const int *element, int face) {
+static void add_face(mesh_face_set *set, const int *element, int face) {
   const int *local = mesh_topology_of(MESH_HEX20)->face[face];
-  int       *grow  = realloc(set->nodes, 8 * ((size_t)set->n + 1) * sizeof *grow);
-  SHB_CHECK(grow, SHB_ERR_IO, "no memory for the blade's groups");
-  set->nodes = grow;
+  int       *grow  = shb_realloc(set->nodes, 8 * ((size_t)set->n + 1), sizeof *grow);
+  set->nodes       = grow;
   for (int i = 0; i < 8; i++) grow[8 * set->n + i] = element[local[i]];
   set->n++;
-  return SHB_OK;
 }
 
-static shb_status add_groups(sweep *s, int which, int layer, const int *quad, const int *element) {
+static void add_groups(sweep *s, int which, int layer, const int *quad, const int *element) {
   static const int face_of_side[4] = {1, 3, 4, 2}; /* of quadrangle sides 01, 12, 23, 30 */
-  if (which == s->first && layer == 0) SHB_TRY(add_face(&s->mesh.set[MESH_ROOT], element, 0));
+  if (which == s->first && layer == 0) add_face(&s->mesh.set[MESH_ROOT], element, 0);
   for (int c = 0; c < 4; c++) {
     mesh_set_id group = side_group(s, which, quad[4 + c]);
-    if (group < MESH_N_SETS) SHB_TRY(add_face(&s->mesh.set[group], element, face_of_side[c]));
+    if (group < MESH_N_SETS) add_face(&s->mesh.set[group], element, face_of_side[c]);
   }
-  return SHB_OK;
 }
 
-static shb_status make_elements(sweep *s) {
+static void make_elements(sweep *s) {
   mesh_fe *mesh      = &s->mesh;
   mesh->kind         = MESH_HEX20;
-  mesh->connectivity = malloc((size_t)mesh->n_elements * MESH_NODES * sizeof *mesh->connectivity);
-  SHB_CHECK(mesh->connectivity, SHB_ERR_IO, "no memory for the blade's mesh");
-  int *element = mesh->connectivity;
+  mesh->connectivity = shb_alloc((size_t)mesh->n_elements * MESH_NODES, sizeof *mesh->connectivity);
+  int *element       = mesh->connectivity;
   for (int which = s->first; which < PARTS; which++) {
     const part *p = &s->parts[which];
     for (int layer = 0; layer < p->layers.n; layer++)
       for (int q = 0; q < p->plan->n_quads; q++, element += MESH_NODES) {
         hexahedron(p, layer, p->plan->quad[q], element);
-        SHB_TRY(add_groups(s, which, layer, p->plan->quad[q], element));
+        add_groups(s, which, layer, p->plan->quad[q], element);
       }
   }
-  return SHB_OK;
 }
 
 /* ------------------------------------------------------------------ to gmsh */
@@ -333,24 +325,21 @@ static shb_status make_elements(sweep *s) {
 static shb_status put_elements(int entity, int type, int each, int n, const int *nodes,
                                size_t first) {
   const size_t count = (size_t)n, total = count * (size_t)each;
-  size_t      *tag = malloc((count + 1) * sizeof *tag), *node = malloc((total + 1) * sizeof *node);
+  size_t      *tag = shb_alloc(count + 1, sizeof *tag), *node = shb_alloc(total + 1, sizeof *node);
   int          ierr = 0;
-  for (size_t i = 0; tag && node && i < count; i++) tag[i] = first + i;
-  for (size_t i = 0; tag && node && i < total; i++) node[i] = (size_t)nodes[i] + 1;
-  if (tag && node) gmshModelMeshAddElementsByType(entity, type, tag, count, node, total, &ierr);
-  bool complete = tag && node;
+  for (size_t i = 0; i < count; i++) tag[i] = first + i;
+  for (size_t i = 0; i < total; i++) node[i] = (size_t)nodes[i] + 1;
+  gmshModelMeshAddElementsByType(entity, type, tag, count, node, total, &ierr);
   free(tag);
   free(node);
-  SHB_CHECK(complete, SHB_ERR_IO, "no memory for the blade's mesh");
   if (ierr) return mesh_session_fail(SHB_ERR_INPUT, __FILE__, __LINE__, "mesh.blade");
   return SHB_OK;
 }
 
 static shb_status put_nodes(const mesh_fe *mesh) {
   const size_t n    = (size_t)mesh->n_nodes;
-  size_t      *tag  = malloc((n + 1) * sizeof *tag);
+  size_t      *tag  = shb_alloc(n + 1, sizeof *tag);
   int          ierr = 0;
-  SHB_CHECK(tag, SHB_ERR_IO, "no memory for the blade's mesh");
   for (size_t i = 0; i < n; i++) tag[i] = i + 1;
   gmshModelMeshAddNodes(3, 1, tag, n, mesh->coordinates, 3 * n, NULL, 0, &ierr);
   free(tag);
@@ -377,9 +366,10 @@ static shb_status put_mesh(const mesh_fe *mesh) {
 
 static shb_status make(sweep *s, shb_progress *progress) {
   SHB_TRY(make_plans(s));
-  SHB_TRY(prepare_parts(s));
+  prepare_parts(s);
   SHB_TRY(make_nodes(s, progress));
-  return make_elements(s);
+  make_elements(s);
+  return SHB_OK;
 }
 
 /* The loft has a gmsh model of its own, so that the current model holds the mesh alone. */
@@ -398,8 +388,7 @@ static shb_status make_in_model(sweep *s, const mesh_frame *frame, shb_progress 
 
 shb_status mesh_hex_sweep_build(const mesh_blade *blade, const mesh_frame *frame,
                                 shb_progress *progress) {
-  sweep *s = calloc(1, sizeof *s);
-  SHB_CHECK(s, SHB_ERR_IO, "no memory for the blade's mesh");
+  sweep *s          = shb_alloc_zeroed(1, sizeof *s);
   s->blade          = blade;
   s->first          = mesh_disc_wanted(blade) ? DISC : ROOT;
   shb_status status = make_in_model(s, frame, progress);

@@ -13,7 +13,7 @@
  *
  * The solid is the one that mesh/blade/blade.c fuses for tetrahedra, with OpenCASCADE's loft
  * between root block and shroud. A gmsh session must be open; the blade must have been checked.
- * Errors: SHB_ERR_INPUT if gmsh cannot build or mesh the blade; SHB_ERR_IO; SHB_INTERRUPTED. */
+ * Errors: SHB_ERR_INPUT if gmsh cannot build or mesh the blade; SHB_INTERRUPTED. */
 shb_status mesh_hex_sweep_build(const mesh_blade *blade, const mesh_frame *frame,
                                 shb_progress *progress);
 

@@ -4,6 +4,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "mesh/base/memory.h"
+
 /* Half thickness of the section in the plane (u, y), |y| <= 4 u (1 - u). It is sharp at both ends
  * like the airfoil; w = y / (4 u (1 - u)). */
 static double lens(double u) {
@@ -140,29 +142,23 @@ static void draw(const mesh_section_grid *grid, drawing *d, int *node, double (*
   }
 }
 
-shb_status mesh_section_mesh_create(const mesh_section_grid *grid, mesh_planar *plan,
-                                    mesh_section_place **place) {
+void mesh_section_mesh_create(const mesh_section_grid *grid, mesh_planar *plan,
+                              mesh_section_place **place) {
   const int k = grid->half, n = grid->chord;
   const int quads = 6 * k * k + 2 * k * n, most = 8 * quads + 1;
-  double(*key)[2] = malloc((size_t)most * sizeof *key);
-  int    *node    = malloc((size_t)((4 * k + 1) * (2 * (n + k) + 1)) * sizeof *node);
+  double(*key)[2] = shb_alloc((size_t)most, sizeof *key);
+  int    *node    = shb_alloc((size_t)((4 * k + 1) * (2 * (n + k) + 1)), sizeof *node);
   drawing d       = {.plan = plan, .capacity = most};
   memset(plan, 0, sizeof *plan);
-  d.uy          = malloc((size_t)most * sizeof *d.uy);
-  plan->at      = calloc((size_t)most, sizeof *plan->at);
-  plan->quad    = malloc((size_t)quads * sizeof *plan->quad);
-  plan->contour = malloc((size_t)most * sizeof *plan->contour);
-  *place        = malloc((size_t)most * sizeof **place);
-  int complete  = key && node && d.uy && plan->at && plan->quad && plan->contour && *place;
-  if (complete) draw(grid, &d, node, key, *place);
+  d.uy          = shb_alloc((size_t)most, sizeof *d.uy);
+  plan->at      = shb_alloc_zeroed((size_t)most, sizeof *plan->at);
+  plan->quad    = shb_alloc((size_t)quads, sizeof *plan->quad);
+  plan->contour = shb_alloc((size_t)most, sizeof *plan->contour);
+  *place        = shb_alloc((size_t)most, sizeof **place);
+  draw(grid, &d, node, key, *place);
   free(key);
   free(node);
   free(d.uy);
-  if (complete) return SHB_OK;
-  free(*place);
-  *place = NULL;
-  mesh_planar_free(plan);
-  SHB_FAIL(SHB_ERR_IO, "no memory for the airfoil's mesh");
 }
 
 void mesh_section_mesh_orient(mesh_planar *section) {

@@ -34,8 +34,8 @@ typedef struct {
 /* Mesh the section. Its middle part has chord x 2 half elements. Each tip has three blocks of half
  * x half elements around a point, so that no corner of an element is flat.
  *   place  out  [n_nodes], malloc'ed */
-shb_status mesh_section_mesh_create(const mesh_section_grid *grid, mesh_planar *plan,
-                                    mesh_section_place **place);
+void mesh_section_mesh_create(const mesh_section_grid *grid, mesh_planar *plan,
+                              mesh_section_place **place);
 
 /* After the coordinates are set: reverse the quadrangles if they run clockwise. */
 void mesh_section_mesh_orient(mesh_planar *section);

@@ -5,6 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "mesh/base/memory.h"
 #include "mesh/blade/section_smoothing.h"
 #include "mesh/gmsh/api.h"
 #include "mesh/gmsh/session.h"
@@ -62,10 +63,6 @@ static void insert_section_edges(builder *b) {
 
 /* ------------------------------------------------------------------ gmsh's coarse mesh */
 
-static shb_status no_memory(void) {
-  SHB_FAIL(SHB_ERR_IO, "no memory for a plan");
-}
-
 static shb_status add_point(const double at[2], double size, int *point) {
   GMSH_TRY("mesh.blade.size", *point = gmshModelGeoAddPoint(at[0], at[1], 0, size, -1, &ierr));
   return SHB_OK;
@@ -85,8 +82,8 @@ static shb_status add_curve_loop(int n, int *line, int *loop) {
 
 /* Add a loop of straight lines through n points. */
 static shb_status add_loop(int n, const double (*at)[2], const int *parts, double size, int *loop) {
-  int       *point = malloc((size_t)n * sizeof *point), *line = malloc((size_t)n * sizeof *line);
-  shb_status status = point && line ? SHB_OK : no_memory();
+  int *point = shb_alloc((size_t)n, sizeof *point), *line = shb_alloc((size_t)n, sizeof *line);
+  shb_status status = SHB_OK;
   for (int i = 0; i < n && status == SHB_OK; i++) status = add_point(at[i], size, &point[i]);
   for (int i = 0; i < n && status == SHB_OK; i++)
     status = add_line(point[i], point[(i + 1) % n], parts ? parts[i] : 1, &line[i]);
@@ -108,8 +105,7 @@ static shb_status mesh_region(const mesh_planar *section, int n_corners, const d
                               const int *parts, double size, bool recombine, const char *what) {
   const int n        = section->n_contour / 4;
   int       loops[2] = {0, 0}, half[16], surface = 0;
-  double(*hole)[2] = malloc((size_t)n * sizeof *hole);
-  if (!hole) return no_memory();
+  double(*hole)[2] = shb_alloc((size_t)n, sizeof *hole);
   for (int i = 0; i < n; i++)
     memcpy(hole[i], section->at[section->contour[4 * (size_t)i]], sizeof *hole);
   for (int i = 0; i < n_corners; i++) half[i] = parts[i] / 2;
@@ -128,16 +124,15 @@ static shb_status take_cells(const int *index, int type, int corners, coarse *me
   size_t *tags = NULL, *nodes = NULL, n = 0, n_nodes = 0;
   GMSH_TRY("mesh.blade.size",
            gmshModelMeshGetElementsByType(type, &tags, &n, &nodes, &n_nodes, -1, 0, 1, &ierr));
-  int(*grow)[4] = realloc(mesh->cell, ((size_t)mesh->n_cells + n + 1) * sizeof *grow);
-  if (grow) mesh->cell = grow;
-  for (size_t e = 0; grow && e < n; e++) {
+  mesh->cell = shb_realloc(mesh->cell, (size_t)mesh->n_cells + n + 1, sizeof *mesh->cell);
+  for (size_t e = 0; e < n; e++) {
     int *cell = mesh->cell[mesh->n_cells++];
     cell[3]   = -1;
     for (int c = 0; c < corners; c++) cell[c] = index[nodes[(size_t)corners * e + (size_t)c]];
   }
   gmshFree(tags);
   gmshFree(nodes);
-  return grow ? SHB_OK : no_memory();
+  return SHB_OK;
 }
 
 /* Node of the section at a point of its contour, or -1. */
@@ -157,16 +152,15 @@ static shb_status take_coarse(const mesh_planar *section, coarse *mesh) {
            gmshModelMeshGetNodes(&tags, &n, &xyz, &n_xyz, &unused, &n_unused, -1, -1, 0, 0, &ierr));
   gmshFree(unused);
   for (size_t i = 0; i < n; i++) top = tags[i] > top ? tags[i] : top;
-  int *index        = malloc((top + 1) * sizeof *index);
-  mesh->at          = malloc((n + 1) * sizeof *mesh->at);
-  shb_status status = index && mesh->at ? SHB_OK : no_memory();
-  for (size_t i = 0; status == SHB_OK && i < n; i++) {
+  int *index = shb_alloc(top + 1, sizeof *index);
+  mesh->at   = shb_alloc(n + 1, sizeof *mesh->at);
+  for (size_t i = 0; i < n; i++) {
     int known      = on_contour(section, xyz + 3 * i);
     index[tags[i]] = known >= 0 ? known : section->n_nodes + mesh->n_nodes;
     if (known >= 0) continue;
     memcpy(mesh->at[mesh->n_nodes++], xyz + 3 * i, 2 * sizeof(double));
   }
-  if (status == SHB_OK) status = take_cells(index, GMSH_TRIANGLE, 3, mesh);
+  shb_status status = take_cells(index, GMSH_TRIANGLE, 3, mesh);
   if (status == SHB_OK) status = take_cells(index, GMSH_QUADRANGLE, 4, mesh);
   gmshFree(tags);
   gmshFree(xyz);
@@ -176,16 +170,15 @@ static shb_status take_coarse(const mesh_planar *section, coarse *mesh) {
 
 /* ------------------------------------------------------------------ the fine plan */
 
-static shb_status allocate(const mesh_planar *section, const coarse *mesh, builder *b) {
+static void allocate(const mesh_planar *section, const coarse *mesh, builder *b) {
   mesh_planar *plan  = b->plan;
   const size_t quads = (size_t)section->n_quads + 6 * (size_t)mesh->n_cells;
   const size_t nodes = (size_t)section->n_nodes + 24 * (size_t)mesh->n_cells + 64;
   b->n_slots         = (int)(8 * quads + 64);
-  b->slot            = malloc((size_t)b->n_slots * sizeof *b->slot);
-  plan->at           = malloc(nodes * sizeof *plan->at);
-  plan->quad         = malloc(quads * sizeof *plan->quad);
-  plan->contour      = malloc((size_t)section->n_contour * sizeof *plan->contour);
-  if (!b->slot || !plan->at || !plan->quad || !plan->contour) return no_memory();
+  b->slot            = shb_alloc((size_t)b->n_slots, sizeof *b->slot);
+  plan->at           = shb_alloc(nodes, sizeof *plan->at);
+  plan->quad         = shb_alloc(quads, sizeof *plan->quad);
+  plan->contour      = shb_alloc((size_t)section->n_contour, sizeof *plan->contour);
   memset(b->slot, -1, (size_t)b->n_slots * sizeof *b->slot);
   plan->n_nodes = plan->n_section_nodes = section->n_nodes;
   plan->n_quads = plan->n_section_quads = section->n_quads;
@@ -193,7 +186,6 @@ static shb_status allocate(const mesh_planar *section, const coarse *mesh, build
   memcpy(plan->at, section->at, (size_t)section->n_nodes * sizeof *plan->at);
   memcpy(plan->quad, section->quad, (size_t)section->n_quads * sizeof *plan->quad);
   memcpy(plan->contour, section->contour, (size_t)section->n_contour * sizeof *plan->contour);
-  return SHB_OK;
 }
 
 /* Split a polygon into quadrangles: one at each corner, with the middles of its two sides and the
@@ -251,23 +243,19 @@ static void split_cell(builder *b, const int *cell) {
   for (int k = 0; k < 2; k++) split_polygon(b, half[k], 3);
 }
 
-static shb_status refine(const mesh_planar *section, const coarse *mesh, mesh_planar *plan) {
+static void refine(const mesh_planar *section, const coarse *mesh, mesh_planar *plan) {
   builder b = {.plan = plan};
   memset(plan, 0, sizeof *plan);
-  shb_status status = allocate(section, mesh, &b);
-  if (status == SHB_OK) {
-    memcpy(plan->at + section->n_nodes, mesh->at, (size_t)mesh->n_nodes * sizeof *mesh->at);
-    plan->n_nodes += mesh->n_nodes;
-    insert_section_edges(&b);
-    for (int e = 0; e < mesh->n_cells; e++) split_cell(&b, mesh->cell[e]);
-    for (int q = plan->n_section_quads; q < plan->n_quads; q++)
-      for (int c = 0; c < 4; c++)
-        plan->quad[q][4 + c] = middle_of(&b, plan->quad[q][c], plan->quad[q][(c + 1) % 4]);
-    status = mesh_planar_smooth(plan);
-  }
+  allocate(section, mesh, &b);
+  memcpy(plan->at + section->n_nodes, mesh->at, (size_t)mesh->n_nodes * sizeof *mesh->at);
+  plan->n_nodes += mesh->n_nodes;
+  insert_section_edges(&b);
+  for (int e = 0; e < mesh->n_cells; e++) split_cell(&b, mesh->cell[e]);
+  for (int q = plan->n_section_quads; q < plan->n_quads; q++)
+    for (int c = 0; c < 4; c++)
+      plan->quad[q][4 + c] = middle_of(&b, plan->quad[q][c], plan->quad[q][(c + 1) % 4]);
+  mesh_planar_smooth(plan);
   free(b.slot);
-  if (status != SHB_OK) mesh_planar_free(plan);
-  return status;
 }
 
 static shb_status create_in_model(const mesh_planar *section, int n_corners,
@@ -278,7 +266,7 @@ static shb_status create_in_model(const mesh_planar *section, int n_corners,
   if (status == SHB_OK)
     status = mesh_region(section, n_corners, corner, parts, size, recombine, what);
   if (status == SHB_OK) status = take_coarse(section, &mesh);
-  if (status == SHB_OK) status = refine(section, &mesh, plan);
+  if (status == SHB_OK) refine(section, &mesh, plan);
   free(mesh.at);
   free(mesh.cell);
   if (status == SHB_OK) status = set_plan_options(false);

@@ -12,7 +12,7 @@
  *   parts    in  [n_corners] elements between corners i and i + 1, even
  *   size     in  element size away from the section, m
  *   what     in  heads the message
- * Errors: SHB_ERR_INPUT if gmsh fails; SHB_ERR_IO no memory. */
+ * Errors: SHB_ERR_INPUT if gmsh fails. */
 shb_status mesh_section_outline_create(const mesh_planar *section, int n_corners,
                                        const double corner[][2], const int *parts, double size,
                                        bool recombine, const char *what, mesh_planar *plan);

@@ -106,27 +106,22 @@ static void set_middles(mesh_planar *plan) {
     }
 }
 
-shb_status mesh_planar_smooth(mesh_planar *plan) {
+void mesh_planar_smooth(mesh_planar *plan) {
   enum { PASSES = 30 };
-  const size_t n        = (size_t)plan->n_nodes;
-  shb_arena    arena    = {0};
-  adjacency    r        = {.plan  = plan,
-                           .start = shb_arena_take(&arena, n + 1, sizeof(int)),
-                           .quad  = shb_arena_take(&arena, 4 * (size_t)plan->n_quads, sizeof(int)),
-                           .fixed = shb_arena_take(&arena, n, 1)};
-  int         *work     = shb_arena_take(&arena, n, sizeof *work);
-  const bool   complete = !arena.failed;
-  if (complete) {
-    find_fixed(&r, work);
-    find_quads(&r, work);
-    for (int pass = 0; pass < PASSES; pass++)
-      for (int i = 0; i < plan->n_nodes; i++)
-        if (!r.fixed[i] && r.start[i] < r.start[i + 1]) move(&r, i);
-    set_middles(plan);
-  }
+  const size_t n     = (size_t)plan->n_nodes;
+  shb_arena    arena = {0};
+  adjacency    r     = {.plan  = plan,
+                        .start = shb_arena_take(&arena, n + 1, sizeof(int)),
+                        .quad  = shb_arena_take(&arena, 4 * (size_t)plan->n_quads, sizeof(int)),
+                        .fixed = shb_arena_take(&arena, n, 1)};
+  int         *work  = shb_arena_take(&arena, n, sizeof *work);
+  find_fixed(&r, work);
+  find_quads(&r, work);
+  for (int pass = 0; pass < PASSES; pass++)
+    for (int i = 0; i < plan->n_nodes; i++)
+      if (!r.fixed[i] && r.start[i] < r.start[i + 1]) move(&r, i);
+  set_middles(plan);
   shb_arena_free(&arena);
-  SHB_CHECK(complete, SHB_ERR_IO, "no memory for a plan");
-  return SHB_OK;
 }
 
 double mesh_planar_least_sine(const mesh_planar *plan) {

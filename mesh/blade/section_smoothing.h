@@ -6,8 +6,8 @@
 
 /* Improve the quadrangles. Corners outside the section and off the outline move towards the mean of
  * their neighbours, as far as their worst quadrangle improves. Then the middles of sides are set
- * half way. SHB_ERR_IO. */
-shb_status mesh_planar_smooth(mesh_planar *plan);
+ * half way. */
+void mesh_planar_smooth(mesh_planar *plan);
 
 /* Smallest sine of a corner's angle outside the section. Returns -1 if the mesh does not meet the
  * whole contour of the section. gmsh covers the tip of a hole that it does not resolve. */

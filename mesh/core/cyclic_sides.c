@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "mesh/base/constants.h"
+#include "mesh/base/memory.h"
 #include "mesh/base/vec3.h"
 
 /* Sides of which less than this share of the nodes match belong to another angle. */
@@ -38,14 +39,13 @@ static int by_key(const void *a, const void *b) {
 }
 
 /* Nodes of a set turned by angle, each once, sorted. */
-static shb_status collect(const mesh_fe *mesh, mesh_set_id id, mesh_axis axis, double angle,
-                          side *out) {
+static void collect(const mesh_fe *mesh, mesh_set_id id, mesh_axis axis, double angle, side *out) {
   const mesh_face_set *set   = &mesh->set[id];
   const int            count = mesh_topology_of(mesh->kind)->face_nodes * set->n;
-  char                *seen  = calloc((size_t)mesh->n_nodes + 1, 1);
+  char                *seen  = shb_alloc_zeroed((size_t)mesh->n_nodes + 1, 1);
   out->n                     = 0;
-  out->at                    = malloc(((size_t)count + 1) * sizeof *out->at);
-  for (int i = 0; seen && out->at && i < count; i++) {
+  out->at                    = shb_alloc((size_t)count + 1, sizeof *out->at);
+  for (int i = 0; i < count; i++) {
     const int node = set->nodes[i];
     if (seen[node]) continue;
     seen[node] = 1;
@@ -54,11 +54,8 @@ static shb_status collect(const mesh_fe *mesh, mesh_set_id id, mesh_axis axis, d
     p->key  = 0.5773 * p->at[0] + 0.6180 * p->at[1] + 0.5337 * p->at[2];
     p->node = node;
   }
-  const bool complete = seen && out->at;
   free(seen);
-  SHB_CHECK(complete, SHB_ERR_IO, "no memory to pair the cyclic sides");
   qsort(out->at, (size_t)out->n, sizeof *out->at, by_key);
-  return SHB_OK;
 }
 
 /* Place nearest to at among those whose key is within reach; NULL: none. */
@@ -137,11 +134,11 @@ static shb_status refuse(const pairing *p) {
            worst->at[2], p->distance, p->tolerance);
 }
 
-/* clamped[node] = 1 in group root. NULL when out of memory. */
+/* clamped[node] = 1 in group root. */
 static char *list_clamped(const mesh_fe *mesh) {
   const mesh_face_set *root    = &mesh->set[MESH_ROOT];
-  char                *clamped = calloc((size_t)mesh->n_nodes + 1, 1);
-  for (int i = 0; clamped && i < mesh_topology_of(mesh->kind)->face_nodes * root->n; i++)
+  char                *clamped = shb_alloc_zeroed((size_t)mesh->n_nodes + 1, 1);
+  for (int i = 0; i < mesh_topology_of(mesh->kind)->face_nodes * root->n; i++)
     clamped[root->nodes[i]] = 1;
   return clamped;
 }
@@ -167,10 +164,8 @@ static shb_status store(const pairing *p, const place *const *partner) {
   mesh_fe   *mesh    = p->mesh;
   char      *clamped = list_clamped(mesh);
   shb_status status  = SHB_OK;
-  mesh->image        = malloc(((size_t)mesh->n_nodes + 1) * sizeof *mesh->image);
-  if (!clamped || !mesh->image)
-    status = shb_fail(SHB_ERR_IO, __FILE__, __LINE__, "no memory to pair the cyclic sides");
-  for (int i = 0; status == SHB_OK && i < mesh->n_nodes; i++) mesh->image[i] = -1;
+  mesh->image        = shb_alloc((size_t)mesh->n_nodes + 1, sizeof *mesh->image);
+  for (int i = 0; i < mesh->n_nodes; i++) mesh->image[i] = -1;
   for (int i = 0; status == SHB_OK && i < p->right.n; i++) {
     status                           = check_pair(mesh, clamped, &p->right.at[i], partner[i]);
     mesh->image[p->right.at[i].node] = partner[i]->node;
@@ -193,13 +188,11 @@ static void set_turn(mesh_axis axis, int blades, double turn[3][3]) {
 }
 
 static shb_status pair(pairing *p, mesh_cyclic_sides *out) {
-  mesh_fe      *mesh    = p->mesh;
-  const double  sector  = SHB_TWO_PI / p->blades;
-  const place **partner = NULL;
-  SHB_TRY(collect(mesh, MESH_CYCLIC_RIGHT, p->axis, 0, &p->right));
-  SHB_TRY(collect(mesh, MESH_CYCLIC_LEFT, p->axis, sector, &p->left));
-  partner = malloc(((size_t)p->right.n + 1) * sizeof(place *));
-  SHB_CHECK(partner, SHB_ERR_IO, "no memory to pair the cyclic sides");
+  mesh_fe     *mesh   = p->mesh;
+  const double sector = SHB_TWO_PI / p->blades;
+  collect(mesh, MESH_CYCLIC_RIGHT, p->axis, 0, &p->right);
+  collect(mesh, MESH_CYCLIC_LEFT, p->axis, sector, &p->left);
+  const place **partner = shb_alloc((size_t)p->right.n + 1, sizeof(place *));
   match(p, partner, out);
   shb_status status = p->orphans > 0 || p->right.n != p->left.n ? refuse(p) : store(p, partner);
   free(partner);
@@ -215,14 +208,13 @@ static void orient(mesh_fe *mesh, mesh_axis axis, const side *left, const side *
   mesh->set[MESH_CYCLIC_LEFT]  = swap;
 }
 
-static shb_status orient_sides(pairing *p) {
-  SHB_TRY(collect(p->mesh, MESH_CYCLIC_RIGHT, p->axis, 0, &p->right));
-  shb_status status = collect(p->mesh, MESH_CYCLIC_LEFT, p->axis, 0, &p->left);
-  if (status == SHB_OK) orient(p->mesh, p->axis, &p->left, &p->right, p->blades);
+static void orient_sides(pairing *p) {
+  collect(p->mesh, MESH_CYCLIC_RIGHT, p->axis, 0, &p->right);
+  collect(p->mesh, MESH_CYCLIC_LEFT, p->axis, 0, &p->left);
+  orient(p->mesh, p->axis, &p->left, &p->right, p->blades);
   free(p->right.at);
   free(p->left.at);
   p->right = p->left = (side){0, NULL};
-  return status;
 }
 
 shb_status mesh_cyclic_pair(mesh_fe *mesh, mesh_axis axis, int blades, mesh_cyclic_sides *out) {
@@ -237,9 +229,9 @@ shb_status mesh_cyclic_pair(mesh_fe *mesh, mesh_axis axis, int blades, mesh_cycl
   SHB_CHECK(blades >= 2, SHB_ERR_INPUT,
             "rotor.blades: the mesh has cyclic sides, and the number of its sectors is wanted, 2 "
             "or more");
-  p.tolerance       = MESH_CYCLIC_GAP * mesh_fe_extent(mesh);
-  shb_status status = orient_sides(&p);
-  if (status == SHB_OK) status = pair(&p, out);
+  p.tolerance = MESH_CYCLIC_GAP * mesh_fe_extent(mesh);
+  orient_sides(&p);
+  shb_status status = pair(&p, out);
   if (status == SHB_OK) {
     out->n = p.right.n;
     set_turn(axis, blades, mesh->turn);

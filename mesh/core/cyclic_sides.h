@@ -21,8 +21,7 @@ typedef struct {
  *
  * Errors: SHB_ERR_INPUT if one group is absent, or the sides are those of another number of blades.
  * SHB_ERR_INPUT for nodes without a partner; the message gives their number and the worst distance.
- * SHB_ERR_INPUT for a node on the engine axis, or a clamped node with a free partner. SHB_ERR_IO no
- * memory. */
+ * SHB_ERR_INPUT for a node on the engine axis, or a clamped node with a free partner. */
 shb_status mesh_cyclic_pair(mesh_fe *mesh, mesh_axis axis, int blades, mesh_cyclic_sides *out);
 
 /* View of the mesh for nodal diameter N/2 (u_right = -T u_left); it owns nothing. */

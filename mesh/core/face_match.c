@@ -4,6 +4,7 @@
 #include <stdlib.h>
 
 #include "mesh/base/constants.h"
+#include "mesh/base/memory.h"
 #include "mesh/base/vec3.h"
 
 static const double tolerance = 1e-9; /* m */
@@ -24,11 +25,10 @@ static int by_key(const void *a, const void *b) {
   return (p > q) - (p < q);
 }
 
-/* Nodes of a set, each once, ascending; NULL when out of memory. */
+/* Nodes of a set, each once, ascending. */
 static int *unique_nodes(const mesh_fe *mesh, const mesh_face_set *set, int *n) {
   const int count = mesh_topology_of(mesh->kind)->face_nodes * set->n;
-  int      *nodes = malloc(((size_t)count + 1) * sizeof *nodes);
-  if (!nodes) return NULL;
+  int      *nodes = shb_alloc((size_t)count + 1, sizeof *nodes);
   for (int i = 0; i < count; i++) nodes[i] = set->nodes[i];
   qsort(nodes, (size_t)count, sizeof *nodes, by_node);
   *n = 0;
@@ -43,8 +43,7 @@ static double sort_key(const double at[3]) {
 
 static left_node *rotated_left(const mesh_fe *mesh, const int *nodes, int n, mesh_axis axis,
                                double angle) {
-  left_node *places = malloc(((size_t)n + 1) * sizeof *places);
-  if (!places) return NULL;
+  left_node *places = shb_alloc((size_t)n + 1, sizeof *places);
   for (int i = 0; i < n; i++) {
     mesh_axis_rotate(axis, angle, mesh->coordinates + 3 * (size_t)nodes[i], places[i].at);
     places[i].key  = sort_key(places[i].at);
@@ -107,11 +106,9 @@ shb_status mesh_fe_match(const mesh_fe *mesh, mesh_axis axis, int blades, int *n
   int        nr = 0, nl = 0;
   int       *right  = unique_nodes(mesh, sr, &nr);
   int       *left   = unique_nodes(mesh, sl, &nl);
-  left_node *places = left ? rotated_left(mesh, left, nl, axis, SHB_TWO_PI / blades) : NULL;
+  left_node *places = rotated_left(mesh, left, nl, axis, SHB_TWO_PI / blades);
   shb_status status = SHB_OK;
-  if (!right || !places) {
-    status = shb_fail(SHB_ERR_IO, __FILE__, __LINE__, "no memory to match the contact faces");
-  } else if (nr != nl) {
+  if (nr != nl) {
     status = shb_fail(SHB_ERR_INPUT, __FILE__, __LINE__,
                       "contact faces do not match: contact_right has %d nodes, contact_left %d; "
                       "mesh one face as a periodic copy of the other",

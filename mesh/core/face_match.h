@@ -9,7 +9,7 @@
  *   right_nodes  out  [n_pairs] ascending, malloc'ed
  *   left_nodes   out  [n_pairs] malloc'ed
  * Errors: SHB_ERR_INPUT if a group is empty, the counts differ or a distance exceeds 1e-9 m; the
- * message names the distance and the node. SHB_ERR_IO no memory. */
+ * message names the distance and the node. */
 shb_status mesh_fe_match(const mesh_fe *mesh, mesh_axis axis, int blades, int *n_pairs,
                          int **right_nodes, int **left_nodes);
 

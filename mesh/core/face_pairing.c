@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "mesh/base/constants.h"
+#include "mesh/base/memory.h"
 #include "mesh/base/vec3.h"
 #include "mesh/core/face_match.h"
 #include "mesh/core/triangle.h"
@@ -127,34 +128,29 @@ static double area(const mesh_fe *mesh, const mesh_face_set *set) {
   return sum;
 }
 
-static shb_status allocate(int n, int each, mesh_pairing *out) {
+static void allocate(int n, int each, mesh_pairing *out) {
   const size_t nodes = (size_t)n;
   out->n             = n;
-  out->right         = malloc((nodes + 1) * sizeof *out->right);
-  out->start         = malloc((nodes + 1) * sizeof *out->start);
-  out->left          = malloc((nodes * (size_t)each + 1) * sizeof *out->left);
-  out->share         = malloc((nodes * (size_t)each + 1) * sizeof *out->share);
-  SHB_CHECK(out->right && out->start && out->left && out->share, SHB_ERR_IO,
-            "no memory to match the contact faces");
+  out->right         = shb_alloc(nodes + 1, sizeof *out->right);
+  out->start         = shb_alloc(nodes + 1, sizeof *out->start);
+  out->left          = shb_alloc(nodes * (size_t)each + 1, sizeof *out->left);
+  out->share         = shb_alloc(nodes * (size_t)each + 1, sizeof *out->share);
   for (int i = 0; i <= n; i++) out->start[i] = each * i;
-  return SHB_OK;
 }
 
 /* Nodes of the right face, each once, ascending. */
-static shb_status take_right(const mesh_fe *mesh, mesh_pairing *out) {
+static void take_right(const mesh_fe *mesh, mesh_pairing *out) {
   const mesh_topology *topology = mesh_topology_of(mesh->kind);
   const mesh_face_set *set      = &mesh->set[MESH_CONTACT_RIGHT];
-  char                *marked   = calloc((size_t)mesh->n_nodes + 1, 1);
+  char                *marked   = shb_alloc_zeroed((size_t)mesh->n_nodes + 1, 1);
   int                  n        = 0;
-  SHB_CHECK(marked, SHB_ERR_IO, "no memory to match the contact faces");
   for (int i = 0; i < topology->face_nodes * set->n; i++) marked[set->nodes[i]] = 1;
   for (int i = 0; i < mesh->n_nodes; i++) n += marked[i];
-  shb_status status = allocate(n, topology->face_nodes, out);
-  n                 = 0;
-  for (int i = 0; i < mesh->n_nodes && status == SHB_OK; i++)
+  allocate(n, topology->face_nodes, out);
+  n = 0;
+  for (int i = 0; i < mesh->n_nodes; i++)
     if (marked[i]) out->right[n++] = i;
   free(marked);
-  return status;
 }
 
 static shb_status project_all(const left_face *t, mesh_axis axis, double angle, mesh_pairing *out) {
@@ -185,9 +181,8 @@ static shb_status project_all(const left_face *t, mesh_axis axis, double angle, 
 static shb_status project(const mesh_fe *mesh, mesh_axis axis, int blades, mesh_pairing *out) {
   left_face t    = {mesh, mesh_topology_of(mesh->kind), &mesh->set[MESH_CONTACT_LEFT], NULL};
   out->projected = true;
-  SHB_TRY(take_right(mesh, out));
-  t.ball = malloc(((size_t)t.set->n + 1) * sizeof *t.ball);
-  SHB_CHECK(t.ball, SHB_ERR_IO, "no memory to match the contact faces");
+  take_right(mesh, out);
+  t.ball = shb_alloc((size_t)t.set->n + 1, sizeof *t.ball);
   for (int f = 0; f < t.set->n; f++) bounding_ball(&t, f);
   shb_status status = project_all(&t, axis, SHB_TWO_PI / blades, out);
   free(t.ball);
@@ -195,16 +190,15 @@ static shb_status project(const mesh_fe *mesh, mesh_axis axis, int blades, mesh_
 }
 
 /* Node for node. Takes right and left over and frees them. */
-static shb_status take_match(int n, int *right, int *left, mesh_pairing *out) {
-  shb_status status = allocate(n, 1, out);
-  for (int i = 0; i < n && status == SHB_OK; i++) {
+static void take_match(int n, int *right, int *left, mesh_pairing *out) {
+  allocate(n, 1, out);
+  for (int i = 0; i < n; i++) {
     out->right[i] = right[i];
     out->left[i]  = left[i];
     out->share[i] = 1;
   }
   free(right);
   free(left);
-  return status;
 }
 
 static shb_status pair(const mesh_fe *mesh, mesh_axis axis, int blades, mesh_pairing *out) {
@@ -213,7 +207,7 @@ static shb_status pair(const mesh_fe *mesh, mesh_axis axis, int blades, mesh_pai
   shb_status status  = mesh_fe_match(mesh, axis, blades, &n, &right, &left);
   bool       missing = !mesh->set[MESH_CONTACT_RIGHT].n || !mesh->set[MESH_CONTACT_LEFT].n;
   if (status == SHB_OK) {
-    status = take_match(n, right, left, out);
+    take_match(n, right, left, out);
   } else if (status == SHB_ERR_INPUT && !missing) {
     status = project(mesh, axis, blades, out);
   }

@@ -26,7 +26,7 @@ typedef struct {
 
 /* Pair the contact faces; the sets must be oriented (mesh_fe_orient).
  * Errors: SHB_ERR_INPUT if a group is missing. SHB_ERR_INPUT if a right node is too far from the
- * left face; the message names node and distance. SHB_ERR_IO no memory. */
+ * left face; the message names node and distance. */
 shb_status mesh_pairing_create(const mesh_fe *mesh, mesh_axis axis, int blades, mesh_pairing *out);
 
 void mesh_pairing_free(mesh_pairing *pairing); /* also on a zeroed struct */

@@ -4,6 +4,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "mesh/base/memory.h"
+
 /* A face, identified by its corners. */
 typedef struct {
   int corner[4]; /* ascending; the first is -1 in a triangle */
@@ -95,16 +97,11 @@ static void visit_elements(mesh_fe *mesh, face_key *keys, int n, const char *fla
 shb_status mesh_faces_orient(mesh_fe *mesh, const char *name) {
   size_t total = 0;
   for (int s = 0; s < mesh_fe_sets(mesh); s++) total += (size_t)mesh->set[s].n;
-  face_key  *keys   = malloc((total + 1) * sizeof *keys);
-  char      *flag   = calloc((size_t)mesh->n_nodes + 1, 1);
-  shb_status status = SHB_OK;
-  if (keys && flag) {
-    int n = list_set_faces(mesh, keys, flag);
-    visit_elements(mesh, keys, n, flag);
-    status = check_hits(mesh, keys, n, name);
-  } else {
-    status = shb_fail(SHB_ERR_IO, __FILE__, __LINE__, "%s: no memory for its groups", name);
-  }
+  face_key *keys = shb_alloc(total + 1, sizeof *keys);
+  char     *flag = shb_alloc_zeroed((size_t)mesh->n_nodes + 1, 1);
+  const int n    = list_set_faces(mesh, keys, flag);
+  visit_elements(mesh, keys, n, flag);
+  shb_status status = check_hits(mesh, keys, n, name);
   free(keys);
   free(flag);
   return status;
@@ -155,17 +152,14 @@ static int remove_pairs(face_key *keys, int n) {
   return kept;
 }
 
-shb_status mesh_faces_outer(const mesh_fe *mesh, const char *marked, mesh_face_set *set) {
+void mesh_faces_outer(const mesh_fe *mesh, const char *marked, mesh_face_set *set) {
   const size_t each = (size_t)mesh_topology_of(mesh->kind)->face_nodes;
   int          n    = list_candidates(mesh, marked, NULL);
-  face_key    *keys = malloc(((size_t)n + 1) * sizeof *keys);
-  SHB_CHECK(keys, SHB_ERR_IO, "no memory for the faces of the mesh");
+  face_key    *keys = shb_alloc((size_t)n + 1, sizeof *keys);
   list_candidates(mesh, marked, keys);
   set->n     = remove_pairs(keys, n);
-  set->nodes = malloc((each * (size_t)set->n + 1) * sizeof *set->nodes);
-  for (int f = 0; set->nodes && f < set->n; f++)
+  set->nodes = shb_alloc(each * (size_t)set->n + 1, sizeof *set->nodes);
+  for (int f = 0; f < set->n; f++)
     marked_face(mesh, NULL, keys[f].set, keys[f].face, set->nodes + each * (size_t)f);
   free(keys);
-  SHB_CHECK(set->nodes, SHB_ERR_IO, "no memory for the faces of the mesh");
-  return SHB_OK;
 }

@@ -4,6 +4,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "mesh/base/memory.h"
+
 /* Number of faces of set a all nodes of which are in set b, and the first of them.
  *   marked  scratch  [n_nodes] */
 static int count(const mesh_fe *mesh, int a, int b, char *marked, int *first) {
@@ -53,9 +55,8 @@ static shb_status check_pair(const mesh_fe *mesh, const char *name, int a, int b
 }
 
 static shb_status check_overlap(const mesh_fe *mesh, const char *name) {
-  char      *marked = malloc((size_t)mesh->n_nodes + 1);
+  char      *marked = shb_alloc((size_t)mesh->n_nodes + 1, 1);
   shb_status status = SHB_OK;
-  SHB_CHECK(marked, SHB_ERR_IO, "%s: no memory for its groups", name);
   for (int s = MESH_ROOT + 1; s < mesh_fe_sets(mesh) && status == SHB_OK; s++)
     status = check_pair(mesh, name, s, MESH_ROOT, marked);
   if (status == SHB_OK)

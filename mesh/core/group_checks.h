@@ -12,7 +12,7 @@
  * of a cyclic side. Faces that meet along an edge are allowed. The message names the groups, the
  * number of faces and the place of the first.
  *   name  in  heads the message
- * Errors: SHB_ERR_INPUT; SHB_ERR_IO no memory. */
+ * Errors: SHB_ERR_INPUT. */
 shb_status mesh_fe_check_groups(const mesh_fe *mesh, const char *name);
 
 #endif

@@ -5,6 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "mesh/base/memory.h"
 #include "mesh/base/vec3.h"
 #include "mesh/core/faces.h"
 #include "mesh/core/triangle.h"
@@ -126,17 +127,16 @@ static bool is_smooth(const surface *s, int a, int b) {
   return vec3_dot(p, q) > cos(MESH_RULE_EDGE);
 }
 
-/* Edges of all faces, sorted, so that the two faces of an edge are neighbours. NULL when out of
- * memory. */
+/* Edges of all faces, sorted, so that the two faces of an edge are neighbours. */
 static edge *list_edges(const surface *s) {
   const int n    = s->topology->face_corners;
-  edge     *list = malloc(((size_t)n * (size_t)s->outer.n + 1) * sizeof *list);
-  for (int f = 0; list && f < s->outer.n; f++)
+  edge     *list = shb_alloc((size_t)n * (size_t)s->outer.n + 1, sizeof *list);
+  for (int f = 0; f < s->outer.n; f++)
     for (int i = 0; i < n; i++) {
       int a = face_nodes(s, f)[i], b = face_nodes(s, f)[(i + 1) % n];
       list[n * f + i] = (edge){a < b ? a : b, a < b ? b : a, f};
     }
-  if (list) qsort(list, (size_t)n * (size_t)s->outer.n, sizeof *list, by_corners);
+  qsort(list, (size_t)n * (size_t)s->outer.n, sizeof *list, by_corners);
   return list;
 }
 
@@ -176,12 +176,10 @@ static shb_status take_nearest(const surface *s, const mesh_rule *rule, int id, 
             mesh_fe_set_name(s->mesh, id), rule->at[0], rule->at[1], rule->at[2], least, s->file,
             s->extent, mesh_unit_hint(s->extent, s->mesh->unit_given));
   edge *list  = list_edges(s);
-  int  *queue = malloc(((size_t)s->outer.n + 1) * sizeof *queue);
-  if (list && queue) flood_fill(s, list, first, queue, taken);
-  bool complete = list && queue;
+  int  *queue = shb_alloc((size_t)s->outer.n + 1, sizeof *queue);
+  flood_fill(s, list, first, queue, taken);
   free(list);
   free(queue);
-  SHB_CHECK(complete, SHB_ERR_IO, "%s: no memory for its groups", s->file);
   return SHB_OK;
 }
 
@@ -198,15 +196,13 @@ static shb_status refuse_empty(const surface *s, const mesh_rule *rule, int id, 
            mesh_fe_set_name(s->mesh, id), s->file, rule->radius, least, rule->tolerance);
 }
 
-static shb_status copy_taken(const surface *s, const char *taken, mesh_face_set *set) {
+static void copy_taken(const surface *s, const char *taken, mesh_face_set *set) {
   const size_t each  = (size_t)s->topology->face_nodes;
-  int         *nodes = malloc((each * (size_t)s->outer.n + 1) * sizeof *nodes);
-  SHB_CHECK(nodes, SHB_ERR_IO, "%s: no memory for its groups", s->file);
+  int         *nodes = shb_alloc(each * (size_t)s->outer.n + 1, sizeof *nodes);
   free(set->nodes);
   *set = (mesh_face_set){0, nodes};
   for (int f = 0; f < s->outer.n; f++)
     if (taken[f]) memcpy(nodes + each * (size_t)set->n++, face_nodes(s, f), each * sizeof *nodes);
-  return SHB_OK;
 }
 
 static shb_status apply_one(const surface *s, const mesh_rule *rule, int id, mesh_fe *mesh,
@@ -225,7 +221,8 @@ static shb_status apply_one(const surface *s, const mesh_rule *rule, int id, mes
               MESH_RULE_MAX_TOLERANCE * s->extent, mesh_unit_hint(s->extent, s->mesh->unit_given));
     if (take_fitting(s, rule, taken, &least) == 0) return refuse_empty(s, rule, id, least);
   }
-  return copy_taken(s, taken, &mesh->set[id]);
+  copy_taken(s, taken, &mesh->set[id]);
+  return SHB_OK;
 }
 
 static const mesh_rule *rule_of(const mesh_rules *rules, int set) {
@@ -242,12 +239,10 @@ shb_status mesh_rules_apply(const mesh_rules *rules, mesh_axis axis, const char 
   bool    any = false;
   for (int id = 0; id < mesh_fe_sets(mesh); id++) any = any || has_rule(rule_of(rules, id));
   if (!any) return SHB_OK;
-  SHB_TRY(mesh_faces_outer(mesh, NULL, &s.outer));
-  s.extent         = mesh_fe_extent(mesh);
-  char      *taken = malloc((size_t)s.outer.n + 1);
-  shb_status status =
-      taken ? SHB_OK
-            : shb_fail(SHB_ERR_IO, __FILE__, __LINE__, "%s: no memory for its groups", file);
+  mesh_faces_outer(mesh, NULL, &s.outer);
+  s.extent          = mesh_fe_extent(mesh);
+  char      *taken  = shb_alloc((size_t)s.outer.n + 1, 1);
+  shb_status status = SHB_OK;
   for (int id = 0; id < mesh_fe_sets(mesh) && status == SHB_OK; id++)
     if (has_rule(rule_of(rules, id))) status = apply_one(&s, rule_of(rules, id), id, mesh, taken);
   free(taken);

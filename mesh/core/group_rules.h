@@ -52,8 +52,7 @@ mesh_names mesh_rules_labels(const mesh_rules *rules);
 /* Replace the groups that have a plane, radius or nearest-point rule; faces are ordered outward.
  *   file  in  heads the message
  * Errors: SHB_ERR_INPUT if no face fits a rule; the message names the nearest. SHB_ERR_INPUT if a
- * normal has no direction, a tolerance is too wide or a point too far off the body. SHB_ERR_IO no
- * memory. */
+ * normal has no direction, a tolerance is too wide or a point too far off the body. */
 shb_status mesh_rules_apply(const mesh_rules *rules, mesh_axis axis, const char *file,
                             mesh_fe *mesh);
 

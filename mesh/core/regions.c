@@ -3,23 +3,23 @@
 #include <stdio.h>
 #include <stdlib.h>
 
+#include "mesh/base/memory.h"
+
 void mesh_regions_name(const mesh_names *names, mesh_fe *mesh) {
   mesh->n_more = names ? names->n_more : 0;
   for (int i = 0; i < mesh->n_more; i++)
     snprintf(mesh->more[i], sizeof mesh->more[i], "%s", names->more[i].label);
 }
 
-shb_status mesh_regions_begin(const char *path, const mesh_names *names, mesh_fe *mesh,
-                              mesh_regions *regions) {
+void mesh_regions_begin(const char *path, const mesh_names *names, mesh_fe *mesh,
+                        mesh_regions *regions) {
   *regions          = (mesh_regions){.path = path, .names = names, .mesh = mesh};
   mesh->n_regions   = names->n_volumes;
-  mesh->region_name = calloc((size_t)names->n_volumes, sizeof *mesh->region_name);
-  mesh->region      = malloc((size_t)mesh->n_elements * sizeof *mesh->region + 1);
-  SHB_CHECK(mesh->region_name && mesh->region, SHB_ERR_IO, "%s: no memory for its volumes", path);
+  mesh->region_name = shb_alloc_zeroed((size_t)names->n_volumes, sizeof *mesh->region_name);
+  mesh->region      = shb_alloc((size_t)mesh->n_elements, sizeof *mesh->region);
   for (int i = 0; i < names->n_volumes; i++)
     snprintf(mesh->region_name[i], MESH_WORD, "%s", names->volume[i].label);
   for (int e = 0; e < mesh->n_elements; e++) mesh->region[e] = -1;
-  return SHB_OK;
 }
 
 void mesh_regions_assign(mesh_regions *r, int element, int volume) {

@@ -16,10 +16,9 @@ typedef struct {
 void mesh_regions_name(const mesh_names *names, mesh_fe *mesh);
 
 /* Make mesh->region for the volumes of names, with no element in any.
- *   path  in  heads the messages
- * Errors: SHB_ERR_IO no memory. */
-shb_status mesh_regions_begin(const char *path, const mesh_names *names, mesh_fe *mesh,
-                              mesh_regions *regions);
+ *   path  in  heads the messages */
+void mesh_regions_begin(const char *path, const mesh_names *names, mesh_fe *mesh,
+                        mesh_regions *regions);
 
 /* Element lies in this volume. */
 void mesh_regions_assign(mesh_regions *regions, int element, int volume);

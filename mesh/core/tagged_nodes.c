@@ -4,6 +4,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "mesh/base/memory.h"
+
 static int by_first(const void *a, const void *b) {
   size_t p = *(const size_t *)a, q = *(const size_t *)b;
   return (p > q) - (p < q);
@@ -14,9 +16,8 @@ shb_status mesh_tagged_nodes_create(const char *name, size_t n, const size_t *ta
   *out = (mesh_tagged_nodes){.n = n, .tag = tag, .xyz = xyz};
   SHB_CHECK(n > 0, SHB_ERR_INPUT, "%s: no nodes", name);
   SHB_CHECK(n < INT_MAX / MESH_NODES, SHB_ERR_INPUT, "%s: %zu nodes are too many", name, n);
-  out->by_tag = malloc(2 * n * sizeof *out->by_tag);
-  out->index  = malloc(n * sizeof *out->index);
-  SHB_CHECK(out->by_tag && out->index, SHB_ERR_IO, "%s: no memory for its nodes", name);
+  out->by_tag = shb_alloc(2 * n, sizeof *out->by_tag);
+  out->index  = shb_alloc(n, sizeof *out->index);
   bool sorted = true;
   for (size_t i = 0; i < n; i++) {
     out->by_tag[2 * i]     = tag[i];
@@ -62,16 +63,15 @@ static shb_status take_connectivity(const char *name, const mesh_tagged_elements
 }
 
 /* Number the used nodes by ascending tag and copy them. */
-static shb_status take_nodes(const char *name, mesh_tagged_nodes *nodes, mesh_fe *mesh) {
+static void take_nodes(mesh_tagged_nodes *nodes, mesh_fe *mesh) {
   const size_t each = (size_t)mesh_topology_of(mesh->kind)->nodes;
   mesh->n_nodes     = 0;
   for (size_t i = 0; i < nodes->n; i++) {
     size_t place = nodes->by_tag[2 * i + 1];
     if (nodes->index[place] >= 0) nodes->index[place] = mesh->n_nodes++;
   }
-  mesh->coordinates = malloc(3 * (size_t)mesh->n_nodes * sizeof *mesh->coordinates);
-  mesh->node_tag    = malloc((size_t)mesh->n_nodes * sizeof *mesh->node_tag);
-  SHB_CHECK(mesh->coordinates && mesh->node_tag, SHB_ERR_IO, "%s: no memory for its nodes", name);
+  mesh->coordinates = shb_alloc(3 * (size_t)mesh->n_nodes, sizeof *mesh->coordinates);
+  mesh->node_tag    = shb_alloc((size_t)mesh->n_nodes, sizeof *mesh->node_tag);
   for (size_t i = 0; i < nodes->n; i++) {
     int at = nodes->index[i];
     if (at < 0) continue;
@@ -80,7 +80,6 @@ static shb_status take_nodes(const char *name, mesh_tagged_nodes *nodes, mesh_fe
   }
   for (size_t i = 0; i < each * (size_t)mesh->n_elements; i++)
     mesh->connectivity[i] = nodes->index[mesh->connectivity[i]];
-  return SHB_OK;
 }
 
 shb_status mesh_tagged_take_volume(const char *name, const mesh_tagged_elements *elements,
@@ -88,21 +87,19 @@ shb_status mesh_tagged_take_volume(const char *name, const mesh_tagged_elements 
   const size_t each = (size_t)mesh_topology_of(mesh->kind)->nodes, n = elements->n;
   SHB_CHECK(n < INT_MAX / each, SHB_ERR_INPUT, "%s: %zu elements are too many", name, n);
   mesh->n_elements   = (int)n;
-  mesh->connectivity = malloc(each * n * sizeof *mesh->connectivity);
-  mesh->element_tag  = malloc(n * sizeof *mesh->element_tag);
-  SHB_CHECK(mesh->connectivity && mesh->element_tag, SHB_ERR_IO, "%s: no memory for its elements",
-            name);
+  mesh->connectivity = shb_alloc(each * n, sizeof *mesh->connectivity);
+  mesh->element_tag  = shb_alloc(n, sizeof *mesh->element_tag);
   SHB_TRY(take_connectivity(name, elements, nodes, mesh));
-  return take_nodes(name, nodes, mesh);
+  take_nodes(nodes, mesh);
+  return SHB_OK;
 }
 
 shb_status mesh_tagged_append_faces(const char *name, const mesh_tagged_nodes *nodes,
                                     const mesh_tagged_elements *faces, int set, mesh_fe *mesh) {
   const size_t   each = (size_t)mesh_topology_of(mesh->kind)->face_nodes, n = faces->n;
   mesh_face_set *to   = &mesh->set[set];
-  int           *grow = realloc(to->nodes, each * ((size_t)to->n + n + 1) * sizeof *grow);
-  SHB_CHECK(grow, SHB_ERR_IO, "%s: no memory for its groups", name);
-  to->nodes = grow;
+  int           *grow = shb_realloc(to->nodes, each * ((size_t)to->n + n + 1), sizeof *grow);
+  to->nodes           = grow;
   for (size_t i = 0; i < each * n; i++) {
     size_t place = find(nodes, faces->nodes[i]);
     SHB_CHECK(place < nodes->n && nodes->index[place] >= 0, SHB_ERR_INPUT,

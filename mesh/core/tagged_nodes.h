@@ -20,7 +20,7 @@ typedef struct {
   const size_t *nodes; /* [n][nodes of one] their tags */
 } mesh_tagged_elements;
 
-/* All functions below: name heads the messages. SHB_ERR_INPUT, SHB_ERR_IO no memory. */
+/* All functions below: name heads the messages. SHB_ERR_INPUT. */
 shb_status mesh_tagged_nodes_create(const char *name, size_t n, const size_t *tag,
                                     const double *xyz, mesh_tagged_nodes *out);
 

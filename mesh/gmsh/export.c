@@ -62,12 +62,7 @@ static shb_status write_all(const char *raw, const char *temporary, const char *
 }
 
 shb_status mesh_export(const char *path, const shb_provenance *provenance) {
-  char *temporary = shb_publish_temporary(path);
-  char *raw       = temporary ? shb_publish_temporary_msh(path) : NULL;
-  if (!raw) {
-    free(temporary);
-    SHB_FAIL(SHB_ERR_IO, "%s: no memory to write it", path);
-  }
+  char      *temporary = shb_publish_temporary(path), *raw = shb_publish_temporary_msh(path);
   shb_status status = write_all(raw, temporary, path, provenance);
   if (status != SHB_OK) unlink(temporary);
   free(raw);

@@ -10,7 +10,7 @@
  *   names  in   names of the physical groups; NULL: the usual six. A missing group is empty.
  *   mesh   out  free with mesh_fe_free
  * Errors: SHB_ERR_INPUT if elements are neither all ten-node tetrahedra nor all twenty-node
- * hexahedra, or a node is absent. SHB_ERR_IO no memory. */
+ * hexahedra, or a node is absent. */
 shb_status mesh_import(const char *name, const mesh_names *names, mesh_fe *mesh);
 
 #endif

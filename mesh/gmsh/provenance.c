@@ -6,6 +6,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "mesh/base/memory.h"
+
 static void put_block(FILE *file, const char *title, const char *text) {
   if (!text) return;
   fprintf(file, "%s:\n", title);
@@ -52,16 +54,12 @@ shb_status mesh_settings_read(const char *path, char **settings) {
   char  *line = NULL, *text = NULL;
   size_t size = 0, length = 0;
   FILE  *out = open_memstream(&text, &length);
-  if (!out) {
-    fclose(file);
-    SHB_FAIL(SHB_ERR_IO, "%s: no memory to read it", path);
-  }
+  if (!out) shb_out_of_memory(0);
   if (skip_to(file, "shroudhb mesh", &line, &size) && skip_to(file, "settings:", &line, &size))
     copy_block(file, out, &line, &size);
   free(line);
   fclose(file);
-  bool bad = fclose(out) != 0 || !text;
-  SHB_CHECK(!bad, SHB_ERR_IO, "%s: no memory to read it", path);
+  if (fclose(out) != 0 || !text) shb_out_of_memory((double)length);
   *settings = text;
   return SHB_OK;
 }

@@ -8,6 +8,7 @@
 
 #include "mesh/base/constants.h"
 #include "mesh/base/crash_guard.h"
+#include "mesh/base/memory.h"
 #include "mesh/base/vec3.h"
 #include "mesh/core/face_match.h"
 #include "mesh/core/file_format.h"
@@ -168,13 +169,11 @@ static shb_status find_patch(const mesh_solid *solid, const mesh_fe *mesh, int i
   int                 *tags = NULL;
   size_t               n    = 0;
   GMSH_TRY(solid->source->path, gmshModelGetEntities(&tags, &n, 2, &ierr));
-  char *marked      = calloc((size_t)mesh->n_nodes + 1, 1);
-  p->tag            = malloc((n + 1) * sizeof *p->tag);
-  p->centre         = malloc((n + 1) * sizeof *p->centre);
-  shb_status status = marked && p->tag && p->centre
-                          ? SHB_OK
-                          : shb_fail(SHB_ERR_IO, __FILE__, __LINE__, "out of memory");
-  for (size_t i = 0; status == SHB_OK && i < each * (size_t)set->n; i++) marked[set->nodes[i]] = 1;
+  char *marked      = shb_alloc_zeroed((size_t)mesh->n_nodes + 1, 1);
+  p->tag            = shb_alloc(n + 1, sizeof *p->tag);
+  p->centre         = shb_alloc(n + 1, sizeof *p->centre);
+  shb_status status = SHB_OK;
+  for (size_t i = 0; i < each * (size_t)set->n; i++) marked[set->nodes[i]] = 1;
   for (size_t i = 0; status == SHB_OK && i + 1 < n; i += 2) {
     bool whole   = false;
     p->tag[p->n] = tags[i + 1];

@@ -6,6 +6,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "mesh/base/memory.h"
 #include "mesh/base/vec3.h"
 #include "mesh/core/jacobian.h"
 #include "mesh/gmsh/api.h"
@@ -71,18 +72,14 @@ shb_status mesh_solid_straighten(const mesh_source *source, mesh_fe *mesh,
   const int    bad  = mesh_jacobian_inverted(mesh);
   const size_t size = 3 * (size_t)mesh->n_nodes * sizeof(double);
   if (bad == 0 || bad > mesh->n_elements / 100) return mesh_jacobian_check(mesh, source->path);
-  char   *moved  = calloc((size_t)mesh->n_nodes, 1);
-  double *before = malloc(size);
-  if (moved && before) {
-    memcpy(before, mesh->coordinates, size);
-    mesh_jacobian_straighten(mesh, moved);
-    faults->straightened = bad;
-    note_moves(source, mesh, before, faults);
-  }
-  const bool enough = moved && before;
+  char   *moved  = shb_alloc_zeroed((size_t)mesh->n_nodes, 1);
+  double *before = shb_alloc(size, 1);
+  memcpy(before, mesh->coordinates, size);
+  mesh_jacobian_straighten(mesh, moved);
+  faults->straightened = bad;
+  note_moves(source, mesh, before, faults);
   free(moved);
   free(before);
-  SHB_CHECK(enough, SHB_ERR_IO, "%s: no memory to straighten elements", source->path);
   return mesh_jacobian_check(mesh, source->path);
 }
 

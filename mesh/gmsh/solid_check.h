@@ -24,7 +24,7 @@ typedef struct {
 shb_status mesh_solid_check_filled(const mesh_source *source, const char *errors);
 
 /* Straighten inverted elements of a mesh in the unit of the file. Errors: SHB_ERR_INPUT if they are
- * more than 1 %, or some are still inverted; SHB_ERR_IO no memory. */
+ * more than 1 %, or some are still inverted. */
 shb_status mesh_solid_straighten(const mesh_source *source, mesh_fe *mesh,
                                  mesh_solid_faults *faults);
 

@@ -5,6 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "mesh/base/memory.h"
 #include "mesh/base/vec3.h"
 #include "mesh/gmsh/api.h"
 #include "mesh/gmsh/session.h"
@@ -100,12 +101,9 @@ static shb_status measure(sums *s, const face *f, size_t n, double (*point)[3]) 
 static shb_status add_face(sums *s, const face *f) {
   const int    nodes = mesh_topology_of(s->mesh->kind)->face_nodes, each = s->rule.n;
   const size_t most = (f->n / s->step + 2) * (size_t)each; /* with one to come */
-  double(*point)[3] = malloc(most * sizeof *point), (*area)[3] = malloc(most * sizeof *area);
-  size_t     kept   = 0;
-  shb_status status = SHB_OK;
-  if (!point || !area)
-    status = shb_fail(SHB_ERR_IO, __FILE__, __LINE__, "%s: no memory to measure it", s->path);
-  for (size_t e = 0; e < f->n && status == SHB_OK; e++) {
+  double(*point)[3] = shb_alloc(most, sizeof *point), (*area)[3] = shb_alloc(most, sizeof *area);
+  size_t kept = 0;
+  for (size_t e = 0; e < f->n; e++) {
     double x[MESH_FACE_NODES][3];
     if (!find_nodes(s->mesh, f->node + e * (size_t)nodes, nodes, x)) continue;
     place_points(s, (const double(*)[3])x, nodes, point + kept, area + kept);
@@ -113,7 +111,7 @@ static shb_status add_face(sums *s, const face *f) {
       s->cone += f->sign * vec3_dot(point[kept + (size_t)q], area[kept + (size_t)q]);
     if (f->curved && e % s->step == 0) kept += (size_t)each;
   }
-  if (status == SHB_OK) status = measure(s, f, kept, point);
+  const shb_status status = measure(s, f, kept, point);
   free(point);
   free(area);
   return status;
@@ -135,10 +133,9 @@ static shb_status take_face(const sums *s, int signed_tag, face *f) {
 }
 
 static shb_status add_faces(sums *s, const int *tags, int n) {
-  face      *faces  = calloc((size_t)n + 1, sizeof *faces);
+  face      *faces  = shb_alloc_zeroed((size_t)n + 1, sizeof *faces);
   size_t     curved = 0;
   shb_status status = SHB_OK;
-  SHB_CHECK(faces, SHB_ERR_IO, "%s: no memory to measure it", s->path);
   for (int i = 0; i < n && status == SHB_OK; i++) {
     status = take_face(s, tags[2 * i + 1], &faces[i]);
     curved += faces[i].curved ? faces[i].n : 0;

@@ -17,7 +17,7 @@ typedef struct {
  * volume of the solid is that of mesh_solid_volume_of.
  *   mesh   in  in the unit of the file, as imported, with the tags of gmsh
  *   solid  in  gmsh's tag
- * Errors: SHB_ERR_INPUT; SHB_ERR_IO no memory. */
+ * Errors: SHB_ERR_INPUT. */
 shb_status mesh_surface_gap_of(const mesh_source *source, const mesh_fe *mesh, int solid,
                                mesh_surface_gap *gap);
 

@@ -5,6 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "mesh/base/memory.h"
 #include "mesh/base/vec3.h"
 #include "mesh/core/regions.h"
 #include "mesh/core/triangle.h"
@@ -52,9 +53,8 @@ static shb_status find_entities(model *m) {
 
 static shb_status fill(model *m) {
   const size_t n = (size_t)m->mesh->n_elements;
-  m->by_tag      = malloc(n * sizeof *m->by_tag + 1);
-  m->entity      = calloc(n + 1, sizeof *m->entity);
-  SHB_CHECK(m->by_tag && m->entity, SHB_ERR_IO, "%s: no memory for its volumes", m->path);
+  m->by_tag      = shb_alloc(n, sizeof *m->by_tag);
+  m->entity      = shb_alloc_zeroed(n + 1, sizeof *m->entity);
   for (size_t e = 0; e < n; e++) {
     m->by_tag[e][0] = m->mesh->element_tag[e];
     m->by_tag[e][1] = (long)e;
@@ -143,7 +143,7 @@ static shb_status put_named(const model *m, mesh_regions *regions, int volume) {
 static shb_status take_all(model *m, const mesh_names *names) {
   mesh_regions regions;
   SHB_TRY(fill(m));
-  SHB_TRY(mesh_regions_begin(m->path, names, m->mesh, &regions));
+  mesh_regions_begin(m->path, names, m->mesh, &regions);
   for (int i = 0; i < names->n_volumes; i++) {
     if (names->volume[i].near) {
       put_entity(m, &regions, m->entity[element_at(m->mesh, names->volume[i].at)], i);

@@ -25,7 +25,7 @@ static shb_status read_nodes(mesh_deck *deck, const mesh_card *card, mesh_inp *i
                   "*NODE with %s is not supported; write rectangular coordinates into the file",
                   mesh_card_has(card, "INPUT") ? "INPUT" : "SYSTEM");
   SHB_TRY(mesh_card_value(deck, card, "NSET", name));
-  if (name[0]) SHB_TRY(mesh_inp_open_set(inp, MESH_INP_NSET, name, true, card->line, &set));
+  if (name[0]) set = mesh_inp_open_set(inp, MESH_INP_NSET, name, true, card->line);
   mesh_row row;
   for (bool more = true;;) {
     SHB_TRY(mesh_deck_row(deck, &row, &more));
@@ -35,9 +35,8 @@ static shb_status read_nodes(mesh_deck *deck, const mesh_card *card, mesh_inp *i
     mesh_inp_node node = {.line = row.line};
     SHB_TRY(mesh_deck_number(deck, row.field[0], &node.id));
     for (int d = 0; d < 3; d++) SHB_TRY(mesh_deck_real(deck, row.field[1 + d], &node.at[d]));
-    SHB_TRY(mesh_inp_add_node(inp, &node));
-    if (set >= 0)
-      SHB_TRY(mesh_inp_add_member(&inp->set[set], &(mesh_inp_member){node.id, row.line, 0}));
+    mesh_inp_add_node(inp, &node);
+    if (set >= 0) mesh_inp_add_member(&inp->set[set], &(mesh_inp_member){node.id, row.line, 0});
   }
 }
 
@@ -87,14 +86,14 @@ static shb_status read_elements(mesh_deck *deck, const mesh_card *card, mesh_inp
   SHB_TRY(find_type(deck, card, &type));
   if (type->n == 0) return SHB_OK;
   SHB_TRY(mesh_card_value(deck, card, "ELSET", name));
-  if (name[0]) SHB_TRY(mesh_inp_open_set(inp, MESH_INP_ELSET, name, false, card->line, &set));
+  if (name[0]) set = mesh_inp_open_set(inp, MESH_INP_ELSET, name, false, card->line);
   for (bool more = true;;) {
     mesh_inp_element element = {0};
     SHB_TRY(read_element(deck, type, &element, &more));
     if (!more) return SHB_OK;
-    SHB_TRY(mesh_inp_add_element(inp, &element));
+    mesh_inp_add_element(inp, &element);
     if (set >= 0)
-      SHB_TRY(mesh_inp_add_member(&inp->set[set], &(mesh_inp_member){element.id, element.line, 0}));
+      mesh_inp_add_member(&inp->set[set], &(mesh_inp_member){element.id, element.line, 0});
   }
 }
 
@@ -122,8 +121,7 @@ static shb_status generate(mesh_deck *deck, const mesh_row *row, mesh_inp *inp, 
   long last = (range[1] - range[0]) / range[2];
   SHB_TRY(admit(deck, inp, into, "GENERATE", last + 1));
   for (long i = 0; i <= last; i++)
-    SHB_TRY(mesh_inp_add_member(&inp->set[into],
-                                &(mesh_inp_member){range[0] + i * range[2], row->line, 0}));
+    mesh_inp_add_member(&inp->set[into], &(mesh_inp_member){range[0] + i * range[2], row->line, 0});
   return SHB_OK;
 }
 
@@ -134,7 +132,8 @@ static shb_status add_named(mesh_deck *deck, mesh_inp *inp, int into, const char
   mesh_inp_member member = {.line = deck->line, .face = face};
   if (mesh_deck_numeric(field)) {
     SHB_TRY(mesh_deck_number(deck, field, &member.id));
-    return mesh_inp_add_member(&inp->set[into], &member);
+    mesh_inp_add_member(&inp->set[into], &member);
+    return SHB_OK;
   }
   const mesh_inp_set *from = mesh_inp_find(inp, kind, field);
   MESH_DECK_CHECK(from, deck, deck->line, "%s '%.40s' is not defined before this line",
@@ -142,7 +141,7 @@ static shb_status add_named(mesh_deck *deck, mesh_inp *inp, int into, const char
   SHB_TRY(admit(deck, inp, into, inp->set[into].name, from->n));
   for (int i = 0, n = from->n; i < n; i++) {
     member.id = from->member[i].id;
-    SHB_TRY(mesh_inp_add_member(&inp->set[into], &member));
+    mesh_inp_add_member(&inp->set[into], &member);
   }
   return SHB_OK;
 }
@@ -151,11 +150,10 @@ static shb_status read_set(mesh_deck *deck, const mesh_card *card, mesh_inp_kind
                            mesh_inp *inp) {
   const char *word = kind == MESH_INP_NSET ? "NSET" : "ELSET";
   char        name[MESH_DECK_NAME];
-  int         set = -1;
   SHB_TRY(mesh_card_value(deck, card, word, name));
   MESH_DECK_CHECK(name[0], deck, card->line, "*%s without a name (%s=...)", word, word);
-  SHB_TRY(mesh_inp_open_set(inp, kind, name, kind == MESH_INP_NSET, card->line, &set));
-  mesh_row row;
+  const int set = mesh_inp_open_set(inp, kind, name, kind == MESH_INP_NSET, card->line);
+  mesh_row  row;
   for (bool more = true;;) {
     SHB_TRY(mesh_deck_row(deck, &row, &more));
     if (!more) return SHB_OK;
@@ -183,15 +181,14 @@ static shb_status face_number(const mesh_deck *deck, const mesh_row *row, int *f
 
 static shb_status read_surface(mesh_deck *deck, const mesh_card *card, mesh_inp *inp) {
   char name[MESH_DECK_NAME], type[MESH_DECK_NAME];
-  int  set = -1;
   SHB_TRY(mesh_card_value(deck, card, "NAME", name));
   SHB_TRY(mesh_card_value(deck, card, "TYPE", type));
   MESH_DECK_CHECK(name[0], deck, card->line, "*SURFACE without a name (NAME=...)");
   bool nodes = strcasecmp(type, "NODE") == 0;
   if (!nodes && type[0] && strcasecmp(type, "ELEMENT") != 0)
     return SHB_OK; /* other types of surface define no group */
-  SHB_TRY(mesh_inp_open_set(inp, MESH_INP_SURFACE, name, nodes, card->line, &set));
-  mesh_row row;
+  const int set = mesh_inp_open_set(inp, MESH_INP_SURFACE, name, nodes, card->line);
+  mesh_row  row;
   for (bool more = true;;) {
     int face = 0;
     SHB_TRY(mesh_deck_row(deck, &row, &more));

@@ -34,7 +34,7 @@ typedef struct {
       [MESH_DECK_FIELDS]; /* [n] in deck->text, without spaces around; valid until the next row */
 } mesh_row;
 
-/* All functions below report errors as "path:line: text". SHB_ERR_IO unreadable, no memory;
+/* All functions below report errors as "path:line: text". SHB_ERR_IO unreadable;
  * SHB_ERR_INPUT otherwise. */
 shb_status mesh_deck_open(const char *path, mesh_deck *deck);
 void       mesh_deck_close(mesh_deck *deck); /* also on a zeroed struct */

@@ -4,6 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "mesh/base/memory.h"
 #include "mesh/core/faces.h"
 #include "mesh/core/regions.h"
 #include "mesh/io/inp_cards.h"
@@ -17,18 +18,15 @@ typedef struct {
   mesh_fe         *mesh;
 } builder;
 
-static shb_status allocate(builder *b, int n_volumes) {
+static void allocate(builder *b, int n_volumes) {
   const size_t n        = (size_t)n_volumes;
   const size_t each     = (size_t)mesh_topology_of(b->mesh->kind)->nodes;
   b->mesh->n_elements   = n_volumes;
-  b->mesh->connectivity = malloc(each * n * sizeof *b->mesh->connectivity);
-  b->mesh->element_tag  = malloc(n * sizeof *b->mesh->element_tag);
-  b->index              = malloc((size_t)b->inp.n_nodes * sizeof *b->index + 1);
-  b->volume             = malloc((size_t)b->inp.n_elements * sizeof *b->volume + 1);
-  SHB_CHECK(b->mesh->connectivity && b->mesh->element_tag && b->index && b->volume, SHB_ERR_IO,
-            "%s: no memory for its elements", b->deck->path);
+  b->mesh->connectivity = shb_alloc(each * n, sizeof *b->mesh->connectivity);
+  b->mesh->element_tag  = shb_alloc(n, sizeof *b->mesh->element_tag);
+  b->index              = shb_alloc((size_t)b->inp.n_nodes, sizeof *b->index);
+  b->volume             = shb_alloc((size_t)b->inp.n_elements, sizeof *b->volume);
   for (int i = 0; i < b->inp.n_nodes; i++) b->index[i] = -1;
-  return SHB_OK;
 }
 
 /* Check that all elements are of one kind; allocate. */
@@ -48,7 +46,8 @@ static shb_status find_kind(builder *b) {
   SHB_CHECK(n < INT_MAX / MESH_NODES, SHB_ERR_INPUT, "%s: %d elements are too many", b->deck->path,
             n);
   b->mesh->kind = nodes == mesh_topology_of(MESH_HEX20)->nodes ? MESH_HEX20 : MESH_TET10;
-  return allocate(b, n);
+  allocate(b, n);
+  return SHB_OK;
 }
 
 /* Set connectivity to the index in the table, for take_nodes to replace; mark the nodes used. */
@@ -73,14 +72,12 @@ static shb_status take_volumes(builder *b) {
   return SHB_OK;
 }
 
-static shb_status take_nodes(builder *b) {
+static void take_nodes(builder *b) {
   mesh_fe *mesh = b->mesh;
   for (int i = 0; i < b->inp.n_nodes; i++)
     if (b->index[i] >= 0) b->index[i] = mesh->n_nodes++;
-  mesh->coordinates = malloc(3 * (size_t)mesh->n_nodes * sizeof *mesh->coordinates);
-  mesh->node_tag    = malloc((size_t)mesh->n_nodes * sizeof *mesh->node_tag);
-  SHB_CHECK(mesh->coordinates && mesh->node_tag, SHB_ERR_IO, "%s: no memory for its nodes",
-            b->deck->path);
+  mesh->coordinates = shb_alloc(3 * (size_t)mesh->n_nodes, sizeof *mesh->coordinates);
+  mesh->node_tag    = shb_alloc((size_t)mesh->n_nodes, sizeof *mesh->node_tag);
   for (int i = 0; i < b->inp.n_nodes; i++) {
     if (b->index[i] < 0) continue;
     memcpy(mesh->coordinates + 3 * (size_t)b->index[i], b->inp.node[i].at, 3 * sizeof(double));
@@ -89,7 +86,6 @@ static shb_status take_nodes(builder *b) {
   const size_t each = (size_t)mesh_topology_of(mesh->kind)->nodes;
   for (size_t i = 0; i < each * (size_t)mesh->n_elements; i++)
     mesh->connectivity[i] = b->index[mesh->connectivity[i]];
-  return SHB_OK;
 }
 
 /* Nodes of face f of element e. */
@@ -139,8 +135,7 @@ static shb_status member_face(const builder *b, const mesh_inp_member *member, c
 static shb_status faces_of_elements(builder *b, const mesh_inp_set *from, int id) {
   const size_t   each = (size_t)mesh_topology_of(b->mesh->kind)->face_nodes;
   mesh_face_set *set  = &b->mesh->set[id];
-  set->nodes          = malloc(each * (size_t)from->n * sizeof *set->nodes + 1);
-  SHB_CHECK(set->nodes, SHB_ERR_IO, "%s: no memory for its groups", b->deck->path);
+  set->nodes          = shb_alloc(each * (size_t)from->n, sizeof *set->nodes);
   for (int i = 0; i < from->n; i++)
     SHB_TRY(member_face(b, &from->member[i], mesh_fe_set_name(b->mesh, id),
                         set->nodes + each * (size_t)set->n++));
@@ -149,8 +144,7 @@ static shb_status faces_of_elements(builder *b, const mesh_inp_set *from, int id
 
 /* Faces of the body all nodes of which are in the set. */
 static shb_status faces_of_nodes(builder *b, const mesh_inp_set *from, int id) {
-  char *marked = calloc((size_t)b->mesh->n_nodes + 1, 1);
-  SHB_CHECK(marked, SHB_ERR_IO, "%s: no memory for its groups", b->deck->path);
+  char      *marked = shb_alloc_zeroed((size_t)b->mesh->n_nodes + 1, 1);
   shb_status status = SHB_OK;
   for (int i = 0; i < from->n && status == SHB_OK; i++) {
     int at = mesh_inp_node_at(&b->inp, from->member[i].id);
@@ -160,7 +154,7 @@ static shb_status faces_of_nodes(builder *b, const mesh_inp_set *from, int id) {
                               mesh_fe_set_name(b->mesh, id), from->member[i].id);
     if (at >= 0 && b->index[at] >= 0) marked[b->index[at]] = 1;
   }
-  if (status == SHB_OK) status = mesh_faces_outer(b->mesh, marked, &b->mesh->set[id]);
+  if (status == SHB_OK) mesh_faces_outer(b->mesh, marked, &b->mesh->set[id]);
   if (status == SHB_OK && b->mesh->set[id].n == 0)
     status = mesh_deck_fail(b->deck, from->line, __FILE__, __LINE__,
                             "group %s: its %d nodes hold no whole face of the body (%d nodes)",
@@ -204,7 +198,7 @@ static shb_status take_volume(builder *b, mesh_regions *regions, int i) {
 
 static shb_status take_regions(builder *b, const mesh_names *names) {
   mesh_regions regions;
-  SHB_TRY(mesh_regions_begin(b->deck->path, names, b->mesh, &regions));
+  mesh_regions_begin(b->deck->path, names, b->mesh, &regions);
   for (int i = 0; i < names->n_volumes; i++) SHB_TRY(take_volume(b, &regions, i));
   return mesh_regions_end(&regions);
 }
@@ -213,7 +207,7 @@ static shb_status build(builder *b, const mesh_names *names) {
   SHB_TRY(mesh_inp_sort(&b->inp, b->deck));
   SHB_TRY(find_kind(b));
   SHB_TRY(take_volumes(b));
-  SHB_TRY(take_nodes(b));
+  take_nodes(b);
   for (int i = 0; i < b->inp.n_sets; i++)
     if (*b->inp.set[i].name) mesh_fe_note_group(b->mesh, b->inp.set[i].name);
   for (int id = 0; id < mesh_fe_sets(b->mesh); id++) SHB_TRY(take_group(b, names, id));

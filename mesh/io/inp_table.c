@@ -5,33 +5,29 @@
 #include <string.h>
 #include <strings.h>
 
+#include "mesh/base/memory.h"
+
 /* Make room for one more item. */
-static shb_status reserve(void **array, int n, int *room, size_t size) {
-  if (n < *room) return SHB_OK;
-  int   wanted = *room > INT_MAX / 2 ? INT_MAX : *room ? 2 * *room : 64;
-  void *more   = n < wanted ? realloc(*array, (size_t)wanted * size) : NULL;
-  SHB_CHECK(more, SHB_ERR_IO, "out of memory for a mesh file");
-  *array = more;
-  *room  = wanted;
-  return SHB_OK;
+static void reserve(void **array, int n, int *room, size_t size) {
+  if (n < *room) return;
+  if (n == INT_MAX) shb_out_of_memory((double)n * (double)size);
+  *room  = *room > INT_MAX / 2 ? INT_MAX : *room ? 2 * *room : 64;
+  *array = shb_realloc(*array, (size_t)*room, size);
 }
 
-shb_status mesh_inp_add_node(mesh_inp *inp, const mesh_inp_node *node) {
-  SHB_TRY(reserve((void **)&inp->node, inp->n_nodes, &inp->node_room, sizeof *node));
+void mesh_inp_add_node(mesh_inp *inp, const mesh_inp_node *node) {
+  reserve((void **)&inp->node, inp->n_nodes, &inp->node_room, sizeof *node);
   inp->node[inp->n_nodes++] = *node;
-  return SHB_OK;
 }
 
-shb_status mesh_inp_add_element(mesh_inp *inp, const mesh_inp_element *element) {
-  SHB_TRY(reserve((void **)&inp->element, inp->n_elements, &inp->element_room, sizeof *element));
+void mesh_inp_add_element(mesh_inp *inp, const mesh_inp_element *element) {
+  reserve((void **)&inp->element, inp->n_elements, &inp->element_room, sizeof *element);
   inp->element[inp->n_elements++] = *element;
-  return SHB_OK;
 }
 
-shb_status mesh_inp_add_member(mesh_inp_set *set, const mesh_inp_member *member) {
-  SHB_TRY(reserve((void **)&set->member, set->n, &set->room, sizeof *member));
+void mesh_inp_add_member(mesh_inp_set *set, const mesh_inp_member *member) {
+  reserve((void **)&set->member, set->n, &set->room, sizeof *member);
   set->member[set->n++] = *member;
-  return SHB_OK;
 }
 
 mesh_inp_set *mesh_inp_find(const mesh_inp *inp, mesh_inp_kind kind, const char *name) {
@@ -41,19 +37,15 @@ mesh_inp_set *mesh_inp_find(const mesh_inp *inp, mesh_inp_kind kind, const char 
   return dot ? mesh_inp_find(inp, kind, dot + 1) : NULL;
 }
 
-shb_status mesh_inp_open_set(mesh_inp *inp, mesh_inp_kind kind, const char *name, bool of_nodes,
-                             long line, int *index) {
-  mesh_inp_set *found = mesh_inp_find(inp, kind, name);
-  if (found) {
-    *index = (int)(found - inp->set);
-    return SHB_OK;
-  }
-  SHB_TRY(reserve((void **)&inp->set, inp->n_sets, &inp->set_room, sizeof *inp->set));
+int mesh_inp_open_set(mesh_inp *inp, mesh_inp_kind kind, const char *name, bool of_nodes,
+                      long line) {
+  const mesh_inp_set *found = mesh_inp_find(inp, kind, name);
+  if (found) return (int)(found - inp->set);
+  reserve((void **)&inp->set, inp->n_sets, &inp->set_room, sizeof *inp->set);
   mesh_inp_set *set = &inp->set[inp->n_sets];
   *set              = (mesh_inp_set){.kind = kind, .of_nodes = of_nodes, .line = line};
   snprintf(set->name, sizeof set->name, "%s", name);
-  *index = inp->n_sets++;
-  return SHB_OK;
+  return inp->n_sets++;
 }
 
 static int compare(long a, long b) {

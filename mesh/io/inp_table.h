@@ -44,18 +44,18 @@ typedef struct {
   long long         referred; /* members that sets have by ranges and names of other sets */
 } mesh_inp;
 
-/* Append. SHB_ERR_IO no memory. */
-shb_status mesh_inp_add_node(mesh_inp *inp, const mesh_inp_node *node);
-shb_status mesh_inp_add_element(mesh_inp *inp, const mesh_inp_element *element);
-shb_status mesh_inp_add_member(mesh_inp_set *set, const mesh_inp_member *member);
+/* Append. */
+void mesh_inp_add_node(mesh_inp *inp, const mesh_inp_node *node);
+void mesh_inp_add_element(mesh_inp *inp, const mesh_inp_element *element);
+void mesh_inp_add_member(mesh_inp_set *set, const mesh_inp_member *member);
 
 /* Set of that kind and name, or NULL. Case is ignored. The name of an instance before a dot may be
  * missing. */
 mesh_inp_set *mesh_inp_find(const mesh_inp *inp, mesh_inp_kind kind, const char *name);
 
 /* Index in inp->set of the set of that kind and name, made if absent. */
-shb_status mesh_inp_open_set(mesh_inp *inp, mesh_inp_kind kind, const char *name, bool of_nodes,
-                             long line, int *index);
+int mesh_inp_open_set(mesh_inp *inp, mesh_inp_kind kind, const char *name, bool of_nodes,
+                      long line);
 
 /* Sort nodes and elements by number. SHB_ERR_INPUT: a number is used twice. */
 shb_status mesh_inp_sort(mesh_inp *inp, const mesh_deck *deck);

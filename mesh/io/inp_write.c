@@ -34,21 +34,21 @@ static int by_corner(const void *a, const void *b) {
   return ((const group_face *)a)->corner - ((const group_face *)b)->corner;
 }
 
-/* Faces of all sets, sorted by their smallest corner; NULL when out of memory. */
+/* Faces of all sets, sorted by their smallest corner. */
 static group_face *list_faces(const mesh_fe *mesh, shb_arena *arena, int *n) {
   const mesh_topology *topology = mesh_topology_of(mesh->kind);
   size_t               total    = 0;
   for (int s = 0; s < mesh_fe_sets(mesh); s++) total += (size_t)mesh->set[s].n;
   group_face *list = shb_arena_take(arena, total, sizeof *list);
   *n               = 0;
-  for (int s = 0; list && s < mesh_fe_sets(mesh); s++)
+  for (int s = 0; s < mesh_fe_sets(mesh); s++)
     for (int f = 0; f < mesh->set[s].n; f++) {
       const int *node  = mesh->set[s].nodes + (size_t)topology->face_nodes * (size_t)f;
       int        least = node[0];
       for (int i = 1; i < topology->face_corners; i++) least = node[i] < least ? node[i] : least;
       list[(*n)++] = (group_face){s, f, least};
     }
-  if (list) qsort(list, total, sizeof *list, by_corner);
+  qsort(list, total, sizeof *list, by_corner);
   return list;
 }
 
@@ -146,7 +146,7 @@ static void write_groups(const mesh_fe *mesh, int *const element[MESH_MAX_SETS],
   }
 }
 
-static shb_status write_all(const mesh_fe *mesh, FILE *file) {
+static void write_all(const mesh_fe *mesh, FILE *file) {
   shb_arena   arena                  = {0};
   int        *element[MESH_MAX_SETS] = {0}, *label[MESH_MAX_SETS] = {0}, n = 0;
   group_face *list   = list_faces(mesh, &arena, &n);
@@ -155,31 +155,25 @@ static shb_status write_all(const mesh_fe *mesh, FILE *file) {
     element[s] = shb_arena_take(&arena, (size_t)mesh->set[s].n, sizeof **element);
     label[s]   = shb_arena_take(&arena, (size_t)mesh->set[s].n, sizeof **label);
   }
-  const bool complete = !arena.failed;
-  if (complete) {
-    locate(mesh, list, n, element, label);
-    write_body(mesh, file);
-    write_volumes(mesh, file);
-    write_node_sets(mesh, marked, file);
-    write_groups(mesh, element, label, file);
-  }
+  locate(mesh, list, n, element, label);
+  write_body(mesh, file);
+  write_volumes(mesh, file);
+  write_node_sets(mesh, marked, file);
+  write_groups(mesh, element, label, file);
   shb_arena_free(&arena);
-  SHB_CHECK(complete, SHB_ERR_IO, "out of memory for a mesh file");
-  return SHB_OK;
 }
 
 shb_status mesh_inp_write(const mesh_fe *mesh, const char *path) {
-  char *temporary = shb_publish_temporary(path);
-  SHB_CHECK(temporary, SHB_ERR_IO, "%s: no memory to write it", path);
-  FILE      *file   = fopen(temporary, "wb");
-  int        why    = errno;
-  shb_status status = SHB_OK;
+  char      *temporary = shb_publish_temporary(path);
+  FILE      *file      = fopen(temporary, "wb");
+  int        why       = errno;
+  shb_status status    = SHB_OK;
   if (file) {
-    status    = write_all(mesh, file);
+    write_all(mesh, file);
     bool good = !ferror(file);
     why       = errno;
     good      = fclose(file) == 0 && good;
-    if (status == SHB_OK && good) status = shb_publish(temporary, path);
+    if (good) status = shb_publish(temporary, path);
     if (!good) file = NULL;
   }
   if (!file)

@@ -7,6 +7,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "mesh/base/memory.h"
+
 /* Check the head: $MeshFormat, possibly after comments, then version 2.2 or 4.1. gmsh judges by the
  * first line, also where that is blank. */
 static shb_status check_head(FILE *file, const char *path) {
@@ -30,10 +32,10 @@ static shb_status check_head(FILE *file, const char *path) {
 static bool holds(FILE *file, const char *mark) {
   enum { BLOCK = 1 << 18 };
   size_t length = strlen(mark), kept = 0;
-  char  *buffer = malloc(BLOCK + 64);
+  char  *buffer = shb_alloc(BLOCK + 64, 1);
   bool   found  = false;
   rewind(file);
-  for (size_t n; buffer && !found && (n = fread(buffer + kept, 1, BLOCK, file)) > 0;) {
+  for (size_t n; !found && (n = fread(buffer + kept, 1, BLOCK, file)) > 0;) {
     n += kept;
     found = memmem(buffer, n, mark, length) != NULL;
     kept  = n < length ? n : length;

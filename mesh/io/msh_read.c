@@ -3,6 +3,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "mesh/base/memory.h"
 #include "mesh/core/faces.h"
 #include "mesh/core/regions.h"
 #include "mesh/core/tagged_nodes.h"
@@ -37,13 +38,12 @@ static bool find_kind(const mesh_msh_text *t, mesh_kind *kind) {
 
 /* The elements of the volumes, entity by entity.
  *   tag, node  out  malloc'ed */
-static bool join_volumes(const mesh_msh_text *t, size_t *n, size_t **tag, size_t **node) {
+static void join_volumes(const mesh_msh_text *t, size_t *n, size_t **tag, size_t **node) {
   size_t at = 0;
   *n        = 0;
   for (size_t b = 0; b < t->n_blocks; b++) *n += t->block[b].dim == 3 ? t->block[b].n : 0;
-  *tag  = malloc((*n + 1) * sizeof **tag);
-  *node = malloc((*n * MESH_NODES + 1) * sizeof **node);
-  if (!*tag || !*node) return false;
+  *tag  = shb_alloc(*n + 1, sizeof **tag);
+  *node = shb_alloc(*n * MESH_NODES + 1, sizeof **node);
   for (size_t b = 0; b < t->n_blocks; b++) {
     const mesh_msh_block *block = &t->block[b];
     const size_t          each  = mesh_msh_nodes_of(block->type);
@@ -52,16 +52,15 @@ static bool join_volumes(const mesh_msh_text *t, size_t *n, size_t **tag, size_t
     memcpy(*node + at * each, t->node + block->node, block->n * each * sizeof **node);
     at += block->n;
   }
-  return true;
 }
 
 static bool take_volumes(assembly *a) {
   size_t              *tag = NULL, *node = NULL;
-  mesh_tagged_elements all  = {0};
-  bool                 good = join_volumes(a->text, &all.n, &tag, &node);
-  all.tag                   = tag;
-  all.nodes                 = node;
-  good = good && mesh_tagged_take_volume(a->path, &all, &a->nodes, a->mesh) == SHB_OK;
+  mesh_tagged_elements all = {0};
+  join_volumes(a->text, &all.n, &tag, &node);
+  all.tag         = tag;
+  all.nodes       = node;
+  const bool good = mesh_tagged_take_volume(a->path, &all, &a->nodes, a->mesh) == SHB_OK;
   free(tag);
   free(node);
   return good;

@@ -6,6 +6,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "mesh/base/memory.h"
+
 /* gmsh's types that are read or passed over. */
 static const struct {
   int    type, dim;
@@ -93,29 +95,28 @@ static void expect_line(cursor *c, const char *word) {
 
 /* Room for count more items beside the n that are there. Doubles, so that a false count in the file
  * does not take memory. */
-static bool grow(void **list, size_t n, size_t count, size_t size) {
+static void grow(void **list, size_t n, size_t count, size_t size) {
   const size_t least = 64, all = n + count;
   size_t       room = least;
   while (room < n) room *= 2;
-  if (*list && all <= room) return true;
+  if (*list && all <= room) return;
   while (room < all) room *= 2;
-  void *more = realloc(*list, room * size);
-  if (more) *list = more;
-  return more != NULL;
+  *list = shb_realloc(*list, room, size);
 }
 
 static void add_member(cursor *c, mesh_msh_text *t, int dim, size_t entity, size_t group) {
-  c->good = c->good && t->n_members < MOST_MEMBERS &&
-            grow((void **)&t->member, t->n_members, 1, sizeof *t->member);
-  if (c->good) t->member[t->n_members++] = (mesh_msh_member){dim, entity, group};
+  c->good = c->good && t->n_members < MOST_MEMBERS;
+  if (!c->good) return;
+  grow((void **)&t->member, t->n_members, 1, sizeof *t->member);
+  t->member[t->n_members++] = (mesh_msh_member){dim, entity, group};
 }
 
 /* The block of an element; the last one goes on where it is of the same kind. */
 static mesh_msh_block *block_of(cursor *c, mesh_msh_text *t, int type, size_t entity) {
   mesh_msh_block *last = t->n_blocks ? &t->block[t->n_blocks - 1] : NULL;
   if (last && last->type == type && last->entity == entity) return last;
-  c->good = c->good && grow((void **)&t->block, t->n_blocks, 1, sizeof *t->block);
   if (!c->good) return NULL;
+  grow((void **)&t->block, t->n_blocks, 1, sizeof *t->block);
   t->block[t->n_blocks] =
       (mesh_msh_block){dim_of(type), type, entity, 0, t->n_tags, t->n_element_nodes};
   return &t->block[t->n_blocks++];
@@ -129,9 +130,9 @@ static void add_element(cursor *c, mesh_msh_text *t, int type, size_t entity, si
     return;
   }
   mesh_msh_block *block = block_of(c, t, type, entity);
-  c->good               = c->good && grow((void **)&t->tag, t->n_tags, 1, sizeof *t->tag) &&
-            grow((void **)&t->node, t->n_element_nodes, each, sizeof *t->node);
   if (!c->good) return;
+  grow((void **)&t->tag, t->n_tags, 1, sizeof *t->tag);
+  grow((void **)&t->node, t->n_element_nodes, each, sizeof *t->node);
   t->tag[t->n_tags++] = tag;
   for (size_t i = 0; i < each; i++) t->node[t->n_element_nodes++] = whole(c);
   block->n++;
@@ -139,9 +140,10 @@ static void add_element(cursor *c, mesh_msh_text *t, int type, size_t entity, si
 }
 
 static void add_node(cursor *c, mesh_msh_text *t, size_t tag) {
-  c->good = c->good && grow((void **)&t->node_tag, t->n_nodes, 1, sizeof *t->node_tag) &&
-            grow((void **)&t->xyz, 3 * t->n_nodes, 3, sizeof *t->xyz);
-  if (c->good) t->node_tag[t->n_nodes++] = tag;
+  if (!c->good) return;
+  grow((void **)&t->node_tag, t->n_nodes, 1, sizeof *t->node_tag);
+  grow((void **)&t->xyz, 3 * t->n_nodes, 3, sizeof *t->xyz);
+  t->node_tag[t->n_nodes++] = tag;
 }
 
 static void place_node(cursor *c, mesh_msh_text *t, size_t i) {
@@ -176,8 +178,9 @@ static void read_names(cursor *c, mesh_msh_text *t) {
     memcpy(name.text, c->at, length);
     c->at += length + 1;
     end_line(c);
-    c->good = c->good && grow((void **)&t->name, t->n_names, 1, sizeof name);
-    if (c->good) t->name[t->n_names++] = name;
+    if (!c->good) return;
+    grow((void **)&t->name, t->n_names, 1, sizeof name);
+    t->name[t->n_names++] = name;
   }
   expect_line(c, "$EndPhysicalNames");
 }
@@ -296,7 +299,7 @@ static void read_sections(cursor *c, mesh_msh_text *t) {
   }
 }
 
-/* The whole file, ended by a zero. NULL: unreadable, or no memory. */
+/* The whole file, ended by a zero. NULL: unreadable. */
 static char *read_file(const char *path) {
   FILE  *file = fopen(path, "rb");
   char  *text = NULL;
@@ -304,11 +307,8 @@ static char *read_file(const char *path) {
   bool   good = file != NULL;
   while (good) {
     const size_t block = 1 << 20;
-    char        *more  = realloc(text, n + block + 1);
-    good               = more != NULL;
-    if (!good) break;
-    text = more;
-    got  = fread(text + n, 1, block, file);
+    text               = shb_realloc(text, n + block + 1, 1);
+    got                = fread(text + n, 1, block, file);
     n += got;
     if (got < block) break;
   }

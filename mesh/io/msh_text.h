@@ -39,7 +39,7 @@ typedef struct {
   size_t           n_tags, n_element_nodes;
 } mesh_msh_text;
 
-/* Read a whole file. False where it holds anything that is not foreseen, or memory is short.
+/* Read a whole file. False where it holds anything that is not foreseen.
  *   out  free with mesh_msh_text_free, also then */
 bool mesh_msh_text_read(const char *path, mesh_msh_text *out);
 

@@ -74,9 +74,8 @@ static shb_status write_text(const mesh_fe *mesh, const char *temporary, const c
 }
 
 shb_status mesh_msh_write(const mesh_fe *mesh, const char *path, const shb_provenance *provenance) {
-  char *temporary = shb_publish_temporary(path);
-  SHB_CHECK(temporary, SHB_ERR_IO, "%s: no memory to write it", path);
-  shb_status status = write_text(mesh, temporary, path);
+  char      *temporary = shb_publish_temporary(path);
+  shb_status status    = write_text(mesh, temporary, path);
   if (status == SHB_OK) status = mesh_provenance_append(temporary, provenance);
   if (status == SHB_OK) status = shb_publish(temporary, path);
   if (status != SHB_OK) unlink(temporary);

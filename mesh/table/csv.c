@@ -3,6 +3,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "mesh/base/memory.h"
 #include "mesh/table/text_file.h"
 
 enum { MOST_MIB = 256 };
@@ -81,14 +82,10 @@ static char separator_of(const char *text) {
 
 /* ---- cells ---- */
 
-static bool grow(void **array, int n, int *room, size_t size) {
-  if (n < *room) return true;
-  int   more  = *room ? 2 * *room : 64;
-  void *grown = realloc(*array, (size_t)more * size);
-  if (!grown) return false;
-  *array = grown;
-  *room  = more;
-  return true;
+static void grow(void **array, int n, int *room, size_t size) {
+  if (n < *room) return;
+  *room  = *room ? 2 * *room : 64;
+  *array = shb_realloc(*array, (size_t)*room, size);
 }
 
 /* A quoted cell, moved to its first quote. At the end, at is behind the closed quote. */
@@ -114,8 +111,7 @@ static shb_status take_quoted(scanner *s, char **end) {
 
 static shb_status take_cell(scanner *s) {
   mesh_table *t = s->table;
-  SHB_CHECK(grow((void **)&t->cell, s->n_cells, &s->cell_room, sizeof *t->cell), SHB_ERR_IO,
-            "%s: out of memory", t->path);
+  grow((void **)&t->cell, s->n_cells, &s->cell_room, sizeof *t->cell);
   skip_blanks(s);
   mesh_cell *c = &t->cell[s->n_cells++];
   *c           = (mesh_cell){.text = s->at, .line = s->line, .column = s->column};
@@ -135,8 +131,7 @@ static shb_status take_row(scanner *s) {
   mesh_table *t     = s->table;
   const int   first = s->n_cells;
   bool        text  = false;
-  SHB_CHECK(grow((void **)&t->first, t->n_rows + 1, &s->row_room, sizeof *t->first), SHB_ERR_IO,
-            "%s: out of memory", t->path);
+  grow((void **)&t->first, t->n_rows + 1, &s->row_room, sizeof *t->first);
   skip_blanks(s);
   const bool comment = *s->at == '#';
   for (bool more = !comment; more;) {
@@ -158,8 +153,7 @@ static shb_status scan(scanner *s, bool blanks) {
   if (!take_sep(s)) t->separator = separator_of(s->at);
   if (!t->separator && blanks) t->separator = ' ';
   while (*s->at) SHB_TRY(take_row(s));
-  SHB_CHECK(grow((void **)&t->first, t->n_rows, &s->row_room, sizeof *t->first), SHB_ERR_IO,
-            "%s: out of memory", t->path);
+  grow((void **)&t->first, t->n_rows, &s->row_room, sizeof *t->first);
   t->first[t->n_rows] = s->n_cells;
   for (int i = 0; i < s->n_cells; i++) t->cell[i].text[t->cell[i].length] = '\0';
   return SHB_OK;

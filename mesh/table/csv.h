@@ -29,8 +29,8 @@ typedef struct {
 } mesh_table;
 
 /* Read a table; free it after success. blanks: blanks may separate.
- * Errors: SHB_ERR_IO unreadable, no memory; SHB_ERR_INPUT above 256 MiB, binary data, a quote that
- * is not closed, text behind a closed one. The message names line and column. */
+ * Errors: SHB_ERR_IO unreadable; SHB_ERR_INPUT above 256 MiB, binary data, a quote that is not
+ * closed, text behind a closed one. The message names line and column. */
 shb_status mesh_table_read(const char *path, bool blanks, mesh_table *table);
 void       mesh_table_free(mesh_table *table); /* also a zeroed one */
 

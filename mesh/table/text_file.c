@@ -7,15 +7,15 @@
 #include <string.h>
 #include <sys/stat.h>
 
+#include "mesh/base/memory.h"
+
 /* Reads all bytes, at most `most` + 1, and a NUL behind them. Returns 0, or an errno. Small files
  * take little memory: thousands are read in a study. */
 static int read_bytes(FILE *file, size_t most, char **bytes, size_t *n) {
   size_t room = 0;
   for (bool more = true; more;) {
-    room        = room ? 4 * room : 4096;
-    char *grown = realloc(*bytes, room);
-    if (!grown) return ENOMEM;
-    *bytes     = grown;
+    room       = room ? 4 * room : 4096;
+    *bytes     = shb_realloc(*bytes, room, 1);
     size_t end = room - 1 <= most ? room - 1 : most + 1;
     *n += fread(*bytes + *n, 1, end - *n, file);
     more = *n == end && *n <= most;

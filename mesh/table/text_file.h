@@ -14,8 +14,8 @@ shb_status mesh_file_kind(const char *path);
  *   most   in   size that it may have, MiB
  *   what   in   what such a file is, for messages: "a table is text"
  *
- * Errors: SHB_ERR_IO unreadable, with errno ENOMEM where memory was short; SHB_ERR_INPUT larger, or
- * with NUL bytes, as UTF-16 has. */
+ * Errors: SHB_ERR_IO unreadable, with its errno; SHB_ERR_INPUT larger, or with NUL bytes, as UTF-16
+ * has. */
 shb_status mesh_text_read(const char *path, size_t most, const char *what, char **text,
                           size_t *length);
 

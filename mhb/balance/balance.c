@@ -72,9 +72,9 @@ shb_status mhb_balance_product(const mhb_balance *b, mhb_receptance *receptance,
     stiffness[i]       = fmax(i % 3 ? law->ku[i % 3 == 2 ? 2 : 0] : law->kv, 1e-3 * top);
     if (!(stiffness[i] > 0)) stiffness[i] = 1;
   }
-  return mhb_receptance_product_create(receptance, first, m, stiffness,
-                                       SHB_TWO_PI * fmax(from, receptance->model->frequency[0]),
-                                       out);
+  *out = mhb_receptance_product_create(receptance, first, m, stiffness,
+                                       SHB_TWO_PI * fmax(from, receptance->model->frequency[0]));
+  return SHB_OK;
 }
 
 static shb_status create_product(mhb_balance *b) {

@@ -84,9 +84,9 @@ shb_status mhb_condensation_create_within(const mhb_balance *balance, int capaci
   else if (!allocate(s))
     status = shb_fail(SHB_ERR_IO, __FILE__, __LINE__, "out of memory for %d unknowns", balance->n);
   if (status == SHB_OK && balance->product)
-    status = mhb_woodbury_create(balance->product, balance->law,
-                                 SHB_TWO_PI * balance->settings->frequency[0],
-                                 SHB_TWO_PI * balance->settings->frequency[1], &s->low_rank);
+    s->low_rank = mhb_woodbury_create(balance->product, balance->law,
+                                      SHB_TWO_PI * balance->settings->frequency[0],
+                                      SHB_TWO_PI * balance->settings->frequency[1]);
   if (status != SHB_OK) {
     mhb_condensation_destroy(s);
     return status;

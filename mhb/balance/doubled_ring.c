@@ -30,7 +30,8 @@ shb_status mhb_doubled_ring_create(const mhb_balance *balance, const mhb_balance
   d->p              = shb_arena_take(&d->arena, (size_t)doubled->n, sizeof(double));
   d->force          = shb_arena_take(&d->arena, N * n, sizeof *d->force);
   d->motion         = shb_arena_take(&d->arena, N * n, sizeof *d->motion);
-  shb_status status = mhb_gmres_create(doubled->n, MOST_ITERATIONS, &d->gmres);
+  d->gmres          = mhb_gmres_create(doubled->n, MOST_ITERATIONS);
+  shb_status status = SHB_OK;
   if (status == SHB_OK && d->arena.failed)
     status = shb_fail(SHB_ERR_IO, __FILE__, __LINE__, "out of memory for %d harmonics", doubled->m);
   if (status != SHB_OK) {

@@ -23,8 +23,8 @@ shb_status mhb_ring_system_create(const mhb_balance *b, mhb_ring_system **out) {
   s->row            = shb_arena_take(&s->arena, all, sizeof(double complex));
   s->x              = shb_arena_take(&s->arena, all, sizeof(double complex));
   s->q              = shb_arena_take(&s->arena, all, sizeof(double complex));
-  shb_status status = mhb_block_cyclic_create(ring->blades, ring->n * b->nb, &s->blocks);
-  if (status == SHB_OK) status = mhb_ring_condensation_create(ring, b->m, &s->linear);
+  s->blocks         = mhb_block_cyclic_create(ring->blades, ring->n * b->nb);
+  shb_status status = mhb_ring_condensation_create(ring, b->m, &s->linear);
   if (status == SHB_OK && s->arena.failed)
     status = shb_fail(SHB_ERR_IO, __FILE__, __LINE__, "out of memory");
   if (status != SHB_OK) {

@@ -33,8 +33,9 @@ static shb_status create_pairs(mhb_truncation_step *t) {
     return mhb_condensation_create(b, &t->system);
   }
   t->form = shb_arena_take(&t->arena, (size_t)b->n_pairs, sizeof *t->form);
-  return mhb_woodbury_create(b->product, b->law, SHB_TWO_PI * between[0], SHB_TWO_PI * between[1],
-                             &t->jacobian);
+  t->jacobian =
+      mhb_woodbury_create(b->product, b->law, SHB_TWO_PI * between[0], SHB_TWO_PI * between[1]);
+  return SHB_OK;
 }
 
 shb_status mhb_truncation_step_create(const mhb_balance *b, mhb_balance *doubled,

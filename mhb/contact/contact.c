@@ -15,24 +15,24 @@ static void take_arrays(mhb_contact_evaluator *c) {
   size_t     nb = (size_t)c->nb, nf = (size_t)c->nf, stride = (size_t)c->stride;
   size_t     sums = (size_t)mhb_real_size(c->H + c->m), real = sizeof(double);
   shb_arena *a       = &c->arena;
-  c->coefficients    = shb_arena_take(a, 3 * nb, real);
-  c->slip_sums       = shb_arena_take(a, 4 * nf, sizeof(mhb_lanes));
-  c->load_sums       = shb_arena_take(a, 2 * sums, sizeof(mhb_lanes));
-  c->f               = shb_arena_take(a, 2 * nf, real);
-  c->f_slider        = shb_arena_take(a, 2 * nf, real);
-  c->first_stick     = shb_arena_take(a, sums, real);
-  c->stick_integrals = shb_arena_take(a, sums, real);
-  c->basis_integrals = shb_arena_take(a, sums, real);
-  c->basis_products  = shb_arena_take(a, nf * nb, real);
-  c->J               = shb_arena_take(a, 2 * nf * stride, real);
-  c->Z[0]            = shb_arena_take(a, stride, real);
-  c->Z[1]            = shb_arena_take(a, stride, real);
-  c->T               = shb_arena_take(a, stride, real);
-  c->rhs             = shb_arena_take(a, MHB_NODES * (stride + MHB_LANES), real);
-  c->T_nodes         = shb_arena_take(a, MHB_NODES * stride, real);
-  c->node_basis      = shb_arena_take(a, sums + 2 * nf + MHB_LANES, sizeof(mhb_lanes));
-  c->event_basis     = shb_arena_take(a, 2 * nb, real);
-  c->history_force   = shb_arena_take(a, 3 * nf, real);
+  c->coefficients    = shb_arena_try(a, 3 * nb, real);
+  c->slip_sums       = shb_arena_try(a, 4 * nf, sizeof(mhb_lanes));
+  c->load_sums       = shb_arena_try(a, 2 * sums, sizeof(mhb_lanes));
+  c->f               = shb_arena_try(a, 2 * nf, real);
+  c->f_slider        = shb_arena_try(a, 2 * nf, real);
+  c->first_stick     = shb_arena_try(a, sums, real);
+  c->stick_integrals = shb_arena_try(a, sums, real);
+  c->basis_integrals = shb_arena_try(a, sums, real);
+  c->basis_products  = shb_arena_try(a, nf * nb, real);
+  c->J               = shb_arena_try(a, 2 * nf * stride, real);
+  c->Z[0]            = shb_arena_try(a, stride, real);
+  c->Z[1]            = shb_arena_try(a, stride, real);
+  c->T               = shb_arena_try(a, stride, real);
+  c->rhs             = shb_arena_try(a, MHB_NODES * (stride + MHB_LANES), real);
+  c->T_nodes         = shb_arena_try(a, MHB_NODES * stride, real);
+  c->node_basis      = shb_arena_try(a, sums + 2 * nf + MHB_LANES, sizeof(mhb_lanes));
+  c->event_basis     = shb_arena_try(a, 2 * nb, real);
+  c->history_force   = shb_arena_try(a, 3 * nf, real);
 }
 
 void mhb_contact_evaluator_set_tolerance(mhb_contact_evaluator *c, double tolerance) {

@@ -7,6 +7,7 @@
 #include <string.h>
 
 #include "mesh/base/constants.h"
+#include "mesh/base/memory.h"
 #include "mhb/numerics/blas_room.h"
 #include "mhb/numerics/random.h"
 
@@ -77,12 +78,12 @@ static int find_block(leading *e, const double *F, double bound) {
   size_t n = (size_t)e->n, q = (size_t)e->block;
   free(e->vector);
   free(e->value);
-  e->vector     = calloc(n * q, sizeof(double));
-  e->value      = calloc(q, sizeof(double));
-  double *half  = calloc(n * q, sizeof(double));
-  double *image = calloc(n * q, sizeof(double));
-  double *small = calloc(q * q, sizeof(double));
-  int     ok = e->vector && e->value && half && image && small && iterate(e, F, half, image, small);
+  e->vector     = shb_alloc_zeroed(n * q, sizeof(double));
+  e->value      = shb_alloc_zeroed(q, sizeof(double));
+  double *half  = shb_alloc_zeroed(n * q, sizeof(double));
+  double *image = shb_alloc_zeroed(n * q, sizeof(double));
+  double *small = shb_alloc_zeroed(q * q, sizeof(double));
+  int     ok    = iterate(e, F, half, image, small);
   free(half);
   free(image);
   free(small);
@@ -208,16 +209,15 @@ static void candidates_free(candidates *c) {
   free(c->work);
 }
 
-static int candidates_allocate(candidates *c, const mhb_receptance *r, int blocks) {
+static void candidates_allocate(candidates *c, const mhb_receptance *r, int blocks) {
   size_t q = (size_t)c->columns, poles = (size_t)n_poles(r) + q;
-  c->C      = calloc((size_t)r->n * q + MHB_BLAS_ROOM, sizeof *c->C);
-  c->square = calloc(q * q + MHB_BLAS_ROOM, sizeof *c->square);
-  c->G      = calloc(q * poles, sizeof *c->G);
-  c->H      = calloc(q * q * 2 * (size_t)blocks + MHB_BLAS_ROOM, sizeof *c->H);
-  c->left   = calloc(q * q, sizeof *c->left);
-  c->value  = calloc(q, sizeof *c->value);
-  c->work   = calloc(q * poles, sizeof *c->work);
-  return c->C && c->square && c->G && c->H && c->left && c->value && c->work;
+  c->C      = shb_alloc_zeroed((size_t)r->n * q + MHB_BLAS_ROOM, sizeof *c->C);
+  c->square = shb_alloc_zeroed(q * q + MHB_BLAS_ROOM, sizeof *c->square);
+  c->G      = shb_alloc_zeroed(q * poles, sizeof *c->G);
+  c->H      = shb_alloc_zeroed(q * q * 2 * (size_t)blocks + MHB_BLAS_ROOM, sizeof *c->H);
+  c->left   = shb_alloc_zeroed(q * q, sizeof *c->left);
+  c->value  = shb_alloc_zeroed(q, sizeof *c->value);
+  c->work   = shb_alloc_zeroed(q * poles, sizeof *c->work);
 }
 
 /* C and G and H of a harmonic; right singular vectors of H to `left`, values to `value`. */
@@ -225,8 +225,7 @@ static int decompose(mhb_contact_basis *b, int k, const leading *e, const double
                      candidates *c) {
   const mhb_receptance *r = b->receptance;
   int                   n = b->n, q = c->columns, poles = n_poles(r);
-  double complex       *QE = calloc((size_t)q * (size_t)(e->count + 1), sizeof *QE);
-  if (!QE) return 0;
+  double complex       *QE = shb_alloc_zeroed((size_t)q * (size_t)(e->count + 1), sizeof *QE);
   for (int i = 0; i < n; i++)
     for (int j = 0; j < q; j++)
       c->C[i * q + j] =
@@ -250,10 +249,9 @@ static int decompose(mhb_contact_basis *b, int k, const leading *e, const double
 }
 
 /* Real form of the columns D^-1/2 Q left. */
-static int take_columns(mhb_contact_basis *b, int k, const leading *e, const candidates *c) {
+static void take_columns(mhb_contact_basis *b, int k, const leading *e, const candidates *c) {
   int n = b->n, q = c->kept, rank = b->rank[k], parts = mhb_basis_parts(k), wide = parts * rank;
   b->X[k] = shb_arena_take(&b->arena, (size_t)n * (size_t)(parts * wide), sizeof(double));
-  if (!b->X[k]) return 0;
   for (int i = 0; i < n; i++)
     for (int j = 0; j < rank; j++) {
       double complex x = 0;
@@ -266,7 +264,6 @@ static int take_columns(mhb_contact_basis *b, int k, const leading *e, const can
       to[wide + j]        = cimag(x);
       to[wide + rank + j] = creal(x);
     }
-  return 1;
 }
 
 static int make_harmonic(mhb_contact_basis *b, int k, const leading *e, double low, double high) {
@@ -274,9 +271,11 @@ static int make_harmonic(mhb_contact_basis *b, int k, const leading *e, double l
   double                w[FREQUENCIES + r->n_modes];
   candidates            c     = {.columns = n_poles(r) + e->count};
   int                   count = list_frequencies(r, k, low, high, w);
-  int ok = c.columns > 0 && candidates_allocate(&c, r, count) && decompose(b, k, e, w, count, &c);
+  if (c.columns == 0) return 0;
+  candidates_allocate(&c, r, count);
+  const int ok = decompose(b, k, e, w, count, &c);
   while (ok && b->rank[k] < c.kept && c.value[b->rank[k]] > b->bound) b->rank[k]++;
-  ok = ok && take_columns(b, k, e, &c);
+  if (ok) take_columns(b, k, e, &c);
   candidates_free(&c);
   return ok;
 }
@@ -325,19 +324,18 @@ static void project(const mhb_contact_basis *b, int rank, projected_matrix of, c
 }
 
 /* out[rank][rank] <- X^H D A D X for a complex A; the columns of D X as two real ones. */
-static int project_wave(const mhb_contact_basis *b, int rank, const double complex *A,
-                        const double *re, const double *im, double complex *out) {
-  const int       n    = b->n;
-  const size_t    all  = (size_t)n * (size_t)rank;
-  double complex *room = calloc(2 * all + MHB_BLAS_ROOM, sizeof *room), *image = room + all;
-  if (!room) return 0;
+static void project_wave(const mhb_contact_basis *b, int rank, const double complex *A,
+                         const double *re, const double *im, double complex *out) {
+  const int       n     = b->n;
+  const size_t    all   = (size_t)n * (size_t)rank;
+  double complex *room  = shb_alloc_zeroed(2 * all + MHB_BLAS_ROOM, sizeof *room),
+                 *image = room + all;
   for (size_t i = 0; i < all; i++) room[i] = CMPLX(re[i], im[i]);
   cblas_zgemm(CblasRowMajor, CblasNoTrans, CblasNoTrans, n, rank, n, &ONE, A, n, room, rank, &ZERO,
               image, rank);
   cblas_zgemm(CblasRowMajor, CblasConjTrans, CblasNoTrans, rank, rank, n, &ONE, room, rank, image,
               rank, &ZERO, out, rank);
   free(room);
-  return 1;
 }
 
 /* self, C + C^T and C - C^T of each residual term. */
@@ -348,35 +346,29 @@ static projected_matrix matrix_of(const mhb_receptance *r, int i) {
                : (projected_matrix){f->self, 0};
 }
 
-static int make_projections(mhb_contact_basis *b, int k) {
+static void make_projections(mhb_contact_basis *b, int k) {
   const mhb_receptance *r = b->receptance;
   int                   n = b->n, rank = b->rank[k], poles = n_poles(r), parts = mhb_basis_parts(k);
   size_t                square = (size_t)rank * (size_t)rank, all = (size_t)n * (size_t)rank;
-  double               *room = calloc(4 * all + 1, sizeof(double));
+  double               *room = shb_alloc_zeroed(4 * all + 1, sizeof(double));
   b->projected[k] = shb_arena_take(&b->arena, MHB_PROJECTIONS * square, sizeof(double complex));
   b->pole[k]      = shb_arena_take(&b->arena, (size_t)rank * (size_t)poles, sizeof(double complex));
   b->K[k]         = shb_arena_take(&b->arena, square * (size_t)(parts * parts), sizeof(double));
-  if (!room || b->arena.failed) {
-    free(room);
-    return 0;
-  }
   double *re = room, *im = re + all, *image = im + all;
   set_weighted(b, k, re, im);
   for (int i = 0; i < MHB_PROJECTIONS && rank > 0; i++)
     if (matrix_of(r, i).A)
       project(b, rank, matrix_of(r, i), re, im, image, b->projected[k] + (size_t)i * square);
-  int ok = 1;
   for (int t = 0; t < MODAL_TERMS && rank > 0; t++)
     if (r->residual_terms->own[t])
-      ok &= project_wave(b, rank, r->residual_terms->own[t] + (size_t)k * (size_t)n * (size_t)n, re,
-                         im, b->projected[k] + (size_t)(3 * t) * square);
+      project_wave(b, rank, r->residual_terms->own[t] + (size_t)k * (size_t)n * (size_t)n, re, im,
+                   b->projected[k] + (size_t)(3 * t) * square);
   for (int i = 0; i < n; i++)
     for (int a = 0; a < rank; a++) {
       double complex x = CMPLX(re[i * rank + a], -im[i * rank + a]);
       for (int j = 0; j < poles; j++) b->pole[k][a * poles + j] += x * shape(r, k, i, j);
     }
   free(room);
-  return ok;
 }
 
 /* ---- life cycle ---- */
@@ -393,35 +385,30 @@ static int make_all(mhb_contact_basis *b, leading *e, const double *own, double 
       b->size += mhb_basis_parts(k) * b->rank[k];
     }
     if (ok && b->size <= most) break;
-    if (b->arena.failed || 2 * b->bound > LAST_BOUND) return 0;
+    if (2 * b->bound > LAST_BOUND) return 0;
   }
-  for (int k = 0; k <= b->m; k++)
-    if (!make_projections(b, k)) return 0;
+  for (int k = 0; k <= b->m; k++) make_projections(b, k);
   return 1;
 }
 
 shb_status mhb_contact_basis_create(const mhb_receptance_product *product, int m,
                                     const double *stiffness, double low, double high, int most,
                                     mhb_contact_basis **out) {
-  const mhb_receptance *r  = product->receptance;
-  mhb_contact_basis    *b  = calloc(1, sizeof *b);
-  leading               e  = {.n = r->n, .root = calloc((size_t)r->n, sizeof(double))};
-  size_t                K  = (size_t)m + 1;
-  int                   ok = b && e.root;
-  if (ok) {
-    *b           = (mhb_contact_basis){.receptance = r, .n = r->n, .m = m, .omega = NAN};
-    b->rank      = shb_arena_take(&b->arena, K, sizeof *b->rank);
-    b->first     = shb_arena_take(&b->arena, K, sizeof *b->first);
-    b->X         = shb_arena_take(&b->arena, K, sizeof *b->X);
-    b->K         = shb_arena_take(&b->arena, K, sizeof *b->K);
-    b->projected = shb_arena_take(&b->arena, K, sizeof *b->projected);
-    b->pole      = shb_arena_take(&b->arena, K, sizeof *b->pole);
-    b->stiffness = shb_arena_take(&b->arena, (size_t)r->n, sizeof(double));
-    ok           = !b->arena.failed;
-  }
-  if (ok) memcpy(b->stiffness, stiffness, sizeof(double) * (size_t)r->n);
-  for (int i = 0; ok && i < r->n; i++) e.root[i] = sqrt(stiffness[i]);
-  ok = ok && make_all(b, &e, product->own[0], low, high, most);
+  const mhb_receptance *r = product->receptance;
+  mhb_contact_basis    *b = shb_alloc_zeroed(1, sizeof *b);
+  leading               e = {.n = r->n, .root = shb_alloc_zeroed((size_t)r->n, sizeof(double))};
+  size_t                K = (size_t)m + 1;
+  *b                      = (mhb_contact_basis){.receptance = r, .n = r->n, .m = m, .omega = NAN};
+  b->rank                 = shb_arena_take(&b->arena, K, sizeof *b->rank);
+  b->first                = shb_arena_take(&b->arena, K, sizeof *b->first);
+  b->X                    = shb_arena_take(&b->arena, K, sizeof *b->X);
+  b->K                    = shb_arena_take(&b->arena, K, sizeof *b->K);
+  b->projected            = shb_arena_take(&b->arena, K, sizeof *b->projected);
+  b->pole                 = shb_arena_take(&b->arena, K, sizeof *b->pole);
+  b->stiffness            = shb_arena_take(&b->arena, (size_t)r->n, sizeof(double));
+  memcpy(b->stiffness, stiffness, sizeof(double) * (size_t)r->n);
+  for (int i = 0; i < r->n; i++) e.root[i] = sqrt(stiffness[i]);
+  const int ok = make_all(b, &e, product->own[0], low, high, most);
   leading_free(&e);
   if (!ok) {
     mhb_contact_basis_destroy(b);

@@ -42,7 +42,7 @@ static inline int mhb_basis_parts(int k) {
 /* On the receptance of a product, for excitation frequencies low..high rad/s. The bound is raised
  * from 0.05, up to 0.8, until size is at most `most`.
  *   stiffness  in  [n] D, N/m, > 0
- * SHB_ERR_IO: no memory; SHB_NOT_CONVERGED: no eigenvalues. */
+ * SHB_NOT_CONVERGED: no eigenvalues. */
 shb_status mhb_contact_basis_create(const mhb_receptance_product *product, int m,
                                     const double *stiffness, double low, double high, int most,
                                     mhb_contact_basis **out);

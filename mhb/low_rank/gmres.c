@@ -8,14 +8,15 @@
 #include <stdlib.h>
 #include <string.h>
 
-shb_status mhb_gmres_create(int n, int most, mhb_gmres **out) {
-  mhb_gmres *g = calloc(1, sizeof *g);
-  SHB_CHECK(g, SHB_ERR_IO, "out of memory");
-  size_t rows = (size_t)n, many = (size_t)most;
+#include "mesh/base/memory.h"
+
+mhb_gmres *mhb_gmres_create(int n, int most) {
+  mhb_gmres *g    = shb_alloc_zeroed(1, sizeof *g);
+  size_t     rows = (size_t)n, many = (size_t)most;
   g->n       = n;
   g->most    = most;
-  g->V       = malloc((many + 1) * rows * sizeof(double));
-  g->Z       = malloc(many * rows * sizeof(double));
+  g->V       = shb_alloc((many + 1) * rows, sizeof(double));
+  g->Z       = shb_alloc(many * rows, sizeof(double));
   g->H       = shb_arena_take(&g->arena, many * (many + 1), sizeof(double));
   g->R       = shb_arena_take(&g->arena, many * (many + 1), sizeof(double));
   g->g       = shb_arena_take(&g->arena, many + 1, sizeof(double));
@@ -25,12 +26,7 @@ shb_status mhb_gmres_create(int n, int most, mhb_gmres **out) {
   g->project = shb_arena_take(&g->arena, many + 1, sizeof(double));
   g->wr      = shb_arena_take(&g->arena, many, sizeof(double));
   g->wi      = shb_arena_take(&g->arena, many, sizeof(double));
-  if (g->arena.failed || !g->V || !g->Z) {
-    mhb_gmres_destroy(g);
-    SHB_FAIL(SHB_ERR_IO, "out of memory for %d unknowns", n);
-  }
-  *out = g;
-  return SHB_OK;
+  return g;
 }
 
 void mhb_gmres_destroy(mhb_gmres *g) {

@@ -24,8 +24,7 @@ typedef struct {
   shb_arena arena;
 } mhb_gmres;
 
-/* SHB_ERR_IO: no memory. */
-shb_status mhb_gmres_create(int n, int most, mhb_gmres **out);
+mhb_gmres *mhb_gmres_create(int n, int most);
 void       mhb_gmres_destroy(mhb_gmres *gmres);
 
 /* x[size] <- solution to |A x - b| <= tolerance |b|, size <= n. 0: not reached; x is the best

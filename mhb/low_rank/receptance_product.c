@@ -7,6 +7,7 @@
 #include <string.h>
 
 #include "mesh/base/constants.h"
+#include "mesh/base/memory.h"
 #include "mhb/low_rank/smooth_span.h"
 #include "mhb/numerics/blas_room.h"
 #include "mhb/numerics/thin_product.h"
@@ -78,7 +79,7 @@ static const double complex *wave_term(const mhb_receptance_product *p, int t, i
 static void take_mean(mhb_receptance_product *p, int t) {
   const size_t square = (size_t)p->n * (size_t)p->n;
   double      *mean   = shb_arena_take(&p->arena, square, sizeof(double));
-  for (int k = p->first; k <= p->m && mean; k++)
+  for (int k = p->first; k <= p->m; k++)
     for (size_t i = 0; i < square; i++)
       mean[i] += creal(wave_term(p, t, k)[i]) / (p->m - p->first + 1);
   p->own[t] = mean;
@@ -100,7 +101,7 @@ static void take_waves(mhb_receptance_product *p, int t, const mhb_smooth_span *
                        const double *part) {
   const size_t square = (size_t)p->n * (size_t)p->n, s = (size_t)p->n_smooth, K = (size_t)p->m + 1;
   p->wave[t] = shb_arena_take(&p->arena, K * s * s, sizeof(double complex));
-  for (int k = p->first; k <= p->m && p->wave[t]; k++) {
+  for (int k = p->first; k <= p->m; k++) {
     const size_t  at = 2 * ((size_t)t * K + (size_t)k);
     const double *re = span->U ? span->C[at] : part + at * square;
     const double *im = span->U ? span->C[at + 1] : re + square;
@@ -108,35 +109,30 @@ static void take_waves(mhb_receptance_product *p, int t, const mhb_smooth_span *
   }
 }
 
-static shb_status find_waves(mhb_receptance_product *p, const double *root, double top) {
+static void find_waves(mhb_receptance_product *p, const double *root, double top) {
   double complex *const *own    = p->receptance->residual_terms->own;
   const size_t           square = (size_t)p->n * (size_t)p->n, K = (size_t)p->m + 1;
   const int              n_sources = MODAL_TERMS * 2 * (p->m + 1);
-  mhb_smooth_source     *source    = calloc((size_t)n_sources, sizeof *source);
-  double                *part      = calloc((size_t)n_sources * square, sizeof *part);
+  mhb_smooth_source     *source    = shb_alloc_zeroed((size_t)n_sources, sizeof *source);
+  double                *part      = shb_alloc_zeroed((size_t)n_sources * square, sizeof *part);
   mhb_smooth_span        span      = {0};
-  for (int t = 0; t < 2 && part; t++)
+  for (int t = 0; t < 2; t++)
     if (own[t]) take_mean(p, t);
-  for (int t = 0; t < MODAL_TERMS && part && source && !p->arena.failed; t++)
+  for (int t = 0; t < MODAL_TERMS; t++)
     for (int k = p->first; k <= p->m && own[t]; k++) {
       const size_t at = 2 * ((size_t)t * K + (size_t)k);
       split_wave(p, t, k, part + at * square);
       source[at]     = (mhb_smooth_source){part + at * square, weight_at(p, t, top), 0};
       source[at + 1] = (mhb_smooth_source){part + (at + 1) * square, source[at].weight, 0};
     }
-  const int ok = part && source && !p->arena.failed;
-  if (ok) {
-    mhb_smooth_span_find(p->n, root, n_sources, source, &p->arena, &span);
-    p->U        = span.U;
-    p->size     = span.size;
-    p->n_smooth = span.U ? span.rank : p->n;
-    for (int t = 0; t < MODAL_TERMS; t++)
-      if (own[t]) take_waves(p, t, &span, part);
-  }
+  mhb_smooth_span_find(p->n, root, n_sources, source, &p->arena, &span);
+  p->U        = span.U;
+  p->size     = span.size;
+  p->n_smooth = span.U ? span.rank : p->n;
+  for (int t = 0; t < MODAL_TERMS; t++)
+    if (own[t]) take_waves(p, t, &span, part);
   free(source);
   free(part);
-  SHB_CHECK(ok, SHB_ERR_IO, "out of memory for the receptance of %d pairs", p->n / 3);
-  return SHB_OK;
 }
 
 /* ---- life cycle ---- */
@@ -157,7 +153,7 @@ static void take_own(mhb_receptance_product *p, int t, const double *stiffness) 
     return;
   }
   float *coarse = shb_arena_take(&p->arena, n * n, sizeof(float));
-  for (size_t i = 0; coarse && i < n * n; i++) coarse[i] = (float)p->own[t][i];
+  for (size_t i = 0; i < n * n; i++) coarse[i] = (float)p->own[t][i];
   p->coarse[t] = coarse;
 }
 
@@ -186,40 +182,28 @@ static void take_arrays(mhb_receptance_product *p) {
       shb_arena_take(&p->arena, (size_t)p->n_poles + MHB_BLAS_ROOM, sizeof(double complex));
 }
 
-shb_status mhb_receptance_product_create(mhb_receptance *r, int first, int m,
-                                         const double *stiffness, double top,
-                                         mhb_receptance_product **out) {
-  mhb_receptance_product *p = calloc(1, sizeof *p);
-  SHB_CHECK(p, SHB_ERR_IO, "out of memory");
-  p->receptance = r;
-  p->n          = r->n;
-  p->first      = first;
-  p->m          = m;
-  p->nb         = first ? 2 * (m - first + 1) : 2 * m + 1;
-  p->n_weights  = m + 1;
-  p->n_poles    = r->n_modes + r->residual_terms->r;
-  p->omega      = NAN;
-  double     root[r->n];
-  shb_status status = SHB_OK;
+mhb_receptance_product *mhb_receptance_product_create(mhb_receptance *r, int first, int m,
+                                                      const double *stiffness, double top) {
+  mhb_receptance_product *p = shb_alloc_zeroed(1, sizeof *p);
+  p->receptance             = r;
+  p->n                      = r->n;
+  p->first                  = first;
+  p->m                      = m;
+  p->nb                     = first ? 2 * (m - first + 1) : 2 * m + 1;
+  p->n_weights              = m + 1;
+  p->n_poles                = r->n_modes + r->residual_terms->r;
+  p->omega                  = NAN;
+  double root[r->n];
   for (int i = 0; i < r->n; i++) root[i] = sqrt(stiffness[i]);
   for (int t = 0; t < 2; t++)
     if (r->residual_terms->contact[t]) p->own[t] = r->residual_terms->contact[t]->self;
   if (r->residual_terms->own[0])
-    status = find_waves(p, root, m * top / r->nu);
+    find_waves(p, root, m * top / r->nu);
   else
     find_smooth(p, root, m * top / r->nu);
   for (int t = 0; t < 2; t++) take_own(p, t, stiffness);
   take_arrays(p);
-  if (status != SHB_OK) {
-    mhb_receptance_product_destroy(p);
-    return status;
-  }
-  if (p->arena.failed) {
-    mhb_receptance_product_destroy(p);
-    SHB_FAIL(SHB_ERR_IO, "out of memory for the receptance of %d pairs", r->n / 3);
-  }
-  *out = p;
-  return SHB_OK;
+  return p;
 }
 
 void mhb_receptance_product_destroy(mhb_receptance_product *p) {

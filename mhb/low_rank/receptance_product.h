@@ -56,12 +56,10 @@ typedef struct {
 
 /* Harmonics first..m of the receptance, which must outlive it and keep its model.
  *   stiffness  in  [n] size of the contact stiffness of each axis, N/m, > 0
- *   top        in  rad/s, highest excitation frequency
- * SHB_ERR_IO: no memory. */
-shb_status mhb_receptance_product_create(mhb_receptance *receptance, int first, int m,
-                                         const double *stiffness, double top,
-                                         mhb_receptance_product **out);
-void       mhb_receptance_product_destroy(mhb_receptance_product *product);
+ *   top        in  rad/s, highest excitation frequency */
+mhb_receptance_product *mhb_receptance_product_create(mhb_receptance *receptance, int first, int m,
+                                                      const double *stiffness, double top);
+void                    mhb_receptance_product_destroy(mhb_receptance_product *product);
 
 /* Go to the receptance's frequency. */
 void mhb_receptance_product_update(mhb_receptance_product *product);

@@ -6,6 +6,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "mesh/base/memory.h"
 #include "mhb/numerics/random.h"
 
 /* Singular values below it are left out, in the norm of the contact stiffness, where I is 1. */
@@ -54,17 +55,16 @@ static void sketch_free(sketch *s) {
   free(s->work);
 }
 
-static int sketch_allocate(sketch *s) {
+static void sketch_allocate(sketch *s) {
   size_t q = (size_t)s->columns, rows = (size_t)s->n, sources = (size_t)s->n_sources;
-  s->Q        = calloc(rows * q, sizeof(double));
-  s->random   = calloc(rows * q, sizeof(double));
-  s->image    = calloc(rows * q, sizeof(double));
-  s->half     = calloc(rows * q, sizeof(double));
-  s->small    = calloc(q * q * sources, sizeof(double));
-  s->singular = calloc(q, sizeof(double));
-  s->left     = calloc(q * q, sizeof(double));
-  s->work     = calloc(q * q * sources, sizeof(double));
-  return s->Q && s->random && s->image && s->half && s->small && s->singular && s->left && s->work;
+  s->Q        = shb_alloc_zeroed(rows * q, sizeof(double));
+  s->random   = shb_alloc_zeroed(rows * q, sizeof(double));
+  s->image    = shb_alloc_zeroed(rows * q, sizeof(double));
+  s->half     = shb_alloc_zeroed(rows * q, sizeof(double));
+  s->small    = shb_alloc_zeroed(q * q * sources, sizeof(double));
+  s->singular = shb_alloc_zeroed(q, sizeof(double));
+  s->left     = shb_alloc_zeroed(q * q, sizeof(double));
+  s->work     = shb_alloc_zeroed(q * q * sources, sizeof(double));
 }
 
 /* Q <- orthonormal basis of the image of all sources. */
@@ -137,7 +137,6 @@ static void take(const sketch *s, int rank, shb_arena *arena, mhb_smooth_span *s
   double *U    = shb_arena_take(arena, (size_t)n * (size_t)rank, sizeof(double));
   span->size   = shb_arena_take(arena, (size_t)rank, sizeof(double));
   span->C      = shb_arena_take(arena, (size_t)s->n_sources, sizeof *span->C);
-  if (!U || !span->size || !span->C) return;
   memcpy(span->size, s->singular, sizeof(double) * (size_t)rank);
   cblas_dgemm(CblasRowMajor, CblasNoTrans, CblasNoTrans, n, rank, q, 1, s->Q, q, s->left, q, 0, U,
               rank);
@@ -145,7 +144,6 @@ static void take(const sketch *s, int rank, shb_arena *arena, mhb_smooth_span *s
   for (int t = 0; t < s->n_sources; t++) {
     if (!s->source[t].A) continue;
     double *to = shb_arena_take(arena, (size_t)rank * (size_t)rank, sizeof(double));
-    if (!to) return;
     cblas_dgemm(CblasRowMajor, CblasTrans, CblasNoTrans, rank, q, q, 1 / s->source[t].weight,
                 s->left, q, s->small + t * q, wide, 0, half, q);
     cblas_dgemm(CblasRowMajor, CblasNoTrans, CblasNoTrans, rank, rank, q, 1, half, q, s->left, q, 0,
@@ -163,7 +161,8 @@ static int saves(const sketch *s, int rank) {
 
 /* One sketch. 1: the space is found; 0: more columns are needed; -1: failed. */
 static int try_sketch(sketch *s, shb_arena *arena, mhb_smooth_span *span) {
-  if (!sketch_allocate(s) || !find_range(s) || !reduce(s)) return -1;
+  sketch_allocate(s);
+  if (!find_range(s) || !reduce(s)) return -1;
   int rank = 0;
   while (rank < s->columns && s->singular[rank] > NEGLIGIBLE) rank++;
   if (rank > s->columns - 16 && s->columns < s->n) return 0;

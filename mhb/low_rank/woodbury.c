@@ -6,6 +6,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "mesh/base/memory.h"
 #include "mhb/numerics/simd.h"
 
 /* The basis holds for contact stiffnesses up to this factor from its own. */
@@ -44,8 +45,8 @@ static int stiffness_holds(const mhb_woodbury *w, const mhb_law *law) {
 }
 
 /* Arrays for a basis of this size. */
-static int make_room(mhb_woodbury *w, int size) {
-  if (size <= w->room) return 1;
+static void make_room(mhb_woodbury *w, int size) {
+  if (size <= w->room) return;
   size_t     r = (size_t)size;
   shb_arena *a = &w->of_basis;
   shb_arena_free(a);
@@ -57,8 +58,7 @@ static int make_room(mhb_woodbury *w, int size) {
   w->Ky    = shb_arena_take(a, r, sizeof(double));
   w->small = shb_arena_take(a, r, sizeof(double));
   w->rows  = shb_arena_take(a, (size_t)(PAIRS_AT_ONCE * 3 * w->nb) * r, sizeof(double));
-  w->room  = a->failed ? 0 : size;
-  return !a->failed;
+  w->room  = size;
 }
 
 /* Another basis for the present stiffness. 0: there is no small one. */
@@ -69,40 +69,33 @@ static int renew(mhb_woodbury *w, const mhb_law *law) {
   int most   = w->n / 3 < MOST_COEFFICIENTS ? w->n / 3 : MOST_COEFFICIENTS;
   w->without = mhb_contact_basis_create(w->product, w->m, w->stiffness, w->low, w->high, most,
                                         &w->basis) != SHB_OK;
-  if (!w->without && !make_room(w, w->basis->size + 1)) w->without = 1;
+  if (!w->without) make_room(w, w->basis->size + 1);
   return !w->without;
 }
 
-shb_status mhb_woodbury_create(mhb_receptance_product *product, const mhb_law *law, double low,
-                               double high, mhb_woodbury **out) {
-  mhb_woodbury *w = calloc(1, sizeof *w);
-  SHB_CHECK(w, SHB_ERR_IO, "out of memory");
-  w->product   = product;
-  w->n3        = product->n;
-  w->n_pairs   = product->n / 3;
-  w->m         = product->m;
-  w->nb        = product->nb;
-  w->n         = w->n3 * w->nb;
-  w->low       = low;
-  w->high      = high;
-  w->stiffness = shb_arena_take(&w->arena, (size_t)w->n3, sizeof(double));
-  w->force     = shb_arena_take(&w->arena, (size_t)w->n, sizeof(double));
-  w->part      = shb_arena_take(&w->arena, 2 * (size_t)w->n3, sizeof(double));
-  w->solution  = shb_arena_take(&w->arena, (size_t)w->n + 1, sizeof(double));
+mhb_woodbury *mhb_woodbury_create(mhb_receptance_product *product, const mhb_law *law, double low,
+                                  double high) {
+  mhb_woodbury *w = shb_alloc_zeroed(1, sizeof *w);
+  w->product      = product;
+  w->n3           = product->n;
+  w->n_pairs      = product->n / 3;
+  w->m            = product->m;
+  w->nb           = product->nb;
+  w->n            = w->n3 * w->nb;
+  w->low          = low;
+  w->high         = high;
+  w->stiffness    = shb_arena_take(&w->arena, (size_t)w->n3, sizeof(double));
+  w->force        = shb_arena_take(&w->arena, (size_t)w->n, sizeof(double));
+  w->part         = shb_arena_take(&w->arena, 2 * (size_t)w->n3, sizeof(double));
+  w->solution     = shb_arena_take(&w->arena, (size_t)w->n + 1, sizeof(double));
   size_t block = 3 * (size_t)w->nb, ld = (size_t)mhb_whole_lanes(3 * w->nb);
   w->turned    = shb_arena_take(&w->arena, block * ld, sizeof(double));
   w->image     = shb_arena_take(&w->arena, ld, sizeof(double));
   w->border[0] = shb_arena_take(&w->arena, (size_t)w->n + 1, sizeof(double));
   w->border[1] = shb_arena_take(&w->arena, (size_t)w->n + 1, sizeof(double));
-  shb_status status =
-      w->arena.failed ? SHB_ERR_IO : mhb_gmres_create(w->n + 1, MHB_MOST_ITERATIONS, &w->gmres);
-  if (status != SHB_OK) {
-    mhb_woodbury_destroy(w);
-    SHB_FAIL(SHB_ERR_IO, "out of memory for %d contact pairs", product->n / 3);
-  }
+  w->gmres     = mhb_gmres_create(w->n + 1, MHB_MOST_ITERATIONS);
   renew(w, law);
-  *out = w;
-  return SHB_OK;
+  return w;
 }
 
 void mhb_woodbury_destroy(mhb_woodbury *w) {

@@ -59,11 +59,10 @@ typedef struct {
   shb_arena arena, of_basis; /* the arrays; those whose size is that of the basis */
 } mhb_woodbury;
 
-/* On a product, which must outlive it; excitation frequencies low..high rad/s. SHB_ERR_IO: no
- * memory. */
-shb_status mhb_woodbury_create(mhb_receptance_product *product, const mhb_law *law, double low,
-                               double high, mhb_woodbury **out);
-void       mhb_woodbury_destroy(mhb_woodbury *woodbury);
+/* On a product, which must outlive it; excitation frequencies low..high rad/s. */
+mhb_woodbury *mhb_woodbury_create(mhb_receptance_product *product, const mhb_law *law, double low,
+                                  double high);
+void          mhb_woodbury_destroy(mhb_woodbury *woodbury);
 
 /* Basis and K for these laws at the product's frequency. 0: there is no small basis. Allocates only
  * where the basis is made. */

@@ -14,8 +14,8 @@
 #include "modal/model/model.h"
 
 /* deviation[n_modes]. lag, rad: of the load's first harmonic; harmonic h lags by h times it. blade
- * is freed by modal_model_free, also after an error. Errors: SHB_ERR_IO no memory. */
-shb_status mhb_blade_model(const modal_model *tuned, const double *deviation, double lag,
-                           modal_model *blade);
+ * is freed by modal_model_free. */
+void mhb_blade_model(const modal_model *tuned, const double *deviation, double lag,
+                     modal_model *blade);
 
 #endif

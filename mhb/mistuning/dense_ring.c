@@ -3,20 +3,15 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "mesh/base/memory.h"
+
 typedef struct {
   const mhb_mistuned_ring *ring;
   const modal_model       *whole;
   modal_model             *model;
   size_t                   N, n, q; /* blades; 3 pairs of a contact; 3 probes of a blade */
   size_t *mode, *residual;          /* [blade][mode] number of each mode by ascending frequency */
-  int     failed;
 } work;
-
-static void *take(work *w, size_t n, size_t size) {
-  void *p = calloc(n ? n : 1, size);
-  if (!p) w->failed = 1;
-  return p;
-}
 
 /* Contact dof of the whole model for dof d of blade b: right faces, then left faces of the contact
  * before. The sign of left dofs is that of blade_model.h. */
@@ -36,25 +31,25 @@ static void rank_of(size_t n, const double *value, size_t *rank) {
 }
 
 /* to[place[i]] <- from[i] */
-static double *placed(work *w, const double *from, const size_t *place_of, size_t n) {
-  double *to = take(w, n, sizeof *to);
-  for (size_t i = 0; to && i < n; i++) to[place_of[i]] = from[i];
+static double *placed(const double *from, const size_t *place_of, size_t n) {
+  double *to = shb_alloc_zeroed(n, sizeof *to);
+  for (size_t i = 0; i < n; i++) to[place_of[i]] = from[i];
   return to;
 }
 
-static double *numbers(work *w, const double *from, size_t n) {
-  double *to = from ? take(w, n, sizeof *to) : NULL;
+static double *numbers(const double *from, size_t n) {
+  double *to = from ? shb_alloc_zeroed(n, sizeof *to) : NULL;
   if (to) memcpy(to, from, n * sizeof *to);
   return to;
 }
 
-static void set_shapes(work *w) {
+static void set_shapes(const work *w) {
   modal_model *out = w->model;
   const size_t m = (size_t)w->ring->n_modes, all = w->N * m;
-  out->right = take(w, w->N * w->n * all, sizeof(double));
-  out->left  = take(w, w->N * w->n * all, sizeof(double));
-  out->probe = take(w, w->N * w->q * all, sizeof(double));
-  for (size_t b = 0; b < w->N && !w->failed; b++) {
+  out->right = shb_alloc_zeroed(w->N * w->n * all, sizeof(double));
+  out->left  = shb_alloc_zeroed(w->N * w->n * all, sizeof(double));
+  out->probe = shb_alloc_zeroed(w->N * w->q * all, sizeof(double));
+  for (size_t b = 0; b < w->N; b++) {
     const modal_model *blade = &w->ring->blade[b];
     for (size_t d = 0; d < 2 * w->n; d++)
       for (size_t i = 0; i < m; i++) {
@@ -77,9 +72,9 @@ static const void *member(const modal_model *model, size_t offset) {
 }
 
 /* Blocks of contact dofs by contact dofs. */
-static double *by_contact(work *w, size_t offset) {
+static double *by_contact(const work *w, size_t offset) {
   const size_t C = 2 * w->n, all = w->N * C;
-  double      *to = member(w->ring->blade, offset) ? take(w, all * all, sizeof *to) : NULL;
+  double      *to = member(w->ring->blade, offset) ? shb_alloc_zeroed(all * all, sizeof *to) : NULL;
   for (size_t b = 0; to && b < w->N; b++) {
     const double *from = member(&w->ring->blade[b], offset);
     for (size_t i = 0; i < C; i++)
@@ -93,9 +88,10 @@ static double *by_contact(work *w, size_t offset) {
 }
 
 /* Probe dofs by contact dofs. */
-static double *probe_contact(work *w, size_t offset) {
+static double *probe_contact(const work *w, size_t offset) {
   const size_t C = 2 * w->n, all = w->N * C;
-  double      *to = member(w->ring->blade, offset) ? take(w, w->N * w->q * all, sizeof *to) : NULL;
+  double      *to =
+      member(w->ring->blade, offset) ? shb_alloc_zeroed(w->N * w->q * all, sizeof *to) : NULL;
   for (size_t b = 0; to && b < w->N; b++) {
     const double *from = member(&w->ring->blade[b], offset);
     for (size_t s = 0; s < w->q; s++)
@@ -109,9 +105,10 @@ static double *probe_contact(work *w, size_t offset) {
 }
 
 /* [K + 1][contact dofs] */
-static double complex *load_contact(work *w, size_t offset) {
+static double complex *load_contact(const work *w, size_t offset) {
   const size_t    C = 2 * w->n, all = w->N * C, K = (size_t)w->whole->n_load + 1;
-  double complex *to = member(w->ring->blade, offset) ? take(w, K * all, sizeof *to) : NULL;
+  double complex *to =
+      member(w->ring->blade, offset) ? shb_alloc_zeroed(K * all, sizeof *to) : NULL;
   for (size_t b = 0; to && b < w->N; b++) {
     const double complex *from = member(&w->ring->blade[b], offset);
     for (size_t k = 0; k < K; k++)
@@ -125,9 +122,10 @@ static double complex *load_contact(work *w, size_t offset) {
 }
 
 /* [K + 1][probe dofs] */
-static double complex *load_probe(work *w, size_t offset) {
+static double complex *load_probe(const work *w, size_t offset) {
   const size_t    all = w->N * w->q, K = (size_t)w->whole->n_load + 1;
-  double complex *to = member(w->ring->blade, offset) ? take(w, K * all, sizeof *to) : NULL;
+  double complex *to =
+      member(w->ring->blade, offset) ? shb_alloc_zeroed(K * all, sizeof *to) : NULL;
   for (size_t b = 0; to && b < w->N; b++) {
     const double complex *from = member(&w->ring->blade[b], offset);
     for (size_t k = 0; k < K; k++)
@@ -137,7 +135,7 @@ static double complex *load_probe(work *w, size_t offset) {
 }
 
 #define AT(name) offsetof(modal_model, name)
-static void set_terms(work *w) {
+static void set_terms(const work *w) {
   modal_model *out            = w->model;
   out->residual_flexibility   = by_contact(w, AT(residual_flexibility));
   out->residual_inertia       = by_contact(w, AT(residual_inertia));
@@ -153,18 +151,17 @@ static void set_terms(work *w) {
   out->probe_load_fourth      = load_probe(w, AT(probe_load_fourth));
 }
 
-static void set_residual_modes(work *w) {
+static void set_residual_modes(const work *w) {
   modal_model *out = w->model;
   const size_t r = (size_t)w->ring->blade->n_residual, R = w->N * r, C = 2 * w->n;
   const size_t K  = (size_t)w->whole->n_load + 1;
   out->n_residual = (int)R;
   out->tail_order = w->ring->blade->tail_order;
   if (r == 0) return;
-  out->residual_frequency = take(w, R, sizeof(double));
-  out->residual_shape     = take(w, w->N * C * R, sizeof(double));
-  out->residual_force     = take(w, K * R, sizeof(double complex));
-  out->residual_probe     = take(w, w->N * w->q * R, sizeof(double));
-  if (w->failed) return;
+  out->residual_frequency = shb_alloc_zeroed(R, sizeof(double));
+  out->residual_shape     = shb_alloc_zeroed(w->N * C * R, sizeof(double));
+  out->residual_force     = shb_alloc_zeroed(K * R, sizeof(double complex));
+  out->residual_probe     = shb_alloc_zeroed(w->N * w->q * R, sizeof(double));
   for (size_t i = 0; i < R; i++)
     out->residual_frequency[i] = w->ring->blade[i / r].residual_frequency[i % r];
   rank_of(R, out->residual_frequency, w->residual);
@@ -186,24 +183,22 @@ static void set_residual_modes(work *w) {
   }
 }
 
-static void set_names(work *w) {
+static void set_names(const work *w) {
   const modal_model *whole = w->whole;
   modal_model       *out   = w->model;
   const size_t       Q = (size_t)whole->n_probes, sides = (size_t)whole->n_interfaces;
-  out->probe_name     = take(w, Q + 1, sizeof(char *));
-  out->interface_name = sides ? take(w, sides, sizeof(char *)) : NULL;
-  for (size_t i = 0; !w->failed && i < Q + sides; i++) {
+  out->probe_name     = shb_alloc_zeroed(Q + 1, sizeof(char *));
+  out->interface_name = sides ? shb_alloc_zeroed(sides, sizeof(char *)) : NULL;
+  for (size_t i = 0; i < Q + sides; i++) {
     char **to = i < Q ? &out->probe_name[i] : &out->interface_name[i - Q];
-    *to       = strdup(i < Q ? whole->probe_name[i] : whole->interface_name[i - Q]);
-    if (!*to) w->failed = 1;
+    *to       = shb_text(i < Q ? whole->probe_name[i] : whole->interface_name[i - Q]);
   }
   if (!whole->interface) return;
-  out->interface = take(w, (size_t)whole->n_pairs, sizeof(int));
-  if (out->interface)
-    memcpy(out->interface, whole->interface, sizeof(int) * (size_t)whole->n_pairs);
+  out->interface = shb_alloc_zeroed((size_t)whole->n_pairs, sizeof(int));
+  memcpy(out->interface, whole->interface, sizeof(int) * (size_t)whole->n_pairs);
 }
 
-shb_status mhb_dense_ring(const mhb_mistuned_ring *ring, modal_model *model) {
+void mhb_dense_ring(const mhb_mistuned_ring *ring, modal_model *model) {
   const modal_model *whole = &ring->whole;
   work               w     = {.ring  = ring,
                               .whole = whole,
@@ -213,8 +208,8 @@ shb_status mhb_dense_ring(const mhb_mistuned_ring *ring, modal_model *model) {
                               .q     = 3 * (size_t)ring->n_probes};
   const size_t       all = (size_t)whole->n_modes, P = (size_t)whole->n_pairs;
   const size_t       residuals = w.N * (size_t)ring->blade->n_residual;
-  w.mode                       = take(&w, all, sizeof(size_t));
-  w.residual                   = take(&w, residuals, sizeof(size_t));
+  w.mode                       = shb_alloc_zeroed(all, sizeof(size_t));
+  w.residual                   = shb_alloc_zeroed(residuals, sizeof(size_t));
   *model                       = (modal_model){0};
   model->n_modes               = whole->n_modes;
   model->n_pairs               = whole->n_pairs;
@@ -222,26 +217,20 @@ shb_status mhb_dense_ring(const mhb_mistuned_ring *ring, modal_model *model) {
   model->n_load                = whole->n_load;
   model->n_interfaces          = whole->n_interfaces;
   model->has_left              = true;
-  if (!w.failed) {
-    rank_of(all, whole->frequency, w.mode);
-    model->frequency     = placed(&w, whole->frequency, w.mode, all);
-    model->damping_ratio = placed(&w, whole->damping_ratio, w.mode, all);
-  }
-  model->normal      = numbers(&w, whole->normal, 3 * P);
-  model->area        = numbers(&w, whole->area, P);
-  model->modal_force = take(&w, ((size_t)whole->n_load + 1) * all, sizeof(double complex));
-  for (size_t i = 0; !w.failed && i < ((size_t)whole->n_load + 1) * all; i++)
+  rank_of(all, whole->frequency, w.mode);
+  model->frequency     = placed(whole->frequency, w.mode, all);
+  model->damping_ratio = placed(whole->damping_ratio, w.mode, all);
+  model->normal        = numbers(whole->normal, 3 * P);
+  model->area          = numbers(whole->area, P);
+  model->modal_force = shb_alloc_zeroed(((size_t)whole->n_load + 1) * all, sizeof(double complex));
+  for (size_t i = 0; i < ((size_t)whole->n_load + 1) * all; i++)
     model->modal_force[i / all * all + w.mode[i % all]] = whole->modal_force[i];
-  if (!w.failed) {
-    set_names(&w);
-    set_shapes(&w);
-    set_terms(&w);
-    set_residual_modes(&w);
-  }
+  set_names(&w);
+  set_shapes(&w);
+  set_terms(&w);
+  set_residual_modes(&w);
   free(w.mode);
   free(w.residual);
-  SHB_CHECK(!w.failed, SHB_ERR_IO, "out of memory for %d blades in one", ring->blades);
-  return SHB_OK;
 }
 
 void mhb_dense_ring_settings(const mhb_settings *settings, mhb_settings *own) {

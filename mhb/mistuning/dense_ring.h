@@ -9,8 +9,8 @@
 
 #include "mhb/mistuning/mistuned_ring.h"
 
-/* model is zeroed before, and freed by modal_model_free. Errors: SHB_ERR_IO no memory. */
-shb_status mhb_dense_ring(const mhb_mistuned_ring *ring, modal_model *model);
+/* model is zeroed before, and freed by modal_model_free. */
+void mhb_dense_ring(const mhb_mistuned_ring *ring, modal_model *model);
 
 /* The settings of that model: one blade, engine order 0, as many contacts as the ring has
  * blades. */

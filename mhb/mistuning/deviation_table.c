@@ -5,6 +5,7 @@
 #include <string.h>
 #include <strings.h>
 
+#include "mesh/base/memory.h"
 #include "mesh/table/number.h"
 #include "mhb/mistuning/deviations.h"
 
@@ -160,9 +161,8 @@ static shb_status read_all(reading *r, double **value) {
                 !strncasecmp(mesh_table_cell(&r->text, 0, 0)->text, "blade", 5);
   SHB_TRY(check_rows(r));
   SHB_TRY(check_columns(r));
-  r->blade = malloc(sizeof(int) * (size_t)blades);
-  r->value = malloc(sizeof(double) * (size_t)blades * (size_t)r->columns);
-  SHB_CHECK(r->blade && r->value, SHB_ERR_IO, "out of memory");
+  r->blade = shb_alloc((size_t)blades, sizeof(int));
+  r->value = shb_alloc((size_t)blades * (size_t)r->columns, sizeof(double));
   SHB_TRY(read_blades(r));
   for (int i = 0; i < blades; i++)
     for (int k = 0; k < r->columns; k++)

@@ -23,8 +23,7 @@ typedef struct mhb_mistuned_ring {
  * must outlive the ring. Errors:
  *
  *   SHB_ERR_INPUT  contact to ground, or a modal file without left faces; a deviation of -50 % or
- *                  less
- *   SHB_ERR_IO     no memory */
+ *                  less */
 shb_status mhb_mistuned_ring_create(const modal_model *tuned, const mhb_settings *settings,
                                     const double *deviation, int columns, mhb_mistuned_ring **ring);
 void       mhb_mistuned_ring_destroy(mhb_mistuned_ring *ring);

@@ -4,12 +4,12 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "mesh/base/memory.h"
 #include "mhb/numerics/simd.h"
 
-shb_status mhb_block_cyclic_create(int blocks, int size, mhb_block_cyclic **out) {
-  mhb_block_cyclic *f = calloc(1, sizeof *f);
-  SHB_CHECK(f, SHB_ERR_IO, "out of memory");
-  const size_t N = (size_t)blocks, s = (size_t)size;
+mhb_block_cyclic *mhb_block_cyclic_create(int blocks, int size) {
+  mhb_block_cyclic *f = shb_alloc_zeroed(1, sizeof *f);
+  const size_t      N = (size_t)blocks, s = (size_t)size;
   f->blocks  = blocks;
   f->size    = size;
   f->first   = mhb_whole_lanes(size);
@@ -25,12 +25,7 @@ shb_status mhb_block_cyclic_create(int blocks, int size, mhb_block_cyclic **out)
   f->padded  = shb_arena_take(&f->arena, (size_t)f->width, sizeof(double));
   f->work    = shb_arena_take(&f->arena, 2 * (size_t)f->beyond, sizeof(double));
   f->pivot   = shb_arena_take(&f->arena, N * (s + 1), sizeof(int));
-  if (f->arena.failed) {
-    mhb_block_cyclic_destroy(f);
-    SHB_FAIL(SHB_ERR_IO, "out of memory for %d blocks of %d unknowns", blocks, size);
-  }
-  *out = f;
-  return SHB_OK;
+  return f;
 }
 
 void mhb_block_cyclic_destroy(mhb_block_cyclic *f) {

@@ -42,9 +42,8 @@ typedef struct {
   int     stride;
 } mhb_cyclic_block;
 
-/* SHB_ERR_IO: no memory. */
-shb_status mhb_block_cyclic_create(int blocks, int size, mhb_block_cyclic **system);
-void       mhb_block_cyclic_destroy(mhb_block_cyclic *system);
+mhb_block_cyclic *mhb_block_cyclic_create(int blocks, int size);
+void              mhb_block_cyclic_destroy(mhb_block_cyclic *system);
 
 /* All blocks and the border <- 0. Factors take the blocks' place: clear before each. */
 void mhb_block_cyclic_clear(mhb_block_cyclic *system);

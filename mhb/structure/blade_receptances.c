@@ -1,6 +1,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "mesh/base/memory.h"
 #include "mhb/structure/equal_shapes.h"
 #include "mhb/structure/receptance.h"
 #include "mhb/structure/ring_receptance.h"
@@ -17,22 +18,20 @@ static shb_status fill(mhb_ring_receptance *g, const mhb_settings *settings, int
   g->p          = shb_arena_take(&g->arena, 2 * n, sizeof *g->p);
   g->dp         = shb_arena_take(&g->arena, 2 * n, sizeof *g->dp);
   g->part       = shb_arena_take(&g->arena, 2 * n, sizeof *g->part);
-  SHB_CHECK(!g->arena.failed, SHB_ERR_IO, "out of memory for the receptance of %d blades",
-            g->blades);
   for (int b = 0; b < g->blades; b++)
     SHB_TRY(mhb_receptance_create(&g->ring->blade[b], &own, n_harmonics, &g->blade[b]));
-  return mhb_equal_shapes_create(g->blade[0], &g->shapes);
+  g->shapes = mhb_equal_shapes_create(g->blade[0]);
+  return SHB_OK;
 }
 
 shb_status mhb_ring_receptance_create(const mhb_settings *settings, int n_harmonics,
                                       mhb_ring_receptance **out) {
-  mhb_ring_receptance *g = calloc(1, sizeof *g);
-  SHB_CHECK(g, SHB_ERR_IO, "out of memory");
-  g->ring           = settings->ring;
-  g->blades         = g->ring->blades;
-  g->n              = 3 * g->ring->n_pairs;
-  g->q              = 3 * g->ring->n_probes;
-  shb_status status = fill(g, settings, n_harmonics);
+  mhb_ring_receptance *g = shb_alloc_zeroed(1, sizeof *g);
+  g->ring                = settings->ring;
+  g->blades              = g->ring->blades;
+  g->n                   = 3 * g->ring->n_pairs;
+  g->q                   = 3 * g->ring->n_probes;
+  shb_status status      = fill(g, settings, n_harmonics);
   if (status != SHB_OK) {
     mhb_ring_receptance_destroy(g);
     return status;

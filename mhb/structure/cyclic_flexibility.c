@@ -3,6 +3,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "mesh/base/memory.h"
 #include "mhb/numerics/simd.h"
 
 /* A matrix over contact dofs and the axes of the pairs. */
@@ -60,21 +61,15 @@ const float *mhb_cyclic_flexibility_single(mhb_cyclic_flexibility *f) {
   return single;
 }
 
-shb_status mhb_cyclic_flexibility_create(const double *matrix, int nc, const double *T0,
-                                         int n_pairs, int sides, mhb_cyclic_flexibility **out) {
-  mhb_cyclic_flexibility *f = calloc(1, sizeof *f);
-  SHB_CHECK(f, SHB_ERR_IO, "out of memory");
-  size_t square = 9 * (size_t)n_pairs * (size_t)n_pairs;
-  f->n          = 3 * n_pairs;
-  f->self       = shb_arena_take(&f->arena, square, sizeof(double));
+mhb_cyclic_flexibility *mhb_cyclic_flexibility_create(const double *matrix, int nc,
+                                                      const double *T0, int n_pairs, int sides) {
+  mhb_cyclic_flexibility *f      = shb_alloc_zeroed(1, sizeof *f);
+  size_t                  square = 9 * (size_t)n_pairs * (size_t)n_pairs;
+  f->n                           = 3 * n_pairs;
+  f->self                        = shb_arena_take(&f->arena, square, sizeof(double));
   if (sides == 2) f->coupling = shb_arena_take(&f->arena, square, sizeof(double));
-  if (f->arena.failed) {
-    mhb_cyclic_flexibility_destroy(f);
-    SHB_FAIL(SHB_ERR_IO, "out of memory for the residual flexibility of %d pairs", n_pairs);
-  }
   mhb_cyclic_flexibility_set(f, matrix, nc, T0);
-  *out = f;
-  return SHB_OK;
+  return f;
 }
 
 void mhb_cyclic_flexibility_set(mhb_cyclic_flexibility *f, const double *matrix, int nc,

@@ -24,12 +24,10 @@ typedef struct {
 /* matrix[nc][nc] over (side, pair, axis), nc = n or 2n, m/N. Of M_lr and M_rl^T, which differ by
  * rounding, C is the mean.
  *   T0     in  [pair][3][3] columns v, u, w
- *   sides  in  1 (ground) or 2
- * SHB_ERR_IO: no memory. */
-shb_status mhb_cyclic_flexibility_create(const double *matrix, int nc, const double *T0,
-                                         int n_pairs, int sides,
-                                         mhb_cyclic_flexibility **flexibility);
-void       mhb_cyclic_flexibility_destroy(mhb_cyclic_flexibility *flexibility);
+ *   sides  in  1 (ground) or 2 */
+mhb_cyclic_flexibility *mhb_cyclic_flexibility_create(const double *matrix, int nc,
+                                                      const double *T0, int n_pairs, int sides);
+void                    mhb_cyclic_flexibility_destroy(mhb_cyclic_flexibility *flexibility);
 
 /* The same axes, another matrix of that size. */
 void mhb_cyclic_flexibility_set(mhb_cyclic_flexibility *flexibility, const double *matrix, int nc,
@@ -52,7 +50,7 @@ void mhb_cyclic_flexibility_add_product(const mhb_cyclic_flexibility *flexibilit
 /* out[n][n] <- C + sign C^T */
 void mhb_cyclic_flexibility_both(const mhb_cyclic_flexibility *flexibility, int sign, double *out);
 
-/* self[n][n] in single precision, made by the first call, of whatever thread. NULL: no memory. */
+/* self[n][n] in single precision, made by the first call, of whatever thread. */
 const float *mhb_cyclic_flexibility_single(mhb_cyclic_flexibility *flexibility);
 
 #endif

@@ -7,6 +7,7 @@
 #include <string.h>
 
 #include "mesh/base/constants.h"
+#include "mesh/base/memory.h"
 
 typedef struct {
   const modal_nodal_diameters *from;
@@ -15,14 +16,7 @@ typedef struct {
   int                          N, engine_order;
   size_t  n, c, q, m, K; /* 3 pairs, contact dofs, 3 probes, modes, harmonics of the load */
   size_t *rank;          /* place of each standing wave in ascending order of frequency */
-  bool    failed;
 } work;
-
-static void *take(work *w, size_t n, size_t size) {
-  void *p = calloc(n ? n : 1, size);
-  if (!p) w->failed = true;
-  return p;
-}
 
 /* The member of a model at an offset: const double * or const double complex *. */
 static const void *member(const modal_model *model, size_t offset) {
@@ -75,12 +69,12 @@ static size_t column_of(const work *w, int n, int part, size_t i) {
 /* Ascending order of all frequencies; equal ones stay in the order of their standing waves. */
 static void sort(work *w) {
   const size_t all = (size_t)w->N * w->m;
-  double      *f   = take(w, all, sizeof *f);
-  for (int k = 0; k < w->from->n && f; k++)
+  double      *f   = shb_alloc_zeroed(all, sizeof *f);
+  for (int k = 0; k < w->from->n; k++)
     for (int part = 0; part < waves(w, k); part++)
       memcpy(f + (size_t)(k == 0 ? 0 : 2 * k - 1 + part) * w->m, w->from->model[k].frequency,
              w->m * sizeof *f);
-  for (size_t i = 0; i < all && f; i++) {
+  for (size_t i = 0; i < all; i++) {
     w->rank[i] = 0;
     for (size_t j = 0; j < all; j++) w->rank[i] += f[j] < f[i] || (f[j] == f[i] && j < i);
   }
@@ -122,8 +116,8 @@ static void set_mode(work *w, int k, int part, size_t i) {
  * diameter: the real matrix is [Re G, -Im G; Im G, Re G]. */
 static void make_coriolis(work *w) {
   const size_t all = (size_t)w->N * w->m;
-  w->to->coriolis  = take(w, all * all, sizeof(double));
-  for (int k = 0; k < w->from->n && !w->failed; k++)
+  w->to->coriolis  = shb_alloc_zeroed(all * all, sizeof(double));
+  for (int k = 0; k < w->from->n; k++)
     for (int part = 0; part < waves(w, k) * waves(w, k); part++) {
       const int to = part / waves(w, k), by = part % waves(w, k);
       for (size_t i = 0; i < w->m * w->m; i++) {
@@ -138,17 +132,17 @@ static void make_coriolis(work *w) {
 static void make_modes(work *w) {
   modal_model *to  = w->to;
   const size_t all = (size_t)w->N * w->m, side = (size_t)w->N * w->n * all;
-  to->frequency     = take(w, all, sizeof(double));
-  to->damping_ratio = take(w, all, sizeof(double));
-  to->probe         = take(w, w->q * all, sizeof(double));
-  to->modal_force   = take(w, w->K * all, sizeof(double complex));
-  to->right         = take(w, side, sizeof(double));
-  if (to->has_left) to->left = take(w, side, sizeof(double));
+  to->frequency     = shb_alloc_zeroed(all, sizeof(double));
+  to->damping_ratio = shb_alloc_zeroed(all, sizeof(double));
+  to->probe         = shb_alloc_zeroed(w->q * all, sizeof(double));
+  to->modal_force   = shb_alloc_zeroed(w->K * all, sizeof(double complex));
+  to->right         = shb_alloc_zeroed(side, sizeof(double));
+  if (to->has_left) to->left = shb_alloc_zeroed(side, sizeof(double));
   sort(w);
-  for (int k = 0; k < w->from->n && !w->failed; k++)
+  for (int k = 0; k < w->from->n; k++)
     for (int part = 0; part < waves(w, k); part++)
       for (size_t i = 0; i < w->m; i++) set_mode(w, k, part, i);
-  if (w->first->coriolis && !w->failed) make_coriolis(w);
+  if (w->first->coriolis) make_coriolis(w);
 }
 
 /* ---- residual terms ---- */
@@ -165,7 +159,7 @@ static double circulant(const work *w, size_t offset, size_t i, int lag) {
 /* Contact dofs by contact dofs. */
 static double *by_contact(work *w, size_t offset) {
   const size_t all = (size_t)w->N * w->c;
-  double      *to  = member(w->first, offset) ? take(w, all * all, sizeof *to) : NULL;
+  double      *to  = member(w->first, offset) ? shb_alloc_zeroed(all * all, sizeof *to) : NULL;
   for (int lag = 0; to && lag < w->N; lag++)
     for (size_t i = 0; i < w->c * w->c; i++) {
       const double x = circulant(w, offset, i, lag);
@@ -178,7 +172,7 @@ static double *by_contact(work *w, size_t offset) {
 /* Probe dofs of sector 0 by contact dofs. */
 static double *probe_contact(work *w, size_t offset) {
   const size_t all = (size_t)w->N * w->c;
-  double      *to  = member(w->first, offset) ? take(w, w->q * all, sizeof *to) : NULL;
+  double      *to  = member(w->first, offset) ? shb_alloc_zeroed(w->q * all, sizeof *to) : NULL;
   for (int b = 0; to && b < w->N; b++)
     for (size_t i = 0; i < w->q * w->c; i++)
       to[i / w->c * all + place(w, b, i % w->c)] = circulant(w, offset, i, (w->N - b) % w->N);
@@ -198,7 +192,7 @@ static double complex load_response(const work *w, size_t offset, size_t h, size
 /* [K][contact dofs], or [K][probe dofs] of sector 0 */
 static double complex *by_load(work *w, size_t offset, bool probe) {
   const size_t    each = probe ? w->q : w->c, all = probe ? w->q : (size_t)w->N * w->c;
-  double complex *to = member(w->first, offset) ? take(w, w->K * all, sizeof *to) : NULL;
+  double complex *to = member(w->first, offset) ? shb_alloc_zeroed(w->K * all, sizeof *to) : NULL;
   for (size_t h = 0; to && h < w->K; h++)
     for (int b = 0; b < (probe ? 1 : w->N); b++)
       for (size_t i = 0; i < each; i++)
@@ -228,7 +222,7 @@ static void make_terms(work *w) {
 
 /* [N][size of each] copies of an array of one sector, or NULL. */
 static double *repeated(work *w, const double *from, size_t each) {
-  double *to = from ? take(w, (size_t)w->N * each, sizeof *to) : NULL;
+  double *to = from ? shb_alloc_zeroed((size_t)w->N * each, sizeof *to) : NULL;
   for (int b = 0; to && b < w->N; b++) memcpy(to + (size_t)b * each, from, each * sizeof *to);
   return to;
 }
@@ -238,19 +232,17 @@ static void make_names(work *w) {
   modal_model       *to  = w->to;
   const size_t       Q = (size_t)one->n_probes, sides = (size_t)one->n_interfaces;
   const size_t       P = (size_t)one->n_pairs;
-  to->probe_name       = take(w, Q + 1, sizeof(char *));
-  to->interface_name   = sides ? take(w, sides, sizeof(char *)) : NULL;
-  for (size_t i = 0; !w->failed && i < Q + sides; i++) {
+  to->probe_name       = shb_alloc_zeroed(Q + 1, sizeof(char *));
+  to->interface_name   = sides ? shb_alloc_zeroed(sides, sizeof(char *)) : NULL;
+  for (size_t i = 0; i < Q + sides; i++) {
     char **name = i < Q ? &to->probe_name[i] : &to->interface_name[i - Q];
-    *name       = strdup(i < Q ? one->probe_name[i] : one->interface_name[i - Q]);
-    if (!*name) w->failed = true;
+    *name       = shb_text(i < Q ? one->probe_name[i] : one->interface_name[i - Q]);
   }
   to->normal = repeated(w, one->normal, 3 * P);
   to->area   = repeated(w, one->area, P);
   if (!one->interface) return;
-  to->interface = take(w, (size_t)w->N * P, sizeof(int));
-  for (size_t i = 0; to->interface && i < (size_t)w->N * P; i++)
-    to->interface[i] = one->interface[i % P];
+  to->interface = shb_alloc_zeroed((size_t)w->N * P, sizeof(int));
+  for (size_t i = 0; i < (size_t)w->N * P; i++) to->interface[i] = one->interface[i % P];
 }
 
 shb_status mhb_dense_disc(const mhb_settings *s, modal_model *model) {
@@ -278,12 +270,11 @@ shb_status mhb_dense_disc(const mhb_settings *s, modal_model *model) {
             .q            = 3 * (size_t)one->n_probes,
             .m            = (size_t)one->n_modes,
             .K            = (size_t)one->n_load + 1};
-  w.rank = take(&w, N * w.m, sizeof *w.rank);
-  if (!w.failed) make_names(&w);
-  if (!w.failed) make_modes(&w);
-  if (!w.failed) make_terms(&w);
+  w.rank = shb_alloc_zeroed(N * w.m, sizeof *w.rank);
+  make_names(&w);
+  make_modes(&w);
+  make_terms(&w);
   free(w.rank);
-  SHB_CHECK(!w.failed, SHB_ERR_IO, "out of memory for %d sectors in one", d->blades);
   return SHB_OK;
 }
 

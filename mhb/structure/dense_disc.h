@@ -11,8 +11,7 @@
 #include "modal/model/nodal_diameters.h"
 
 /* settings->nodal_diameters must hold all nodal diameters. The probes are those of sector 0. model
- * is freed by modal_model_free in any case. Errors: SHB_ERR_INPUT a nodal diameter is missing;
- * SHB_ERR_IO no memory. */
+ * is freed by modal_model_free in any case. Errors: SHB_ERR_INPUT a nodal diameter is missing. */
 shb_status mhb_dense_disc(const mhb_settings *settings, modal_model *model);
 
 /* The settings of that model: one sector, engine order 0, as many contacts as sectors. */

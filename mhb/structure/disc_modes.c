@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "mesh/base/constants.h"
+#include "mesh/base/memory.h"
 #include "modal/model/nodal_diameters.h"
 
 static void set_fourier(mhb_disc_modes *d) {
@@ -84,8 +85,7 @@ static shb_status couple_one(mhb_disc_modes *d, const mhb_modal_part *part, int 
 
 static shb_status couple(mhb_disc_modes *d, const mhb_modal_part *part) {
   const size_t K = (size_t)d->diameters, m = (size_t)d->modes, all = 2 * m, n = (size_t)d->n;
-  d->coupled = shb_arena_take(&d->arena, 1, sizeof *d->coupled);
-  SHB_CHECK(d->coupled, SHB_ERR_IO, "out of memory for the disc");
+  d->coupled           = shb_arena_take(&d->arena, 1, sizeof *d->coupled);
   mhb_coupled_modes *c = d->coupled;
   c->G                 = shb_arena_take(&d->arena, K * m * m, sizeof *c->G);
   c->pole              = shb_arena_take(&d->arena, K * all, sizeof *c->pole);
@@ -93,7 +93,6 @@ static shb_status couple(mhb_disc_modes *d, const mhb_modal_part *part) {
   c->force             = shb_arena_take(&d->arena, K * all * n, sizeof *c->force);
   c->to_amplitude      = shb_arena_take(&d->arena, K * all * all, sizeof *c->to_amplitude);
   c->to_state          = shb_arena_take(&d->arena, K * all * all, sizeof *c->to_state);
-  SHB_CHECK(!d->arena.failed, SHB_ERR_IO, "out of memory for the disc");
   for (int k = 0; k < d->diameters; k++) SHB_TRY(couple_one(d, part, k));
   return SHB_OK;
 }
@@ -141,14 +140,13 @@ void mhb_disc_modes_set(const mhb_receptance *r, mhb_disc_modes *d) {
 
 shb_status mhb_disc_modes_create(const mhb_receptance *r, const mhb_settings *s, int blades,
                                  int modes, mhb_disc_modes **out) {
-  mhb_disc_modes *d = calloc(1, sizeof *d);
-  SHB_CHECK(d, SHB_ERR_IO, "out of memory");
-  const int N  = blades;
-  d->blades    = N;
-  d->n         = r->n;
-  d->all       = r->n_modes;
-  d->modes     = modes < d->all ? modes : d->all;
-  d->diameters = N / 2 + 1;
+  mhb_disc_modes *d = shb_alloc_zeroed(1, sizeof *d);
+  const int       N = blades;
+  d->blades         = N;
+  d->n              = r->n;
+  d->all            = r->n_modes;
+  d->modes          = modes < d->all ? modes : d->all;
+  d->diameters      = N / 2 + 1;
 
   const size_t K = (size_t)d->diameters, n = (size_t)d->n, m = (size_t)d->modes;
   d->omega   = shb_arena_take(&d->arena, K * m, sizeof *d->omega);
@@ -159,9 +157,7 @@ shb_status mhb_disc_modes_create(const mhb_receptance *r, const mhb_settings *s,
   d->fourier = shb_arena_take(&d->arena, (size_t)N * (size_t)N, sizeof *d->fourier);
   if (r->model->residual_flexibility || d->modes < d->all)
     d->flexibility = shb_arena_take(&d->arena, K * n * n, sizeof *d->flexibility);
-  shb_status status = d->arena.failed
-                          ? shb_fail(SHB_ERR_IO, __FILE__, __LINE__, "out of memory for the disc")
-                          : fill(d, r, s);
+  shb_status status = fill(d, r, s);
   if (status != SHB_OK) {
     mhb_disc_modes_destroy(d);
     return status;

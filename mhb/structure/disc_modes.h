@@ -49,8 +49,7 @@ typedef struct mhb_disc_modes {
 
 /* The lowest modes of each nodal diameter of settings->nodal_diameters, which must hold all of
  * them; the others answer statically. Without nodal diameters each has the model of the receptance.
- * SHB_ERR_IO: no memory. SHB_ERR_INPUT: a nodal diameter is missing; a gyroscopic mode does not
- * oscillate. */
+ * SHB_ERR_INPUT: a nodal diameter is missing; a gyroscopic mode does not oscillate. */
 shb_status mhb_disc_modes_create(const mhb_receptance *receptance, const mhb_settings *settings,
                                  int blades, int modes, mhb_disc_modes **disc);
 void       mhb_disc_modes_destroy(mhb_disc_modes *disc);

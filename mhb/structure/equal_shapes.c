@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include "mesh/base/constants.h"
+#include "mesh/base/memory.h"
 #include "mhb/numerics/simd.h"
 #include "mhb/structure/receptance.h"
 
@@ -26,13 +27,12 @@ static void set_shapes(mhb_equal_shapes *e, const mhb_receptance *blade) {
             e->shapes[a * all + i] * e->shapes[b * all + i];
 }
 
-shb_status mhb_equal_shapes_create(const mhb_receptance *blade, mhb_equal_shapes **out) {
-  mhb_equal_shapes *e = calloc(1, sizeof *e);
-  SHB_CHECK(e, SHB_ERR_IO, "out of memory");
-  e->n              = blade->n;
-  e->modes          = blade->n_modes;
-  e->residual_modes = blade->residual_terms->r;
-  e->square         = mhb_whole_lanes(e->n * e->n);
+mhb_equal_shapes *mhb_equal_shapes_create(const mhb_receptance *blade) {
+  mhb_equal_shapes *e = shb_alloc_zeroed(1, sizeof *e);
+  e->n                = blade->n;
+  e->modes            = blade->n_modes;
+  e->residual_modes   = blade->residual_terms->r;
+  e->square           = mhb_whole_lanes(e->n * e->n);
   const size_t all = (size_t)n_all(e), square = (size_t)e->square;
   const size_t r = (size_t)e->residual_modes, n = (size_t)e->n, real = sizeof(double);
   e->shapes = shb_arena_take(&e->arena, n * all, real);
@@ -43,13 +43,8 @@ shb_status mhb_equal_shapes_create(const mhb_receptance *blade, mhb_equal_shapes
     e->matrix[i] = shb_arena_take(&e->arena, square, real);
     e->drive[i]  = shb_arena_take(&e->arena, all, real);
   }
-  if (e->arena.failed) {
-    mhb_equal_shapes_destroy(e);
-    SHB_FAIL(SHB_ERR_IO, "out of memory for the shapes of a blade");
-  }
   set_shapes(e, blade);
-  *out = e;
-  return SHB_OK;
+  return e;
 }
 
 void mhb_equal_shapes_destroy(mhb_equal_shapes *e) {

@@ -29,9 +29,9 @@ typedef struct mhb_equal_shapes {
   shb_arena arena;
 } mhb_equal_shapes;
 
-/* From one of the blades, which all have its shapes. SHB_ERR_IO: no memory. */
-shb_status mhb_equal_shapes_create(const struct mhb_receptance *blade, mhb_equal_shapes **shapes);
-void       mhb_equal_shapes_destroy(mhb_equal_shapes *shapes);
+/* From one of the blades, which all have its shapes. */
+mhb_equal_shapes *mhb_equal_shapes_create(const struct mhb_receptance *blade);
+void              mhb_equal_shapes_destroy(mhb_equal_shapes *shapes);
 
 /* matrix <- H of a blade at harmonic k. lambda of the blade is up to date. */
 void mhb_equal_shapes_receptance(mhb_equal_shapes *shapes, const struct mhb_receptance *blade,

@@ -6,16 +6,14 @@
 #include <string.h>
 
 #include "mesh/base/constants.h"
+#include "mesh/base/memory.h"
 
-static shb_status allocate(int n, mhb_gyroscopic *out) {
+static void allocate(int n, mhb_gyroscopic *out) {
   const size_t m = (size_t)n;
   *out           = (mhb_gyroscopic){.n     = n,
-                                    .omega = malloc((2 * m + 1) * sizeof *out->omega),
-                                    .decay = malloc((2 * m + 1) * sizeof *out->decay),
-                                    .shape = malloc((2 * m * m + 1) * sizeof *out->shape)};
-  SHB_CHECK(out->omega && out->decay && out->shape, SHB_ERR_IO,
-            "out of memory for %d gyroscopic modes", n);
-  return SHB_OK;
+                                    .omega = shb_alloc(2 * m + 1, sizeof *out->omega),
+                                    .decay = shb_alloc(2 * m + 1, sizeof *out->decay),
+                                    .shape = shb_alloc(2 * m * m + 1, sizeof *out->shape)};
 }
 
 /* A[2n][2n] <- [0, L^H; L, j G], lower triangle by columns; L by columns. */
@@ -52,12 +50,10 @@ static bool factor(int n, const double complex *K, double complex *L) {
 shb_status mhb_gyroscopic_solve(int n, const double complex *K, const double complex *G,
                                 const double *loss, mhb_gyroscopic *out) {
   const size_t m = (size_t)n;
-  SHB_TRY(allocate(n, out));
-  double complex *L = malloc((m * m + 1) * sizeof *L), *A = malloc((4 * m * m + 1) * sizeof *A);
+  allocate(n, out);
+  double complex *L = shb_alloc(m * m + 1, sizeof *L), *A = shb_alloc(4 * m * m + 1, sizeof *A);
   shb_status      status = SHB_OK;
-  if (!L || !A)
-    status = shb_fail(SHB_ERR_IO, __FILE__, __LINE__, "out of memory for %d gyroscopic modes", n);
-  else if (!factor(n, K, L))
+  if (!factor(n, K, L))
     status = shb_fail(SHB_NOT_CONVERGED, __FILE__, __LINE__, "the stiffness is not positive");
   if (status == SHB_OK) {
     assemble(n, L, G, A);
@@ -80,21 +76,15 @@ double complex mhb_gyroscopic_element(const modal_wave *wave, int i, int j) {
 shb_status mhb_gyroscopic_of_wave(const modal_wave *wave, mhb_gyroscopic *out) {
   const int       m = wave->model->n_modes;
   const size_t    n = (size_t)m;
-  double complex *K = calloc(2 * n * n + 1, sizeof *K), *G = K + n * n;
-  double         *loss   = malloc((n + 1) * sizeof *loss);
-  shb_status      status = SHB_OK;
-  *out                   = (mhb_gyroscopic){0};
-  if (K && loss) {
-    for (int i = 0; i < m; i++) {
-      const double omega     = SHB_TWO_PI * wave->model->frequency[i];
-      K[(size_t)i * (n + 1)] = omega * omega;
-      loss[i]                = 2 * wave->model->damping_ratio[i] * omega;
-      for (int j = 0; j < m; j++) G[i * m + j] = mhb_gyroscopic_element(wave, i, j);
-    }
-    status = mhb_gyroscopic_solve(m, K, G, loss, out);
-  } else {
-    status = shb_fail(SHB_ERR_IO, __FILE__, __LINE__, "out of memory for %d gyroscopic modes", m);
+  double complex *K = shb_alloc_zeroed(2 * n * n + 1, sizeof *K), *G = K + n * n;
+  double         *loss = shb_alloc(n + 1, sizeof *loss);
+  for (int i = 0; i < m; i++) {
+    const double omega     = SHB_TWO_PI * wave->model->frequency[i];
+    K[(size_t)i * (n + 1)] = omega * omega;
+    loss[i]                = 2 * wave->model->damping_ratio[i] * omega;
+    for (int j = 0; j < m; j++) G[i * m + j] = mhb_gyroscopic_element(wave, i, j);
   }
+  const shb_status status = mhb_gyroscopic_solve(m, K, G, loss, out);
   free(K);
   free(loss);
   return status;
@@ -117,15 +107,13 @@ typedef struct {
   lapack_int     *exchanges; /* of rows */
 } eigenvectors;
 
-static bool take_room(size_t all, eigenvectors *e) {
-  e->A         = calloc(all * (3 * all + 1) + 1, sizeof *e->A);
-  e->place     = malloc((all + 1) * sizeof *e->place);
-  e->exchanges = malloc((all + 1) * sizeof *e->exchanges);
-  if (!e->A || !e->place || !e->exchanges) return false;
-  e->V       = e->A + all * all;
-  e->inverse = e->V + all * all;
-  e->value   = e->inverse + all * all;
-  return true;
+static void take_room(size_t all, eigenvectors *e) {
+  e->A         = shb_alloc_zeroed(all * (3 * all + 1) + 1, sizeof *e->A);
+  e->place     = shb_alloc(all + 1, sizeof *e->place);
+  e->exchanges = shb_alloc(all + 1, sizeof *e->exchanges);
+  e->V         = e->A + all * all;
+  e->inverse   = e->V + all * all;
+  e->value     = e->inverse + all * all;
 }
 
 static void free_room(eigenvectors *e) {
@@ -180,14 +168,13 @@ shb_status mhb_damped_modes_solve(int n, const double *omega, const double *loss
                                   const double complex *G, mhb_damped_modes *out) {
   const size_t all    = 2 * (size_t)n;
   *out                = (mhb_damped_modes){.n = n};
-  out->pole           = malloc((all + 1) * sizeof *out->pole);
-  out->to_state       = malloc((all * all + 1) * sizeof *out->to_state);
-  out->to_amplitude   = malloc((all * all + 1) * sizeof *out->to_amplitude);
+  out->pole           = shb_alloc(all + 1, sizeof *out->pole);
+  out->to_state       = shb_alloc(all * all + 1, sizeof *out->to_state);
+  out->to_amplitude   = shb_alloc(all * all + 1, sizeof *out->to_amplitude);
   eigenvectors e      = {.n = (lapack_int)all};
   shb_status   status = SHB_OK;
-  if (!take_room(all, &e) || !out->pole || !out->to_state || !out->to_amplitude)
-    status = shb_fail(SHB_ERR_IO, __FILE__, __LINE__, "out of memory for %d gyroscopic modes", n);
-  else if (!find(n, omega, loss, G, &e))
+  take_room(all, &e);
+  if (!find(n, omega, loss, G, &e))
     status = shb_fail(SHB_ERR_INPUT, __FILE__, __LINE__, "no gyroscopic modes were found");
   if (status == SHB_OK) status = part(n, &e);
   if (status == SHB_OK) take_amplitudes(omega, &e, out);

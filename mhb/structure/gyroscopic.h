@@ -24,7 +24,7 @@ typedef struct {
  *   G     in  [n][n] 1/s
  *   loss  in  [n] 1/s, the diagonal matrix D
  *   out   out freed by the caller in any case
- * Errors: SHB_ERR_IO no memory; SHB_NOT_CONVERGED K not positive definite, or no solution. */
+ * Errors: SHB_NOT_CONVERGED K not positive definite, or no solution. */
 shb_status mhb_gyroscopic_solve(int n, const double complex *K, const double complex *G,
                                 const double *loss, mhb_gyroscopic *out);
 
@@ -52,7 +52,7 @@ typedef struct {
  *   loss   in  [n] 1/s, the diagonal matrix D
  *   G      in  [n][n] 1/s
  *   out    out freed by the caller in any case
- * Errors: SHB_ERR_IO no memory; SHB_ERR_INPUT a mode does not oscillate, or no solution. */
+ * Errors: SHB_ERR_INPUT a mode does not oscillate, or no solution. */
 shb_status mhb_damped_modes_solve(int n, const double *omega, const double *loss,
                                   const double complex *G, mhb_damped_modes *out);
 void       mhb_damped_modes_free(mhb_damped_modes *of); /* also on a zeroed struct */

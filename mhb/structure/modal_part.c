@@ -2,6 +2,8 @@
 
 #include <stdlib.h>
 
+#include "mesh/base/memory.h"
+
 typedef struct {
   int row, side, axis, mode;
 } place;
@@ -102,7 +104,6 @@ static shb_status make(mhb_modal_part *b, const mhb_harmonics *harmonics) {
     b->G          = shb_arena_take(&b->arena, K * m * m, sizeof *b->G);
     b->gyroscopic = shb_arena_take(&b->arena, K, sizeof *b->gyroscopic);
   }
-  SHB_CHECK(!b->arena.failed, SHB_ERR_IO, "out of memory for the receptance");
   for (size_t k = 0; k < K; k++)
     b->wave[k] = harmonics->wave ? harmonics->wave[k] : modal_wave_real(b->model);
   mhb_harmonics own = *harmonics;
@@ -112,8 +113,7 @@ static shb_status make(mhb_modal_part *b, const mhb_harmonics *harmonics) {
 
 shb_status mhb_modal_part_create(const modal_model *model, mhb_relative relative,
                                  const mhb_harmonics *harmonics, mhb_modal_part **out) {
-  mhb_modal_part *b = calloc(1, sizeof *b);
-  SHB_CHECK(b, SHB_ERR_IO, "out of memory");
+  mhb_modal_part *b       = shb_alloc_zeroed(1, sizeof *b);
   *b                      = (mhb_modal_part){.model       = model,
                                              .relative    = relative,
                                              .n           = relative.n,

@@ -148,10 +148,6 @@ shb_status mhb_modal_structure_create(const mhb_receptance *r, const mhb_setting
   if (of || (!r->ring && r->model->coriolis && extent != MHB_STRUCTURE_BLADES))
     SHB_TRY(mhb_disc_modes_create(r, settings, blades, s->modes, &s->disc));
   take_arrays(r, extent != MHB_STRUCTURE_LEAN, s);
-  if (s->arena.failed) {
-    mhb_modal_structure_destroy(s);
-    SHB_FAIL(SHB_ERR_IO, "out of memory for the structure of %d contacts", s->contacts);
-  }
   mhb_modal_structure_set(r, s);
   return SHB_OK;
 }

@@ -39,7 +39,7 @@ typedef enum {
 
 /* The lowest modes stay dynamic. The others answer statically and are added to R, as is residual
  * flexibility. Residual inertia is left out: u = B q - R p + R2 p'' cannot be integrated forward in
- * time. SHB_ERR_IO: no memory; SHB_ERR_INPUT: a nodal diameter of the disc is missing. */
+ * time. SHB_ERR_INPUT: a nodal diameter of the disc is missing. */
 shb_status mhb_modal_structure_create(const mhb_receptance *receptance,
                                       const mhb_settings *settings, int modes,
                                       mhb_structure_extent extent, mhb_modal_structure *structure);

@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "mesh/base/constants.h"
+#include "mesh/base/memory.h"
 #include "mhb/numerics/lu.h"
 #include "mhb/numerics/simd.h"
 #include "mhb/problem/interfaces.h"
@@ -68,10 +69,9 @@ static shb_status set_axes(mhb_receptance *r, const mhb_settings *s, int interfa
   return check_angle("phi", given.name, given.has_phi, given.phi, phi, degree);
 }
 
-static int allocate(mhb_receptance *r) {
+static void allocate(mhb_receptance *r) {
   size_t     n = (size_t)r->n, m = (size_t)r->n_modes, K = (size_t)r->n_harmonics + 1;
   shb_arena *a          = &r->arena;
-  const int  matrices   = !r->ring;
   r->T0                 = shb_arena_take(a, 3 * n, sizeof *r->T0);
   r->share              = shb_arena_take(a, n / 3, sizeof *r->share);
   r->interface          = shb_arena_take(a, n / 3, sizeof *r->interface);
@@ -80,16 +80,15 @@ static int allocate(mhb_receptance *r) {
   r->load_at            = shb_arena_take(a, K, sizeof *r->load_at);
   r->free               = shb_arena_take(a, K * n, sizeof *r->free);
   r->free_response_unit = shb_arena_take(a, K * n, sizeof *r->free_response_unit);
-  if (!matrices) return !a->failed;
+  if (r->ring) return;
   r->lambda  = shb_arena_take(a, K * m, sizeof *r->lambda);
-  r->R       = calloc(K * n * n, sizeof *r->R);
+  r->R       = shb_alloc_zeroed(K * n * n, sizeof *r->R);
   r->scratch = shb_arena_take(a, 4 * m, sizeof *r->scratch);
   r->BL      = shb_arena_take(a, n * m, sizeof *r->BL);
   if (r->model->coriolis) {
     r->factor = shb_arena_take(a, K * m * m, sizeof *r->factor);
     r->pivot  = shb_arena_take(a, K * m, sizeof *r->pivot);
   }
-  return !a->failed && r->R;
 }
 
 /* Inter-blade phase of the fundamental, rad. */
@@ -140,9 +139,8 @@ shb_status mhb_receptance_check(const mhb_settings *s, int top) {
 /* The models of all harmonics of a disc, from d; to be freed in any case. */
 static shb_status find_waves(const mhb_receptance *r, const mhb_settings *settings,
                              const modal_nodal_diameters *d, modal_wave **out) {
-  modal_wave *wave = *out = calloc((size_t)r->n_harmonics + 1, sizeof *wave);
-  SHB_CHECK(wave, SHB_ERR_IO, "out of memory for the receptance");
-  shb_status status = SHB_OK;
+  modal_wave *wave = *out = shb_alloc_zeroed((size_t)r->n_harmonics + 1, sizeof *wave);
+  shb_status  status      = SHB_OK;
   for (int k = 0; k <= r->n_harmonics && status == SHB_OK; k++)
     status = find_wave(settings, d, k, &wave[k]);
   return status;
@@ -180,7 +178,6 @@ static shb_status make_part(mhb_receptance *r, const mhb_settings *settings,
 /* The speed model of each harmonic, at the lowest speed. */
 static shb_status make_speeds(mhb_receptance *r, const mhb_settings *s) {
   r->speeds = shb_arena_take(&r->arena, (size_t)r->n_harmonics + 1, sizeof(mhb_speed_model *));
-  SHB_CHECK(r->speeds, SHB_ERR_IO, "out of memory for the receptance");
   for (int k = 0; k <= r->n_harmonics; k++) {
     r->speeds[k] =
         r->disc ? mhb_disc_speeds_use(r->disc, k * wave_of(s, r->disc->table->blades)) : r->at;
@@ -256,7 +253,7 @@ static shb_status make(mhb_receptance *r, const modal_model *model, const mhb_se
   }
   r->n       = 3 * r->model->n_pairs;
   r->n_modes = r->model->n_modes;
-  SHB_CHECK(allocate(r), SHB_ERR_IO, "out of memory for the receptance");
+  allocate(r);
   if (r->disc) SHB_TRY(mhb_receptance_check(settings, r->n_harmonics));
   if (r->at) SHB_TRY(make_speeds(r, settings));
   SHB_TRY(set_blade(r, settings, like));
@@ -272,8 +269,7 @@ static shb_status create(const modal_model *model, const mhb_settings *settings,
             "mhb.subharmonics is %d, but a wave of that many periods does not close around %d "
             "blades at engine order %d; set it to 1",
             settings->subharmonics, settings->blades, settings->engine_order);
-  mhb_receptance *r = calloc(1, sizeof *r);
-  SHB_CHECK(r, SHB_ERR_IO, "out of memory");
+  mhb_receptance *r = shb_alloc_zeroed(1, sizeof *r);
   r->n_harmonics    = n_harmonics;
   r->nu             = settings->subharmonics;
   r->scale          = settings->scale;
@@ -399,14 +395,11 @@ static void factor_at(const mhb_receptance *r, int k, double complex *A, int *pi
 void mhb_receptance_coupled(const mhb_receptance *r, int k, double complex *x) {
   const size_t    m    = (size_t)r->n_modes;
   const int       kept = r->load_at[k] == frequency_of(r, k);
-  double complex *own  = kept ? NULL : malloc(m * m * sizeof *own);
+  double complex *own  = kept ? NULL : shb_alloc(m * m, sizeof *own);
   int             pivot[m];
   if (own) factor_at(r, k, own, pivot);
-  if (kept || own)
-    mhb_solve_complex(r->n_modes, own ? own : r->factor + (size_t)k * m * m,
-                      own ? pivot : r->pivot + (size_t)k * m, 1, x);
-  else
-    for (size_t i = 0; i < m; i++) x[i] = NAN; /* no memory: nothing converges */
+  mhb_solve_complex(r->n_modes, own ? own : r->factor + (size_t)k * m * m,
+                    own ? pivot : r->pivot + (size_t)k * m, 1, x);
   free(own);
 }
 

@@ -87,8 +87,7 @@ shb_status mhb_receptance_check(const mhb_settings *settings, int top);
  * settings->ring it is not looked at. Errors:
  *
  *   SHB_ERR_INPUT  psi or phi differs from the file's normals by more than a degree; neighbour
- *                  without /contact/left; subharmonics that do not close around the ring
- *   SHB_ERR_IO     no memory */
+ *                  without /contact/left; subharmonics that do not close around the ring */
 shb_status mhb_receptance_create(const modal_model *model, const mhb_settings *settings,
                                  int n_harmonics, mhb_receptance **receptance);
 

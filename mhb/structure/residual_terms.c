@@ -3,6 +3,7 @@
 #include <cblas.h>
 #include <stdlib.h>
 
+#include "mesh/base/memory.h"
 #include "mhb/numerics/simd.h"
 
 static int n_contact(const modal_model *model) {
@@ -38,7 +39,7 @@ static double complex *array(mhb_residual_terms *l, const void *wanted, size_t n
   return wanted && n ? shb_arena_take(&l->arena, n, sizeof(double complex)) : NULL;
 }
 
-static bool take_arrays(mhb_residual_terms *l, const terms *from, bool own) {
+static void take_arrays(mhb_residual_terms *l, const terms *from, bool own) {
   const size_t n = (size_t)l->relative.n, K = (size_t)l->n_harmonics + 1;
   const size_t q = 3 * (size_t)l->model->n_probes, r = (size_t)l->r;
   for (int t = 0; t < MODAL_TERMS; t++) {
@@ -50,7 +51,6 @@ static bool take_arrays(mhb_residual_terms *l, const terms *from, bool own) {
   l->S  = array(l, l, K * n * r);
   l->F  = array(l, l, K * r);
   l->Sg = array(l, l, n * r);
-  return !l->arena.failed;
 }
 
 /* S = T times the residual modes. */
@@ -146,27 +146,27 @@ static shb_status make(mhb_residual_terms *l, const mhb_residual_terms *like, bo
   SHB_CHECK(like || !l->model->residual_diagonal, SHB_ERR_INPUT,
             "the model has released its residual matrices, and no receptance with the same axes of "
             "the pairs lends them");
-  SHB_CHECK(take_arrays(l, &from, own), SHB_ERR_IO, "out of memory for the residual terms");
+  take_arrays(l, &from, own);
   l->borrowed = like != NULL;
   for (int t = 0; t < MODAL_TERMS && like; t++) l->contact[t] = like->contact[t];
   for (int t = 0; t < MODAL_TERMS && !like && !own; t++)
     if (from.contact[t])
-      SHB_TRY(mhb_cyclic_flexibility_create(from.contact[t], n_contact(l->model), l->relative.T0,
-                                            l->model->n_pairs, l->relative.sides, &l->contact[t]));
+      l->contact[t] =
+          mhb_cyclic_flexibility_create(from.contact[t], n_contact(l->model), l->relative.T0,
+                                        l->model->n_pairs, l->relative.sides);
   mhb_residual_terms_update(l);
   return SHB_OK;
 }
 
 shb_status mhb_residual_terms_create(const modal_model *model, mhb_relative relative,
                                      const mhb_harmonics *harmonics, mhb_residual_terms **out) {
-  mhb_residual_terms *l = calloc(1, sizeof *l);
-  SHB_CHECK(l, SHB_ERR_IO, "out of memory");
-  l->model       = model;
-  l->relative    = relative;
-  l->nu          = harmonics->nu;
-  l->n_harmonics = harmonics->n_harmonics;
-  l->phase       = harmonics->phase;
-  l->wave        = harmonics->wave;
+  mhb_residual_terms *l = shb_alloc_zeroed(1, sizeof *l);
+  l->model              = model;
+  l->relative           = relative;
+  l->nu                 = harmonics->nu;
+  l->n_harmonics        = harmonics->n_harmonics;
+  l->phase              = harmonics->phase;
+  l->wave               = harmonics->wave;
   for (int k = 0; k <= l->n_harmonics; k++)
     if (l->wave[k].model->n_residual > l->r) l->r = l->wave[k].model->n_residual;
   shb_status status = make(l, harmonics->like, harmonics->nodal_diameters);

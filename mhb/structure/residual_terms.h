@@ -50,8 +50,7 @@ typedef struct {
 } mhb_harmonics;
 
 /* model (of all harmonics, or of the mean), relative.T0 and the arrays of harmonics must outlive
- * it. SHB_ERR_IO: no memory; SHB_ERR_INPUT: the model has released its matrices, and there are no
- * terms like these. */
+ * it. SHB_ERR_INPUT: the model has released its matrices, and there are no terms like these. */
 shb_status mhb_residual_terms_create(const modal_model *model, mhb_relative relative,
                                      const mhb_harmonics *harmonics, mhb_residual_terms **out);
 void       mhb_residual_terms_destroy(mhb_residual_terms *terms);

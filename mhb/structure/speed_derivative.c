@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include "mesh/base/constants.h"
+#include "mesh/base/memory.h"
 #include "mhb/numerics/lu.h"
 
 static void differentiate(const mhb_speed_derivative *d) {
@@ -16,9 +17,8 @@ static void differentiate(const mhb_speed_derivative *d) {
 shb_status mhb_speed_derivative_create(mhb_speed_model **model, mhb_disc_speeds *disc,
                                        const modal_wave *wave, const mhb_modal_part *part,
                                        mhb_speed_derivative **out) {
-  mhb_speed_derivative *d = calloc(1, sizeof *d);
-  SHB_CHECK(d, SHB_ERR_IO, "out of memory");
-  *d = (mhb_speed_derivative){.model = model, .disc = disc, .part = part};
+  mhb_speed_derivative *d = shb_alloc_zeroed(1, sizeof *d);
+  *d                      = (mhb_speed_derivative){.model = model, .disc = disc, .part = part};
   differentiate(d);
   const mhb_harmonics harmonics = {.nu              = part->nu,
                                    .n_harmonics     = part->n_harmonics,

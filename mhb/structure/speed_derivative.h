@@ -17,8 +17,7 @@ typedef struct {
 } mhb_speed_derivative;
 
 /* The models are differentiated and must outlive the result.
- *   wave  in  [k] of the slopes of a disc; NULL: a clamped blade
- * SHB_ERR_IO: no memory. */
+ *   wave  in  [k] of the slopes of a disc; NULL: a clamped blade */
 shb_status mhb_speed_derivative_create(mhb_speed_model **model, mhb_disc_speeds *disc,
                                        const modal_wave *wave, const mhb_modal_part *part,
                                        mhb_speed_derivative **derivative);

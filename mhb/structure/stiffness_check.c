@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "mesh/base/constants.h"
+#include "mesh/base/memory.h"
 
 /* The largest value in the case, N/m, of the leading interface. */
 static double largest_stiffness(const mhb_settings *settings, mhb_parameter what, double value) {
@@ -72,8 +73,7 @@ static shb_status check_interfaces(const mhb_receptance *receptance, const mhb_s
 
 shb_status mhb_stiffness_check(mhb_receptance *receptance, const mhb_settings *settings) {
   const size_t    n        = (size_t)receptance->n;
-  double complex *residual = receptance->ring ? NULL : calloc(n * n, sizeof *residual);
-  SHB_CHECK(receptance->ring || residual, SHB_ERR_IO, "out of memory for %zu contact axes", n);
+  double complex *residual = receptance->ring ? NULL : shb_alloc_zeroed(n * n, sizeof *residual);
   mhb_receptance_set_frequency(receptance, 1e-6 * receptance->model->frequency[0]);
   if (residual)
     mhb_receptance_residual_terms(receptance, 1, 0, residual);

@@ -5,6 +5,7 @@
 
 #include "fem/solver/petsc_error.h"
 #include "mesh/base/constants.h"
+#include "mesh/base/memory.h"
 #include "modal/common/phases.h"
 #include "modal/condense/few_columns.h"
 #include "modal/condense/many_columns.h"

@@ -16,7 +16,7 @@
  *   fourth   = a^T P K^-1 M P K^-1 M P K^-1 b.
  *
  * The tails hold the next two moments of each contact dof (modal/model/residual_series.h).
- * Collective; every rank gets the model. Errors: SHB_ERR_IO no memory, solver; SHB_INTERRUPTED. */
+ * Collective; every rank gets the model. Errors: SHB_ERR_IO solver; SHB_INTERRUPTED. */
 shb_status modal_condense(const fem_system *system, const modal_eigen *eigen,
                           const modal_condensation *to, shb_progress *progress, modal_model *model);
 

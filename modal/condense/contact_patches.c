@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "mesh/base/constants.h"
+#include "mesh/base/memory.h"
 #include "mesh/core/face_pairing.h"
 #include "modal/condense/face_partition.h"
 #include "modal/model/joined_pairs.h"
@@ -30,25 +31,20 @@ static void into_axes(const double axes[3][3], const double v[3], double out[3])
   for (int a = 0; a < 3; a++) out[a] = axes[a][0] * v[0] + axes[a][1] * v[1] + axes[a][2] * v[2];
 }
 
-static shb_status allocate(int n_pairs, bool has_left, int capacity, modal_patches *out) {
+static void allocate(int n_pairs, bool has_left, int capacity, modal_patches *out) {
   const size_t n = (size_t)n_pairs, entries = (size_t)capacity + 1;
   out->n_pairs  = n_pairs;
   out->has_left = has_left;
-  out->start    = calloc(n + 1, sizeof *out->start);
-  out->weight   = calloc(entries, sizeof *out->weight);
-  if (has_left) out->left_weight = calloc(entries, sizeof *out->left_weight);
-  out->area   = calloc(n, sizeof *out->area);
-  out->normal = calloc(3 * n, sizeof *out->normal);
-  bool complete =
-      out->start && out->weight && (!has_left || out->left_weight) && out->area && out->normal;
+  out->start    = shb_alloc_zeroed(n + 1, sizeof *out->start);
+  out->weight   = shb_alloc_zeroed(entries, sizeof *out->weight);
+  if (has_left) out->left_weight = shb_alloc_zeroed(entries, sizeof *out->left_weight);
+  out->area   = shb_alloc_zeroed(n, sizeof *out->area);
+  out->normal = shb_alloc_zeroed(3 * n, sizeof *out->normal);
   for (int side = 0; side <= (int)has_left; side++) {
-    out->node[side]     = calloc(entries, sizeof *out->node[side]);
-    out->centroid[side] = calloc(3 * n, sizeof *out->centroid[side]);
-    out->axes[side]     = calloc(n, sizeof *out->axes[side]);
-    complete            = complete && out->node[side] && out->centroid[side] && out->axes[side];
+    out->node[side]     = shb_alloc_zeroed(entries, sizeof *out->node[side]);
+    out->centroid[side] = shb_alloc_zeroed(3 * n, sizeof *out->centroid[side]);
+    out->axes[side]     = shb_alloc_zeroed(n, sizeof *out->axes[side]);
   }
-  SHB_CHECK(complete, SHB_ERR_IO, "out of memory for %d contact patches", n_pairs);
-  return SHB_OK;
 }
 
 static int compare(const void *a, const void *b) {
@@ -187,7 +183,7 @@ static shb_status build_nodes(builder *b, double (*normal)[3], modal_patches *ou
     kept += b->node_area[i];
     n++;
   }
-  SHB_TRY(allocate(n, b->pairing != NULL, n * entries_each(b), out));
+  allocate(n, b->pairing != NULL, n * entries_each(b), out);
   for (int i = 0, patch = 0; i < n_nodes; i++) {
     if (b->node_area[i] <= 1e-3 * largest) continue;
     out->area[patch]      = b->node_area[i] * out->total_area / kept;
@@ -235,16 +231,14 @@ static shb_status build(builder *b, int points, modal_patches *out) {
   SHB_TRY(modal_facets_create(b->mesh, b->right, &b->facets));
   SHB_TRY(measure_face(b, out));
   if (points == 0) {
-    double(*normal)[3] = calloc((size_t)b->mesh->n_nodes, sizeof *normal);
-    SHB_CHECK(normal, SHB_ERR_IO, "out of memory for the contact nodes");
-    shb_status status = build_nodes(b, normal, out);
+    double(*normal)[3] = shb_alloc_zeroed((size_t)b->mesh->n_nodes, sizeof *normal);
+    shb_status status  = build_nodes(b, normal, out);
     if (status == SHB_OK) status = check_nodes(b, normal);
     free(normal);
     return status;
   }
   SHB_TRY(modal_facets_partition(&b->facets, points));
-  SHB_TRY(
-      allocate(points, b->pairing != NULL, b->facets.nodes * b->facets.n * entries_each(b), out));
+  allocate(points, b->pairing != NULL, b->facets.nodes * b->facets.n * entries_each(b), out);
   for (int patch = 0; patch < points; patch++) SHB_TRY(build_patch(b, patch, out));
   return SHB_OK;
 }
@@ -267,18 +261,15 @@ shb_status modal_patches_create(const mesh_fe *mesh, mesh_axis axis, int blades,
   SHB_TRY(check_groups(mesh, to_ground));
   mesh_pairing pairing = {0};
   if (!to_ground) SHB_TRY(mesh_pairing_create(mesh, axis, blades, &pairing));
-  builder    b      = {.mesh      = mesh,
+  builder b         = {.mesh      = mesh,
                        .right     = &mesh->set[MESH_CONTACT_RIGHT],
                        .pairing   = to_ground ? NULL : &pairing,
                        .sector    = to_ground ? 0 : SHB_TWO_PI / blades,
                        .axis      = axis,
-                       .node_area = calloc((size_t)mesh->n_nodes + 1, sizeof(double))};
-  shb_status status = SHB_OK;
+                       .node_area = shb_alloc_zeroed((size_t)mesh->n_nodes + 1, sizeof(double))};
   out->projected    = pairing.projected;
   out->gap          = pairing.gap;
-  if (!b.node_area)
-    status = shb_fail(SHB_ERR_IO, __FILE__, __LINE__, "out of memory for the contact nodes");
-  if (status == SHB_OK) status = build(&b, points, out);
+  shb_status status = build(&b, points, out);
   modal_facets_free(&b.facets);
   free(b.node_area);
   mesh_pairing_free(&pairing);
@@ -309,23 +300,18 @@ static void append(const modal_patches *part, int which, int pairs, modal_patche
   out->total_area += part->total_area;
 }
 
-shb_status modal_patches_join(int n, const modal_patches *part, modal_patches *out) {
+void modal_patches_join(int n, const modal_patches *part, modal_patches *out) {
   int pairs = 0, entries = 0;
   memset(out, 0, sizeof *out);
   for (int i = 0; i < n; i++) {
     pairs += part[i].n_pairs;
     entries += part[i].start[part[i].n_pairs];
   }
-  out->interface    = malloc((size_t)pairs * sizeof *out->interface);
-  shb_status status = allocate(pairs, part[0].has_left, entries, out);
-  if (status == SHB_OK && !out->interface)
-    status = shb_fail(SHB_ERR_IO, __FILE__, __LINE__, "out of memory for the contact patches");
-  for (int i = 0, at = 0; i < n && status == SHB_OK; at += part[i++].n_pairs)
-    append(&part[i], i, at, out);
+  out->interface = shb_alloc((size_t)pairs, sizeof *out->interface);
+  allocate(pairs, part[0].has_left, entries, out);
+  for (int i = 0, at = 0; i < n; at += part[i++].n_pairs) append(&part[i], i, at, out);
   out->psi = part[0].psi;
   out->phi = part[0].phi;
-  if (status != SHB_OK) modal_patches_free(out);
-  return status;
 }
 
 static shb_status check_angle(const char *name, const double *given, double face) {
@@ -345,16 +331,15 @@ shb_status modal_patches_check_angles(const modal_patches *patches, const double
   return check_angle("phi", phi, patches->phi);
 }
 
-shb_status modal_patches_dofs(const modal_patches *patches, modal_dofs *dofs) {
+void modal_patches_dofs(const modal_patches *patches, modal_dofs *dofs) {
   for (int side = 0; side <= (int)patches->has_left; side++)
     for (int p = 0; p < patches->n_pairs; p++) {
       int           first = patches->start[p], n = patches->start[p + 1] - first;
       const double *weight = side ? patches->left_weight : patches->weight;
       for (int a = 0; a < 3; a++)
-        SHB_TRY(modal_dofs_add(dofs, n, patches->node[side] + first, weight + first,
-                               patches->axes[side][p][a]));
+        modal_dofs_add(dofs, n, patches->node[side] + first, weight + first,
+                       patches->axes[side][p][a]);
     }
-  return SHB_OK;
 }
 
 void modal_patches_free(modal_patches *patches) {

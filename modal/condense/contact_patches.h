@@ -43,21 +43,21 @@ typedef struct {
  *           about equal area
  *
  * Errors: SHB_ERR_INPUT group contact_right or, to the neighbour, contact_left is missing, faces do
- * not match, more patches than facets; SHB_ERR_IO no memory. SHB_ERR_INPUT too if a facet is turned
- * by more than 5 degrees against its patch. */
+ * not match, more patches than facets. SHB_ERR_INPUT too if a facet is turned by more than 5
+ * degrees against its patch. */
 shb_status modal_patches_create(const mesh_fe *mesh, mesh_axis axis, int blades, bool to_ground,
                                 int points, modal_patches *out);
 
 /* Join the patches of n interfaces, all to ground or all to the neighbour. psi and phi are those of
- * the first interface; gap is the largest. Errors: SHB_ERR_IO no memory. */
-shb_status modal_patches_join(int n, const modal_patches *part, modal_patches *out);
+ * the first interface; gap is the largest. */
+void modal_patches_join(int n, const modal_patches *part, modal_patches *out);
 
 /* SHB_ERR_INPUT unless the given angles (NULL: not given) agree with the face within a degree. */
 shb_status modal_patches_check_angles(const modal_patches *patches, const double *psi,
                                       const double *phi);
 
 /* Append the contact dofs, (side * n_pairs + pair) * 3 + axis. */
-shb_status modal_patches_dofs(const modal_patches *patches, modal_dofs *dofs);
+void modal_patches_dofs(const modal_patches *patches, modal_dofs *dofs);
 
 void modal_patches_free(modal_patches *patches); /* also on a zeroed struct */
 

@@ -3,64 +3,54 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "mesh/base/memory.h"
+
 /* Append one dof of n_entries entries, to be filled by the caller. */
-static shb_status append_dof(modal_dofs *dofs, int n_entries) {
-  const size_t total = (size_t)dofs->n_entries + (size_t)n_entries;
-  int         *start = realloc(dofs->start, (size_t)(dofs->n + 2) * sizeof *start);
-  if (start) dofs->start = start;
-  int *node = realloc(dofs->node, (total + 1) * sizeof *node);
-  if (node) dofs->node = node;
-  double *weight = realloc(dofs->weight, (3 * total + 1) * sizeof *weight);
-  if (weight) dofs->weight = weight;
-  SHB_CHECK(start && node && weight, SHB_ERR_IO, "out of memory for %d condensed dofs",
-            dofs->n + 1);
-  start[dofs->n] = dofs->n_entries;
-  dofs->n++;
-  dofs->n_entries += n_entries;
-  start[dofs->n] = dofs->n_entries;
-  return SHB_OK;
+static void append_dof(modal_dofs *dofs, int n_entries) {
+  const size_t total     = (size_t)dofs->n_entries + (size_t)n_entries;
+  dofs->start            = shb_realloc(dofs->start, (size_t)(dofs->n + 2), sizeof *dofs->start);
+  dofs->node             = shb_realloc(dofs->node, total, sizeof *dofs->node);
+  dofs->weight           = shb_realloc(dofs->weight, 3 * total, sizeof *dofs->weight);
+  dofs->start[dofs->n]   = dofs->n_entries;
+  dofs->start[++dofs->n] = dofs->n_entries += n_entries;
 }
 
-shb_status modal_dofs_add(modal_dofs *dofs, int n_entries, const int *node, const double *weight,
-                          const double direction[3]) {
+void modal_dofs_add(modal_dofs *dofs, int n_entries, const int *node, const double *weight,
+                    const double direction[3]) {
   const int first = dofs->n_entries;
-  SHB_TRY(append_dof(dofs, n_entries));
+  append_dof(dofs, n_entries);
   for (int e = 0; e < n_entries; e++) {
     dofs->node[first + e] = node[e];
     for (int d = 0; d < 3; d++) dofs->weight[3 * (first + e) + d] = weight[e] * direction[d];
   }
-  return SHB_OK;
 }
 
 static int is_loaded(const double force[3]) {
   return force[0] != 0 || force[1] != 0 || force[2] != 0;
 }
 
-shb_status modal_dofs_add_forces(modal_dofs *dofs, int n_nodes, const double *force) {
+void modal_dofs_add_forces(modal_dofs *dofs, int n_nodes, const double *force) {
   int n_entries = 0, entry = dofs->n_entries;
   for (int i = 0; i < n_nodes; i++) n_entries += is_loaded(force + 3 * (size_t)i);
-  SHB_TRY(append_dof(dofs, n_entries));
+  append_dof(dofs, n_entries);
   for (int i = 0; i < n_nodes; i++) {
     if (!is_loaded(force + 3 * (size_t)i)) continue;
     dofs->node[entry] = i;
     memcpy(dofs->weight + 3 * (size_t)entry, force + 3 * (size_t)i, 3 * sizeof(double));
     entry++;
   }
-  return SHB_OK;
 }
 
-shb_status modal_dofs_append_one(modal_dofs *dofs, const modal_dofs *more, int c) {
+void modal_dofs_append_one(modal_dofs *dofs, const modal_dofs *more, int c) {
   const int first = dofs->n_entries, from = more->start[c], n = more->start[c + 1] - from;
-  SHB_TRY(append_dof(dofs, n));
+  append_dof(dofs, n);
   memcpy(dofs->node + first, more->node + from, (size_t)n * sizeof *dofs->node);
   memcpy(dofs->weight + 3 * (size_t)first, more->weight + 3 * (size_t)from,
          3 * (size_t)n * sizeof *dofs->weight);
-  return SHB_OK;
 }
 
-shb_status modal_dofs_append(modal_dofs *dofs, const modal_dofs *more) {
-  for (int c = 0; c < more->n; c++) SHB_TRY(modal_dofs_append_one(dofs, more, c));
-  return SHB_OK;
+void modal_dofs_append(modal_dofs *dofs, const modal_dofs *more) {
+  for (int c = 0; c < more->n; c++) modal_dofs_append_one(dofs, more, c);
 }
 
 /* Local offset of a node's first dof in a dense column, -1 if clamped or another rank's. */

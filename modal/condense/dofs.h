@@ -16,15 +16,15 @@ typedef struct {
 } modal_dofs;
 
 /* Append the dof sum_e weight[e] direction . u(node[e]). */
-shb_status modal_dofs_add(modal_dofs *dofs, int n_entries, const int *node, const double *weight,
-                          const double direction[3]);
+void modal_dofs_add(modal_dofs *dofs, int n_entries, const int *node, const double *weight,
+                    const double direction[3]);
 
 /* Append the dof that is the work of nodal forces [n_nodes][3]; zero entries are omitted. */
-shb_status modal_dofs_add_forces(modal_dofs *dofs, int n_nodes, const double *force);
+void modal_dofs_add_forces(modal_dofs *dofs, int n_nodes, const double *force);
 
 /* Append dof c of another; all dofs of another. */
-shb_status modal_dofs_append_one(modal_dofs *dofs, const modal_dofs *more, int c);
-shb_status modal_dofs_append(modal_dofs *dofs, const modal_dofs *more);
+void modal_dofs_append_one(modal_dofs *dofs, const modal_dofs *more, int c);
+void modal_dofs_append(modal_dofs *dofs, const modal_dofs *more);
 
 /* B[:, c] = b_(first + c) for c < count; the other columns of the dense matrix B are zeroed. */
 PetscErrorCode modal_dofs_spread(const modal_dofs *dofs, const fem_system *system, int first,

@@ -5,6 +5,7 @@
 
 #include "fem/element/surface.h"
 #include "fem/solver/petsc_error.h"
+#include "mesh/base/memory.h"
 
 #include <petscblaslapack.h> /* after petscsys.h */
 
@@ -12,13 +13,11 @@ shb_status modal_facets_create(const mesh_fe *mesh, const mesh_face_set *set,
                                modal_facets *facets) {
   const size_t n   = (size_t)set->n;
   facets->n        = set->n;
-  facets->area     = calloc(n + 1, sizeof *facets->area);
-  facets->normal   = calloc(n + 1, sizeof *facets->normal);
-  facets->total    = calloc(n + 1, sizeof *facets->total);
-  facets->centroid = calloc(n + 1, sizeof *facets->centroid);
-  facets->patch    = calloc(n + 1, sizeof *facets->patch);
-  SHB_CHECK(facets->area && facets->normal && facets->total && facets->centroid && facets->patch,
-            SHB_ERR_IO, "out of memory for %d contact facets", set->n);
+  facets->area     = shb_alloc_zeroed(n + 1, sizeof *facets->area);
+  facets->normal   = shb_alloc_zeroed(n + 1, sizeof *facets->normal);
+  facets->total    = shb_alloc_zeroed(n + 1, sizeof *facets->total);
+  facets->centroid = shb_alloc_zeroed(n + 1, sizeof *facets->centroid);
+  facets->patch    = shb_alloc_zeroed(n + 1, sizeof *facets->patch);
   fem_face_rule rule;
   FEM_PETSC(fem_face_rule_create(mesh->kind, &rule));
   facets->nodes = rule.nodes;
@@ -109,8 +108,7 @@ shb_status modal_facets_partition(modal_facets *facets, int n_patches) {
       "contact.points: %d patches asked of a contact face of %d facets; ask for fewer, refine "
       "the mesh there, or say all",
       n_patches, facets->n);
-  site *sites = malloc((size_t)facets->n * sizeof *sites + 1);
-  SHB_CHECK(sites, SHB_ERR_IO, "out of memory for %d contact facets", facets->n);
+  site *sites = shb_alloc((size_t)facets->n, sizeof *sites);
   for (int f = 0; f < facets->n; f++) sites[f] = (site){0, f};
   shb_status status = bisect(facets, sites, facets->n, 0, n_patches);
   free(sites);

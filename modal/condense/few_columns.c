@@ -7,6 +7,7 @@
 
 #include "fem/solver/petsc_error.h"
 #include "mesh/base/constants.h"
+#include "mesh/base/memory.h"
 #include "modal/condense/residual_modes.h"
 
 /* MOST_NUMBERS: numbers in the vectors of all columns, at most. */
@@ -91,8 +92,8 @@ static void set_scales(const workspace *w, double *scale) {
     scale[c] = c < w->n_contact ? most : w->chain.moment[0][(size_t)c * next];
 }
 
-static shb_status select_residual_modes(workspace *w, const modal_residual_modes *ritz, double *psi,
-                                        double *at_probe, modal_model *model) {
+static void select_residual_modes(workspace *w, const modal_residual_modes *ritz, double *psi,
+                                  double *at_probe, modal_model *model) {
   const double last = w->chain.eigen->lambda[w->chain.eigen->n - 1];
   double       scale[MODAL_FEW_COLUMNS];
   ritz_shapes(w, ritz, w->n_column, w->chain.sample, psi);
@@ -102,32 +103,25 @@ static shb_status select_residual_modes(workspace *w, const modal_residual_modes
   const int kept = modal_residual_modes_needed(ritz, w->n_column, psi, scale, last / 2, NEGLIGIBLE);
   const size_t r = (size_t)kept;
   model->n_residual         = kept;
-  model->residual_frequency = calloc(r + 1, sizeof(double));
-  model->residual_shape     = calloc((size_t)w->n_contact * r + 1, sizeof(double));
-  model->residual_probe     = calloc((size_t)w->to->probe.n * r + 1, sizeof(double));
-  model->residual_force     = calloc(((size_t)model->n_load + 1) * r + 1, sizeof(double complex));
-  SHB_CHECK(model->residual_frequency && model->residual_shape && model->residual_probe &&
-                model->residual_force,
-            SHB_ERR_IO, "out of memory for residual modes");
+  model->residual_frequency = shb_alloc_zeroed(r + 1, sizeof(double));
+  model->residual_shape     = shb_alloc_zeroed((size_t)w->n_contact * r + 1, sizeof(double));
+  model->residual_probe     = shb_alloc_zeroed((size_t)w->to->probe.n * r + 1, sizeof(double));
+  model->residual_force =
+      shb_alloc_zeroed(((size_t)model->n_load + 1) * r + 1, sizeof(double complex));
   store_residual_modes(w, ritz, kept, psi, at_probe, model);
-  return SHB_OK;
 }
 
 static shb_status create_residual_modes(workspace *w, modal_model *model) {
   modal_residual_modes ritz;
   SHB_TRY(modal_residual_modes_create(w->n_column, w->chain.moment, &ritz));
-  const size_t n    = (size_t)ritz.n;
-  double      *psi  = malloc(((size_t)w->n_column * n + 1) * sizeof *psi),
-         *at_probe  = malloc(((size_t)w->to->probe.n * n + 1) * sizeof *psi);
-  shb_status status = psi && at_probe ? SHB_OK
-                                      : shb_fail(SHB_ERR_IO, __FILE__, __LINE__,
-                                                 "out of memory for residual modes");
-  if (status == SHB_OK && ritz.n > 0)
-    status = select_residual_modes(w, &ritz, psi, at_probe, model);
+  const size_t n        = (size_t)ritz.n;
+  double      *psi      = shb_alloc((size_t)w->n_column * n, sizeof *psi);
+  double      *at_probe = shb_alloc((size_t)w->to->probe.n * n, sizeof *at_probe);
+  if (ritz.n > 0) select_residual_modes(w, &ritz, psi, at_probe, model);
   free(psi);
   free(at_probe);
   modal_residual_modes_free(&ritz);
-  return status;
+  return SHB_OK;
 }
 
 static bool fit(const fem_system *system, int n_column) {
@@ -139,21 +133,18 @@ bool modal_columns_are_few(const fem_system *system, const modal_condensation *t
   return fit(system, to->contact.n + to->load.dofs.n);
 }
 
-static shb_status create_columns(const fem_system *system, workspace *w) {
+static void create_columns(const fem_system *system, workspace *w) {
   const int with_probes = w->to->contact.n + w->to->load.dofs.n + w->to->probe.n;
   w->n_contact          = w->to->contact.n;
   w->n_column           = w->n_contact + w->to->load.dofs.n;
-  SHB_TRY(modal_dofs_append(&w->column, &w->to->contact));
-  SHB_TRY(modal_dofs_append(&w->column, &w->to->load.dofs));
+  modal_dofs_append(&w->column, &w->to->contact);
+  modal_dofs_append(&w->column, &w->to->load.dofs);
   if (fit(system, with_probes)) {
     w->n_column = with_probes;
-    SHB_TRY(modal_dofs_append(&w->column, &w->to->probe));
+    modal_dofs_append(&w->column, &w->to->probe);
   }
-  for (int i = 0; i < 2; i++) {
-    w->tail[i] = calloc((size_t)w->n_column + 1, sizeof(double));
-    SHB_CHECK(w->tail[i], SHB_ERR_IO, "out of memory for the condensation");
-  }
-  return SHB_OK;
+  for (int i = 0; i < 2; i++)
+    w->tail[i] = shb_alloc_zeroed((size_t)w->n_column + 1, sizeof(double));
 }
 
 static void take_tails(workspace *w) {
@@ -165,7 +156,7 @@ static void take_tails(workspace *w) {
 
 static shb_status fill(const fem_system *system, const modal_eigen *eigen, workspace *w,
                        modal_model *model) {
-  SHB_TRY(create_columns(system, w));
+  create_columns(system, w);
   const int    n    = w->n_column;
   const size_t size = (size_t)n * (size_t)n * sizeof(double);
   FEM_PETSC(modal_residual_chain_create(system, eigen, &w->column, &w->to->probe, n, &w->chain));

@@ -3,6 +3,7 @@
 #include <stdlib.h>
 
 #include "fem/element/load.h"
+#include "mesh/base/memory.h"
 #include "modal/hdf5/h5.h"
 
 static shb_status read_all(hid_t file, modal_load_field *f) {
@@ -39,8 +40,7 @@ static int by_tag(const void *a, const void *b) {
 
 /* Find each node of the mesh in the file; node tags ascend. */
 static shb_status locate(const mesh_fe *mesh, modal_load_field *f) {
-  f->at = malloc((size_t)mesh->n_nodes * sizeof *f->at + 1);
-  SHB_CHECK(f->at, SHB_ERR_IO, "out of memory for the load");
+  f->at = shb_alloc((size_t)mesh->n_nodes, sizeof *f->at);
   for (int i = 0; i < mesh->n_nodes; i++) f->at[i] = -1;
   for (int i = 0; i < f->nodes; i++) {
     long        tag   = f->node[i];

@@ -19,7 +19,7 @@ typedef struct {
 
 /* Read the file at field->path, check its harmonics and find its nodes in the mesh. The rest of
  * field is zero at first.
- * Errors: SHB_ERR_INPUT wrong numbers, no such nodes; SHB_ERR_IO unreadable, no memory. */
+ * Errors: SHB_ERR_INPUT wrong numbers, no such nodes; SHB_ERR_IO unreadable. */
 shb_status modal_load_field_read(const mesh_fe *mesh, modal_load_field *field);
 
 /* The part of it behind the file: check harmonic and node, and set at.

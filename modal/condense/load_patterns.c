@@ -5,6 +5,7 @@
 
 #include "fem/element/surface.h"
 #include "fem/solver/petsc_error.h"
+#include "mesh/base/memory.h"
 #include "modal/condense/load_field.h"
 
 static double part(double complex value, int imaginary) {
@@ -85,7 +86,7 @@ static shb_status add_patterns(const mesh_fe *mesh, const modal_load_field *f, d
       kind[out->dofs.n][0] = f->harmonic[i];
       kind[out->dofs.n][1] = imaginary;
       if (f->harmonic[i] > out->n_harmonics) out->n_harmonics = f->harmonic[i];
-      SHB_TRY(modal_dofs_add_forces(&out->dofs, mesh->n_nodes, force));
+      modal_dofs_add_forces(&out->dofs, mesh->n_nodes, force);
     }
   SHB_CHECK(out->dofs.n > 0, SHB_ERR_INPUT, "%s: all loads are 0; nothing would move", f->path);
   return SHB_OK;
@@ -95,8 +96,8 @@ static shb_status from_field(const mesh_fe *mesh, const modal_load_field *f, dou
                              modal_load *out) {
   int kind[2 * (FEM_MAX_LOAD_HARMONICS + 1)][2];
   SHB_TRY(add_patterns(mesh, f, force, kind, out));
-  out->weight = calloc((size_t)(out->n_harmonics + 1) * (size_t)out->dofs.n, sizeof *out->weight);
-  SHB_CHECK(out->weight, SHB_ERR_IO, "out of memory for the load");
+  out->weight =
+      shb_alloc_zeroed((size_t)(out->n_harmonics + 1) * (size_t)out->dofs.n, sizeof *out->weight);
   for (int c = 0; c < out->dofs.n; c++)
     out->weight[kind[c][0] * out->dofs.n + c] = kind[c][1] ? I : 1;
   return SHB_OK;
@@ -105,10 +106,9 @@ static shb_status from_field(const mesh_fe *mesh, const modal_load_field *f, dou
 static shb_status from_case(const mesh_fe *mesh, const fem_load *load, const double *fallback,
                             double *force, modal_load *out) {
   SHB_TRY(fem_load_pattern(mesh, load, fallback, force));
-  SHB_TRY(modal_dofs_add_forces(&out->dofs, mesh->n_nodes, force));
+  modal_dofs_add_forces(&out->dofs, mesh->n_nodes, force);
   out->n_harmonics = load->n_harmonics;
-  out->weight      = calloc((size_t)load->n_harmonics + 1, sizeof *out->weight);
-  SHB_CHECK(out->weight, SHB_ERR_IO, "out of memory for the load");
+  out->weight      = shb_alloc_zeroed((size_t)load->n_harmonics + 1, sizeof *out->weight);
   memcpy(out->weight, load->factor, ((size_t)load->n_harmonics + 1) * sizeof *out->weight);
   return SHB_OK;
 }
@@ -139,11 +139,10 @@ static shb_status create_one(const mesh_fe *mesh, const fem_load *load, const do
 }
 
 /* Append the patterns of one load to out. */
-static shb_status append(modal_load *out, const modal_load *one) {
+static void append(modal_load *out, const modal_load *one) {
   const int       top = one->n_harmonics > out->n_harmonics ? one->n_harmonics : out->n_harmonics;
   const int       n = out->dofs.n, both = n + one->dofs.n;
-  double complex *weight = calloc((size_t)(top + 1) * (size_t)both, sizeof *weight);
-  SHB_CHECK(weight, SHB_ERR_IO, "out of memory for the load");
+  double complex *weight = shb_alloc_zeroed((size_t)(top + 1) * (size_t)both, sizeof *weight);
   for (int k = 0; k <= out->n_harmonics && n > 0; k++)
     memcpy(weight + k * both, out->weight + k * n, (size_t)n * sizeof *weight);
   for (int k = 0; k <= one->n_harmonics; k++)
@@ -152,7 +151,7 @@ static shb_status append(modal_load *out, const modal_load *one) {
   free(out->weight);
   out->weight      = weight;
   out->n_harmonics = top;
-  return modal_dofs_append(&out->dofs, &one->dofs);
+  modal_dofs_append(&out->dofs, &one->dofs);
 }
 
 shb_status modal_load_create(const mesh_fe *mesh, int n, const fem_load *loads,
@@ -162,13 +161,12 @@ shb_status modal_load_create(const mesh_fe *mesh, int n, const fem_load *loads,
     out->n_harmonics = 1;
     return SHB_OK;
   }
-  double    *force  = malloc(3 * (size_t)mesh->n_nodes * sizeof *force + 1);
+  double    *force  = shb_alloc(3 * (size_t)mesh->n_nodes, sizeof *force);
   shb_status status = SHB_OK;
-  if (!force) status = shb_fail(SHB_ERR_IO, __FILE__, __LINE__, "out of memory for the load");
   for (int i = 0; i < n && status == SHB_OK; i++) {
     modal_load one = {0};
     status         = create_one(mesh, &loads[i], fallback, force, &one);
-    if (status == SHB_OK) status = append(out, &one);
+    if (status == SHB_OK) append(out, &one);
     modal_load_free(&one);
   }
   free(force);

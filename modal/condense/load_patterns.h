@@ -28,7 +28,7 @@ typedef struct {
  *   fallback  in  where a force without a place of its own acts; NULL: none
  *
  * Errors: SHB_ERR_INPUT missing group or nodes, wrong numbers, zeros only; SHB_ERR_IO unreadable
- * file, no memory. */
+ * file. */
 shb_status modal_load_create(const mesh_fe *mesh, int n, const fem_load *loads,
                              const double *fallback, modal_load *out);
 

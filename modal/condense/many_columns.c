@@ -46,16 +46,13 @@ static int batch_size(const workspace *w) {
   return w->n < size ? w->n : size;
 }
 
-static shb_status allocate(workspace *w) {
+static void allocate(workspace *w) {
   const size_t n = (size_t)w->n, patterns = (size_t)w->to->load.dofs.n;
-  w->node   = calloc((size_t)(w->system->last - w->system->first) + 1, sizeof *w->node);
-  w->dof    = malloc((n + 1) * sizeof *w->dof);
-  w->L      = malloc(CHOSEN * CHOSEN * sizeof *w->L);
-  w->weight = malloc(CHOSEN * n * sizeof *w->weight);
-  for (int i = 0; i < 2; i++) w->tail[i] = calloc(n + patterns + 1, sizeof(double));
-  SHB_CHECK(w->node && w->dof && w->L && w->weight && w->tail[0] && w->tail[1], SHB_ERR_IO,
-            "out of memory for the condensation");
-  return SHB_OK;
+  w->node   = shb_alloc_zeroed((size_t)(w->system->last - w->system->first) + 1, sizeof *w->node);
+  w->dof    = shb_alloc(n + 1, sizeof *w->dof);
+  w->L      = shb_alloc(CHOSEN * CHOSEN, sizeof *w->L);
+  w->weight = shb_alloc(CHOSEN * n, sizeof *w->weight);
+  for (int i = 0; i < 2; i++) w->tail[i] = shb_alloc_zeroed(n + patterns + 1, sizeof(double));
 }
 
 static void mark(const workspace *w, const modal_dofs *dofs) {
@@ -95,16 +92,14 @@ static void append_sums(const fem_system *system, const modal_dofs *dofs, row_su
   }
 }
 
-static bool list_sums(const workspace *w, row_sums *sums) {
+static void list_sums(const workspace *w, row_sums *sums) {
   const modal_dofs *contact = &w->to->contact, *probe = &w->to->probe;
   const size_t      n = (size_t)contact->n_entries + (size_t)probe->n_entries;
-  sums->start         = calloc((size_t)(contact->n + probe->n) + 1, sizeof *sums->start);
-  sums->row           = malloc((3 * n + 1) * sizeof *sums->row);
-  sums->weight        = malloc((3 * n + 1) * sizeof *sums->weight);
-  if (!sums->start || !sums->row || !sums->weight) return false;
+  sums->start         = shb_alloc_zeroed((size_t)(contact->n + probe->n) + 1, sizeof *sums->start);
+  sums->row           = shb_alloc(3 * n + 1, sizeof *sums->row);
+  sums->weight        = shb_alloc(3 * n + 1, sizeof *sums->weight);
   append_sums(w->system, contact, sums);
   append_sums(w->system, probe, sums);
-  return true;
 }
 
 /* Rows of R or R2 of the contact dofs and of the probes. */
@@ -125,30 +120,28 @@ static bool go_on(void *context, double share) {
 static shb_status solve_by_tree(workspace *w, const fem_tree *tree, const fem_mass_rows *mass,
                                 fem_loads_end *end) {
   const size_t  all  = (size_t)w->n + (size_t)w->to->probe.n;
-  double       *R    = malloc((all * all + 1) * sizeof *R);
-  double       *R2   = malloc((all * all + 1) * sizeof *R2);
+  double       *R    = shb_alloc(all * all + 1, sizeof *R);
+  double       *R2   = shb_alloc(all * all + 1, sizeof *R2);
   row_sums      sums = {0};
   const double *phi;
-  *end = FEM_LOADS_NO_ROOM;
-  if (R && R2 && list_sums(w, &sums)) {
-    FEM_PETSC(MatDenseGetArrayRead(w->eigen->phi, &phi));
-    const fem_unit_loads loads = {.tree        = *tree,
-                                  .node_start  = mass->start,
-                                  .node_column = mass->column,
-                                  .node_mass   = mass->value,
-                                  .modes       = w->eigen->n,
-                                  .phi         = phi,
-                                  .lambda      = w->eigen->lambda,
-                                  .n_loads     = sums.n,
-                                  .start       = sums.start,
-                                  .row         = sums.row,
-                                  .weight      = sums.weight,
-                                  .go_on       = go_on,
-                                  .context     = w,
-                                  .room        = shb_memory_available()};
-    *end                       = fem_unit_loads_solve(&loads, R, R2);
-    FEM_PETSC(MatDenseRestoreArrayRead(w->eigen->phi, &phi));
-  }
+  list_sums(w, &sums);
+  FEM_PETSC(MatDenseGetArrayRead(w->eigen->phi, &phi));
+  const fem_unit_loads loads = {.tree        = *tree,
+                                .node_start  = mass->start,
+                                .node_column = mass->column,
+                                .node_mass   = mass->value,
+                                .modes       = w->eigen->n,
+                                .phi         = phi,
+                                .lambda      = w->eigen->lambda,
+                                .n_loads     = sums.n,
+                                .start       = sums.start,
+                                .row         = sums.row,
+                                .weight      = sums.weight,
+                                .go_on       = go_on,
+                                .context     = w,
+                                .room        = shb_memory_available()};
+  *end                       = fem_unit_loads_solve(&loads, R, R2);
+  FEM_PETSC(MatDenseRestoreArrayRead(w->eigen->phi, &phi));
   if (*end == FEM_LOADS_SOLVED) {
     put_term(w, R, w->model->residual_flexibility, w->model->probe_contact_residual);
     put_term(w, R2, w->model->residual_inertia, w->model->probe_contact_inertia);
@@ -204,16 +197,15 @@ static shb_status fill_two_terms(workspace *w) {
 /* The first pivots of a Cholesky factor of R2. */
 static shb_status choose(workspace *w) {
   const size_t n  = (size_t)w->n;
-  double      *R2 = malloc(n * n * sizeof *R2);
+  double      *R2 = shb_alloc(n * n, sizeof *R2);
   lapack_int   rank;
-  SHB_CHECK(R2, SHB_ERR_IO, "out of memory for the condensation");
   memcpy(R2, w->model->residual_inertia, n * n * sizeof *R2);
   const int info = LAPACKE_dpstrf(LAPACK_COL_MAJOR, 'L', w->n, R2, w->n, w->dof, &rank, -1);
   free(R2);
   SHB_CHECK(info >= 0, SHB_ERR_IO, "LAPACK's pivoted Cholesky factor failed (%d)", info);
   w->chosen = rank < CHOSEN ? rank : CHOSEN;
   for (int i = 0; i < w->chosen; i++)
-    SHB_TRY(modal_dofs_append_one(&w->subset, &w->to->contact, --w->dof[i]));
+    modal_dofs_append_one(&w->subset, &w->to->contact, --w->dof[i]);
   return SHB_OK;
 }
 
@@ -339,7 +331,7 @@ static shb_status fill_load(workspace *w) {
 }
 
 static shb_status fill(workspace *w, double *left_out) {
-  SHB_TRY(allocate(w));
+  allocate(w);
   SHB_TRY(fill_two_terms(w));
   SHB_TRY(compress_third_term(w, left_out));
   if (*left_out > MOST_LEFT_OUT) {

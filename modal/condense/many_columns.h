@@ -24,7 +24,7 @@
 
 /* Fill the residual terms and tails of the model. Collective.
  *   left_out  out  of R3, as above
- * Errors: SHB_ERR_IO no memory, solver; SHB_INTERRUPTED. */
+ * Errors: SHB_ERR_IO solver; SHB_INTERRUPTED. */
 shb_status modal_many_columns_fill(const fem_system *system, const modal_eigen *eigen,
                                    const modal_condensation *to, shb_progress *progress,
                                    modal_model *model, double *left_out);

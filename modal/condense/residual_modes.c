@@ -3,8 +3,11 @@
 #include <cblas.h>
 #include <lapacke.h>
 #include <math.h>
+#include <stdbool.h>
 #include <stdlib.h>
 #include <string.h>
+
+#include "mesh/base/memory.h"
 
 enum { BLOCKS = MODAL_RESIDUAL_BLOCKS };
 
@@ -67,27 +70,24 @@ static int reduce(problem *p) {
   return m == 0 || LAPACKE_dsyev(LAPACK_ROW_MAJOR, 'V', 'U', m, A, m, p->value) == 0;
 }
 
-static shb_status store(const problem *p, modal_residual_modes *ritz) {
+static void store(const problem *p, modal_residual_modes *ritz) {
   const int n = p->n, m = p->kept;
   ritz->n      = m;
-  ritz->lambda = malloc(((size_t)m + 1) * sizeof(double));
-  ritz->weight = malloc(((size_t)n * (size_t)m + 1) * sizeof(double));
-  SHB_CHECK(ritz->lambda && ritz->weight, SHB_ERR_IO, "out of memory for residual modes");
+  ritz->lambda = shb_alloc((size_t)m + 1, sizeof(double));
+  ritz->weight = shb_alloc((size_t)n * (size_t)m + 1, sizeof(double));
   memcpy(ritz->lambda, p->value, (size_t)m * sizeof(double));
-  if (m == 0) return SHB_OK;
+  if (m == 0) return;
   cblas_dgemm(CblasRowMajor, CblasNoTrans, CblasNoTrans, n, m, m, 1, p->T, m, p->K, m, 0,
               ritz->weight, m);
   for (int i = 0; i < n; i++)
     for (int k = 0; k < m; k++) ritz->weight[i * m + k] *= p->scale[i];
-  return SHB_OK;
 }
 
 shb_status modal_residual_modes_create(int columns, double *const moment[2 * BLOCKS],
                                        modal_residual_modes *ritz) {
   const size_t n     = BLOCKS * (size_t)columns;
-  double      *space = calloc(3 * n * n + 2 * n + 1, sizeof *space);
+  double      *space = shb_alloc_zeroed(3 * n * n + 2 * n + 1, sizeof *space);
   memset(ritz, 0, sizeof *ritz);
-  SHB_CHECK(space, SHB_ERR_IO, "out of memory for residual modes");
   problem p = {.columns = columns, .n = (int)n};
   p.K       = space;
   p.M       = p.K + n * n;
@@ -98,13 +98,11 @@ shb_status modal_residual_modes_create(int columns, double *const moment[2 * BLO
   fill(&p, moment, 0, p.K);
   fill(&p, moment, 1, p.M);
   scale_columns(&p);
-  shb_status status = orthonormal(&p) && reduce(&p)
-                          ? store(&p, ritz)
-                          : shb_fail(SHB_ERR_IO, __FILE__, __LINE__,
-                                     "the eigenvalues of the residual modes were not found");
+  const bool found = orthonormal(&p) && reduce(&p);
+  if (found) store(&p, ritz);
   free(space);
-  if (status != SHB_OK) modal_residual_modes_free(ritz);
-  return status;
+  SHB_CHECK(found, SHB_ERR_IO, "the eigenvalues of the residual modes were not found");
+  return SHB_OK;
 }
 
 void modal_residual_modes_free(modal_residual_modes *ritz) {

@@ -26,8 +26,8 @@ typedef struct {
 } modal_residual_modes;
 
 /* Solve the Ritz problem. moment[j]: mu_(j+1), [columns][columns], j < 2 blocks, made symmetric in
- * place. Directions whose mass is below 1e-12 of the largest are dropped. Errors: SHB_ERR_IO no
- * memory; the eigensolver failed. */
+ * place. Directions whose mass is below 1e-12 of the largest are dropped. Errors: SHB_ERR_IO the
+ * eigensolver failed. */
 shb_status modal_residual_modes_create(int columns, double *const moment[2 * MODAL_RESIDUAL_BLOCKS],
                                        modal_residual_modes *ritz);
 void       modal_residual_modes_free(modal_residual_modes *ritz); /* also on a zeroed struct */

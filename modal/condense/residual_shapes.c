@@ -4,21 +4,18 @@
 #include <string.h>
 
 #include "fem/solver/petsc_error.h"
-#include "modal/common/session.h"
+#include "mesh/base/memory.h"
 
 /* Columns and bytes in the file, 36 a node and column, at most. */
 enum { MOST_COLUMNS = 96, MOST_BYTES = 256 << 20, BYTES = 36 };
 
-static shb_status allocate(const fem_system *system, const modal_load *load, int rank,
-                           modal_residual_shapes *out) {
+static void allocate(const fem_system *system, const modal_load *load, int rank,
+                     modal_residual_shapes *out) {
   const size_t patterns = (size_t)load->dofs.n, K = (size_t)load->n_harmonics + 1;
-  out->load_weight = malloc(K * patterns * sizeof *out->load_weight + 1);
+  out->load_weight = shb_alloc(K * patterns, sizeof *out->load_weight);
   out->shape =
-      rank == 0 ? malloc((size_t)out->n * 3 * (size_t)system->n_nodes * sizeof(double)) : NULL;
-  SHB_CHECK(out->load_weight && (out->shape || rank != 0), SHB_ERR_IO,
-            "out of memory for the residual shapes");
+      rank == 0 ? shb_alloc((size_t)out->n * 3 * (size_t)system->n_nodes, sizeof(double)) : NULL;
   memcpy(out->load_weight, load->weight, K * patterns * sizeof *out->load_weight);
-  return SHB_OK;
 }
 
 static PetscErrorCode fill(const fem_system *system, const modal_eigen *eigen,
@@ -50,15 +47,14 @@ shb_status modal_residual_shapes_create(const fem_system *system, const modal_ei
   memset(out, 0, sizeof *out);
   if (n == 0 || n > MOST_COLUMNS || (double)n * system->n_nodes * BYTES > MOST_BYTES) return SHB_OK;
   MPI_Comm_rank(system->comm, &rank);
-  out->n            = n;
-  out->n_contact    = to->contact.n;
-  out->n_nodes      = system->n_nodes;
-  out->n_harmonics  = to->load.n_harmonics;
-  shb_status status = allocate(system, &to->load, rank, out);
-  if (status == SHB_OK) status = modal_dofs_append(&column, &to->contact);
-  if (status == SHB_OK) status = modal_dofs_append(&column, &to->load.dofs);
-  status = modal_agree(system->comm, status);
-  if (status == SHB_OK) status = fem_petsc_status(fill(system, eigen, &column, rank, out->shape));
+  out->n           = n;
+  out->n_contact   = to->contact.n;
+  out->n_nodes     = system->n_nodes;
+  out->n_harmonics = to->load.n_harmonics;
+  allocate(system, &to->load, rank, out);
+  modal_dofs_append(&column, &to->contact);
+  modal_dofs_append(&column, &to->load.dofs);
+  const shb_status status = fem_petsc_status(fill(system, eigen, &column, rank, out->shape));
   modal_dofs_free(&column);
   return status;
 }
@@ -66,8 +62,7 @@ shb_status modal_residual_shapes_create(const fem_system *system, const modal_ei
 /* shape is written in single precision, as the stress. */
 static shb_status write_shape(hid_t file, const modal_residual_shapes *s) {
   const size_t count  = (size_t)s->n * 3 * (size_t)s->n_nodes;
-  float       *single = malloc(count * sizeof *single);
-  SHB_CHECK(single, SHB_ERR_IO, "out of memory for the residual shapes");
+  float       *single = shb_alloc(count, sizeof *single);
   for (size_t i = 0; i < count; i++) single[i] = (float)s->shape[i];
   shb_status status = h5_write_single(
       file, "residual/shape", H5_SHAPE((hsize_t)s->n, (hsize_t)s->n_nodes, 3), single, "m/N",

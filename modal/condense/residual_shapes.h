@@ -14,7 +14,7 @@ typedef struct {
 } modal_residual_shapes;
 
 /* P K^-1 B with the projector P = I - phi phi^T M. Nothing is kept of more than 96 columns or above
- * 256 MB: out->n is 0 then. Collective. Errors: SHB_ERR_IO no memory, solver. */
+ * 256 MB: out->n is 0 then. Collective. Errors: SHB_ERR_IO solver. */
 shb_status modal_residual_shapes_create(const fem_system *system, const modal_eigen *eigen,
                                         const modal_condensation *to, modal_residual_shapes *out);
 

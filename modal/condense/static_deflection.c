@@ -6,6 +6,7 @@
 
 #include "fem/body/tangent.h"
 #include "fem/solver/petsc_error.h"
+#include "mesh/base/memory.h"
 #include "modal/common/phases.h"
 #include "modal/common/session.h"
 
@@ -29,15 +30,12 @@ static void sample(const fem_body *body, const modal_condensation *to, const mod
   }
 }
 
-static shb_status allocate(const fem_body *body, const modal_condensation *to, int n_pairs,
-                           int rank, modal_deflection *out) {
-  out->contact = calloc((size_t)to->contact.n + 1, sizeof(double));
-  out->probe   = calloc((size_t)to->probe.n + 1, sizeof(double));
-  out->closing = calloc((size_t)n_pairs + 1, sizeof(double));
-  out->stress  = rank == 0 ? calloc((size_t)body->mesh->n_elements + 1, sizeof(double)) : NULL;
-  SHB_CHECK(out->contact && out->probe && out->closing && (out->stress || rank != 0), SHB_ERR_IO,
-            "out of memory for the static deflection");
-  return SHB_OK;
+static void allocate(const fem_body *body, const modal_condensation *to, int n_pairs, int rank,
+                     modal_deflection *out) {
+  out->contact = shb_alloc_zeroed((size_t)to->contact.n + 1, sizeof(double));
+  out->probe   = shb_alloc_zeroed((size_t)to->probe.n + 1, sizeof(double));
+  out->closing = shb_alloc_zeroed((size_t)n_pairs + 1, sizeof(double));
+  if (rank == 0) out->stress = shb_alloc_zeroed((size_t)body->mesh->n_elements + 1, sizeof(double));
 }
 
 static void report(const modal_deflection *d, MPI_Comm comm, shb_progress *progress) {
@@ -70,7 +68,7 @@ shb_status modal_deflection_solve(const fem_body *body, fem_system *system,
   MPI_Comm_rank(system->comm, &rank);
   out->speed    = body->rotation.speed;
   out->pressure = body->pressure;
-  SHB_TRY(allocate(body, to, patches->n_pairs, rank, out));
+  allocate(body, to, patches->n_pairs, rank, out);
   FEM_PETSC(fem_equilibrium_solve(body, system, progress, &out->at));
   SHB_CHECK(out->at.displacement, SHB_INTERRUPTED, "interrupted");
   sample(body, to, patches, out);

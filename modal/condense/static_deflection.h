@@ -23,7 +23,7 @@ typedef struct {
 
 /* Solve the equilibrium (fem_equilibrium_solve) and sample it. system->K becomes the tangent
  * stiffness there. Collective. Errors: those of fem_equilibrium_solve; SHB_ERR_INPUT a stress above
- * a tenth of E; SHB_ERR_IO no memory; SHB_INTERRUPTED. */
+ * a tenth of E; SHB_INTERRUPTED. */
 shb_status modal_deflection_solve(const fem_body *body, fem_system *system,
                                   const modal_condensation *to, const modal_patches *patches,
                                   shb_progress *progress, modal_deflection *out);

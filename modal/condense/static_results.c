@@ -5,6 +5,7 @@
 
 #include "fem/element/finite_strain.h"
 #include "fem/solver/petsc_error.h"
+#include "mesh/base/memory.h"
 
 /* Nodes of group root, each once. */
 static void find_clamped(const mesh_fe *mesh, bool *is_clamped) {
@@ -25,7 +26,7 @@ static void add_reaction(const double x[3], const double f[3], modal_static_resu
 static shb_status fill(const fem_body *body, const double *u, bool *is_clamped,
                        double (*balance)[3], modal_static_results *out) {
   const mesh_fe *mesh = body->mesh;
-  FEM_PETSC(fem_nodal_stress(body, u, out->stress));
+  fem_nodal_stress(body, u, out->stress);
   for (int i = 0; i < mesh->n_nodes; i++) out->von_mises[i] = fem_von_mises(out->stress[i]);
   FEM_PETSC(fem_unbalanced_forces(body, u, balance, out->load));
   find_clamped(mesh, is_clamped);
@@ -39,18 +40,15 @@ static shb_status fill(const fem_body *body, const double *u, bool *is_clamped,
 
 shb_status modal_static_results_create(const fem_body *body, const double *displacement,
                                        modal_static_results *out) {
-  const size_t n       = (size_t)body->mesh->n_nodes;
-  bool        *clamped = calloc(n, sizeof *clamped);
-  double(*balance)[3]  = malloc(n * sizeof *balance);
-  shb_status status    = SHB_OK;
-  out->n_nodes         = body->mesh->n_nodes;
-  out->stress          = malloc(n * sizeof *out->stress);
-  out->von_mises       = malloc(n * sizeof *out->von_mises);
-  out->clamped         = malloc(n * sizeof *out->clamped);
-  out->reaction        = malloc(n * sizeof *out->reaction);
-  if (!clamped || !balance || !out->stress || !out->von_mises || !out->clamped || !out->reaction)
-    status = shb_fail(SHB_ERR_IO, __FILE__, __LINE__, "out of memory for the static stresses");
-  if (status == SHB_OK) status = fill(body, displacement, clamped, balance, out);
+  const size_t n          = (size_t)body->mesh->n_nodes;
+  bool        *clamped    = shb_alloc_zeroed(n, sizeof *clamped);
+  double(*balance)[3]     = shb_alloc(n, sizeof *balance);
+  out->n_nodes            = body->mesh->n_nodes;
+  out->stress             = shb_alloc(n, sizeof *out->stress);
+  out->von_mises          = shb_alloc(n, sizeof *out->von_mises);
+  out->clamped            = shb_alloc(n, sizeof *out->clamped);
+  out->reaction           = shb_alloc(n, sizeof *out->reaction);
+  const shb_status status = fill(body, displacement, clamped, balance, out);
   free(clamped);
   free(balance);
   return status;

@@ -18,8 +18,7 @@ typedef struct {
   double load[3];        /* N, sum of the loads: -force up to the equilibrium error */
 } modal_static_results;
 
-/* Compute out (zeroed before) from the displacement [n_nodes][3] m, on one rank. Errors: SHB_ERR_IO
- * no memory. */
+/* Compute out (zeroed before) from the displacement [n_nodes][3] m, on one rank. */
 shb_status modal_static_results_create(const fem_body *body, const double *displacement,
                                        modal_static_results *out);
 

@@ -7,26 +7,24 @@
 
 #include "fem/supernodal/large_pages.h"
 #include "mesh/base/constants.h"
+#include "mesh/base/memory.h"
 #include "modal/common/random_vector.h"
 #include "modal/cyclic/small_hermitian.h"
 
 static const double complex one = 1;
 
-shb_status wave_basis_create(wave_operator *op, int p, int capacity, wave_basis *b) {
+void wave_basis_create(wave_operator *op, int p, int capacity, wave_basis *b) {
   const size_t block = (size_t)p * op->order, each = (size_t)p * (size_t)p;
   const size_t blocks = (size_t)capacity, m = (size_t)p * blocks;
   *b       = (wave_basis){.op = op, .order = op->order, .p = p, .capacity = capacity};
-  b->W     = fem_large_malloc(block * sizeof *b->W);
-  b->MW    = fem_large_malloc(block * sizeof *b->MW);
-  b->Q     = fem_large_malloc(blocks * block * sizeof *b->Q); /* touched as it grows */
-  b->D     = calloc(blocks * each, sizeof *b->D);
-  b->B     = calloc(blocks * each, sizeof *b->B);
-  b->H     = malloc(m * m * sizeof *b->H);
-  b->theta = malloc(m * sizeof *b->theta);
-  b->C     = malloc((size_t)p * m * sizeof *b->C);
-  if (b->W && b->MW && b->Q && b->D && b->B && b->H && b->theta && b->C) return SHB_OK;
-  wave_basis_free(b);
-  SHB_FAIL(SHB_ERR_IO, "out of memory for the Lanczos basis");
+  b->W     = fem_large_alloc(block, sizeof *b->W);
+  b->MW    = fem_large_alloc(block, sizeof *b->MW);
+  b->Q     = fem_large_alloc(blocks * block, sizeof *b->Q); /* touched as it grows */
+  b->D     = shb_alloc_zeroed(blocks * each, sizeof *b->D);
+  b->B     = shb_alloc_zeroed(blocks * each, sizeof *b->B);
+  b->H     = shb_alloc(m * m, sizeof *b->H);
+  b->theta = shb_alloc(m, sizeof *b->theta);
+  b->C     = shb_alloc((size_t)p * m, sizeof *b->C);
 }
 
 void wave_basis_free(wave_basis *b) {
@@ -50,18 +48,13 @@ void wave_basis_randomise(const wave_basis *b, uint64_t seed) {
   }
 }
 
-static shb_status apply_mass(wave_basis *b) {
-  return wave_operator_mass(b->op, b->p, b->W, b->MW);
-}
-
-shb_status wave_basis_project_out(wave_basis *b, double complex *last) {
+void wave_basis_project_out(wave_basis *b, double complex *last) {
   const int m = b->p * b->n;
-  SHB_TRY(apply_mass(b));
+  wave_operator_mass(b->op, b->p, b->W, b->MW);
   wave_inner(b->order, m, b->Q, b->p, b->MW, b->C);
   wave_add(b->order, -1, m, b->Q, b->C, b->p, b->W);
   for (int c = 0; last && b->n > 0 && c < b->p; c++)
     for (int r = 0; r < b->p; r++) last[c * b->p + r] += b->C[c * m + m - b->p + r];
-  return SHB_OK;
 }
 
 /* P = R P; R is upper triangular, both by columns. */
@@ -74,28 +67,25 @@ static void multiply_triangle(int p, const double complex *R, double complex *P)
     }
 }
 
-shb_status wave_basis_cholesky_qr(wave_basis *b, double complex *product, bool *good) {
+void wave_basis_cholesky_qr(wave_basis *b, double complex *product, bool *good) {
   const int       p = b->p, n = (int)b->order;
   double complex *R = b->C;
   wave_inner(b->order, p, b->W, p, b->MW, R);
   *good = small_hermitian_cholesky(p, R);
-  if (!*good) return SHB_OK;
+  if (!*good) return;
   cblas_ztrsm(CblasColMajor, CblasRight, CblasUpper, CblasNoTrans, CblasNonUnit, n, p, &one, R, p,
               b->W, n);
   cblas_ztrsm(CblasColMajor, CblasRight, CblasUpper, CblasNoTrans, CblasNonUnit, n, p, &one, R, p,
               b->MW, n);
   multiply_triangle(p, R, product);
-  return SHB_OK;
 }
 
 /* The second pass removes rounding errors only (modal/eigen/block_basis.c). */
-shb_status wave_basis_orthonormalise(wave_basis *b, double complex *D, double complex *R,
-                                     bool *good) {
+void wave_basis_orthonormalise(wave_basis *b, double complex *D, double complex *R, bool *good) {
   *good = true;
   for (int i = 0; i < b->p * b->p; i++) R[i] = i % (b->p + 1) == 0;
-  for (int pass = 0; pass < (b->n > 0 ? 2 : 1); pass++) SHB_TRY(wave_basis_project_out(b, D));
-  for (int pass = 0; pass < 2 && *good; pass++) SHB_TRY(wave_basis_cholesky_qr(b, R, good));
-  return SHB_OK;
+  for (int pass = 0; pass < (b->n > 0 ? 2 : 1); pass++) wave_basis_project_out(b, D);
+  for (int pass = 0; pass < 2 && *good; pass++) wave_basis_cholesky_qr(b, R, good);
 }
 
 void wave_basis_append(wave_basis *b) {

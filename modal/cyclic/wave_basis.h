@@ -23,9 +23,9 @@ typedef struct {
   double complex *C;              /* [p][p capacity] scratch */
 } wave_basis;
 
-/* Create an empty basis; op is borrowed. Errors: SHB_ERR_IO no memory. */
-shb_status wave_basis_create(wave_operator *op, int p, int capacity, wave_basis *b);
-void       wave_basis_free(wave_basis *b); /* also on a zeroed struct */
+/* Create an empty basis; op is borrowed. */
+void wave_basis_create(wave_operator *op, int p, int capacity, wave_basis *b);
+void wave_basis_free(wave_basis *b); /* also on a zeroed struct */
 
 /* Fill W with complex normally distributed numbers, different for each seed. They are real where
  * the matrices are: then all shapes are real without rounding. */
@@ -33,16 +33,15 @@ void wave_basis_randomise(const wave_basis *b, uint64_t seed);
 
 /* W -= Q Q^H M W, with MW = M W on entry to the projection. The coefficients of the last block are
  * added to last (or NULL). */
-shb_status wave_basis_project_out(wave_basis *b, double complex *last);
+void wave_basis_project_out(wave_basis *b, double complex *last);
 
 /* Cholesky QR in the M inner product: W = W' R, W'^H M W' = 1, MW alike. MW = M W on entry. product
  * = R product. *good is false if W has not full rank. */
-shb_status wave_basis_cholesky_qr(wave_basis *b, double complex *product, bool *good);
+void wave_basis_cholesky_qr(wave_basis *b, double complex *product, bool *good);
 
 /* Orthonormalise W against the basis and in itself: W = Q C + W' R. The coefficients of the last
  * block are added to D (or NULL). */
-shb_status wave_basis_orthonormalise(wave_basis *b, double complex *D, double complex *R,
-                                     bool *good);
+void wave_basis_orthonormalise(wave_basis *b, double complex *D, double complex *R, bool *good);
 
 /* Append W to the basis as the next block. */
 void wave_basis_append(wave_basis *b);

@@ -7,6 +7,7 @@
 
 #include "fem/supernodal/large_pages.h"
 #include "mesh/base/constants.h"
+#include "mesh/base/memory.h"
 #include "mesh/base/progress.h"
 #include "modal/condense/residual_terms.h"
 #include "modal/cyclic/wave_ritz.h"
@@ -106,8 +107,7 @@ static shb_status fill_shapes(const workspace *w) {
   const modal_condensation *to = w->to;
   const int                 m = w->modes->n, most = to->contact.n + to->probe.n + to->load.dofs.n;
   const size_t              side  = 3 * (size_t)to->n_pairs * (size_t)m;
-  double complex           *value = malloc(((size_t)most * (size_t)m + 1) * sizeof *value);
-  SHB_CHECK(value, SHB_ERR_IO, "out of memory for the condensation");
+  double complex           *value = shb_alloc((size_t)most * (size_t)m + 1, sizeof *value);
   sample(w, &to->contact, w->modes->phi, m, m, value);
   split(side, value, w->model->right, w->imaginary->right);
   if (to->has_left) split(side, value + side, w->model->left, w->imaginary->left);
@@ -132,10 +132,9 @@ static shb_status fill_shapes(const workspace *w) {
 /* ------------------------------------------------------------------ residual terms */
 
 /* X = P K^-1 X of the batch. */
-static shb_status solve(workspace *w, double complex *B, double complex *X) {
-  SHB_TRY(wave_operator_solve(w->op, w->batch, B, X));
+static void solve(workspace *w, double complex *B, double complex *X) {
+  wave_operator_solve(w->op, w->batch, B, X);
   wave_modes_project_out(w->modes, w->batch, X, w->C);
-  return SHB_OK;
 }
 
 /* product[a][b] = X_a^H Y_b by rows. */
@@ -158,23 +157,23 @@ static void column_products(const workspace *w, const double complex *X, const d
 }
 
 /* V_0, V_1, ... of a batch, as compute_chain of modal/condense/condense.c. */
-static shb_status compute_chain(workspace *w, int first, int count, bool single_batch) {
+static void compute_chain(workspace *w, int first, int count, bool single_batch) {
   const int       last = single_batch ? BLOCKS : BLOCKS - 1, b = w->batch;
   double complex *V = w->X, *next = w->Y;
   wave_spread(w->op, &w->column, first, count, w->batch, w->MX);
-  SHB_TRY(solve(w, w->MX, V));
+  solve(w, w->MX, V);
   for (int i = 0;; i++) {
     if (i < BLOCKS) {
       sample(w, &w->column, V, b, b, w->sample[i]);
       sample(w, &w->to->probe, V, b, b, w->probe[i]);
     }
     if (i == last && !single_batch) break;
-    SHB_TRY(wave_operator_mass(w->op, b, V, w->MX));
+    wave_operator_mass(w->op, b, V, w->MX);
     if (single_batch && i < BLOCKS) products(w, V, w->MX, w->moment[2 * i + 1]);
     if (single_batch && i == BLOCKS) column_products(w, V, w->MX, first, count, w->tail[1]);
     if (!single_batch && i == 1) column_products(w, V, w->MX, first, count, w->tail[0]);
     if (i == last) break;
-    SHB_TRY(solve(w, w->MX, next));
+    solve(w, w->MX, next);
     /* solve may not change its right-hand side: MX = M V is still needed */
     if (i + 1 < BLOCKS && single_batch) products(w, next, w->MX, w->moment[2 * i + 2]);
     if (i + 1 == last) column_products(w, next, w->MX, first, count, w->tail[single_batch ? 0 : 1]);
@@ -183,7 +182,6 @@ static shb_status compute_chain(workspace *w, int first, int count, bool single_
     next                 = done;
   }
   if (single_batch) memcpy(w->moment[0], w->sample[0], (size_t)(b * b) * sizeof **w->moment);
-  return SHB_OK;
 }
 
 /* Columns first .. first + count - 1 of to [rows][n_contact] from the samples [rows][batch]. */
@@ -273,22 +271,18 @@ static int count_needed(const workspace *w, const ritz_shapes *s) {
   return modal_residual_modes_needed(&sizes, w->n_column, s->size, scale, last / 2, NEGLIGIBLE);
 }
 
-static shb_status allocate_residual_modes(const workspace *w, int kept) {
+static void allocate_residual_modes(const workspace *w, int kept) {
   modal_model *m = w->model, *i = w->imaginary;
   const size_t r = (size_t)kept, nc = (size_t)w->n_contact, q3 = (size_t)w->to->probe.n;
   const size_t K              = (size_t)m->n_load + 1;
   m->n_residual               = kept;
-  m->residual_frequency       = calloc(r + 1, sizeof(double));
-  m->residual_shape           = calloc(nc * r + 1, sizeof(double));
-  i->residual_shape           = calloc(nc * r + 1, sizeof(double));
-  m->residual_probe           = calloc(q3 * r + 1, sizeof(double));
-  i->residual_probe           = calloc(q3 * r + 1, sizeof(double));
-  m->residual_force           = calloc(K * r + 1, sizeof(double complex));
-  w->backward->residual_force = calloc(K * r + 1, sizeof(double complex));
-  SHB_CHECK(m->residual_frequency && m->residual_shape && i->residual_shape && m->residual_probe &&
-                i->residual_probe && m->residual_force && w->backward->residual_force,
-            SHB_ERR_IO, "out of memory for residual modes");
-  return SHB_OK;
+  m->residual_frequency       = shb_alloc_zeroed(r + 1, sizeof(double));
+  m->residual_shape           = shb_alloc_zeroed(nc * r + 1, sizeof(double));
+  i->residual_shape           = shb_alloc_zeroed(nc * r + 1, sizeof(double));
+  m->residual_probe           = shb_alloc_zeroed(q3 * r + 1, sizeof(double));
+  i->residual_probe           = shb_alloc_zeroed(q3 * r + 1, sizeof(double));
+  m->residual_force           = shb_alloc_zeroed(K * r + 1, sizeof(double complex));
+  w->backward->residual_force = shb_alloc_zeroed(K * r + 1, sizeof(double complex));
 }
 
 static void store_residual_modes(const workspace *w, const ritz_shapes *s, int kept) {
@@ -317,16 +311,15 @@ static shb_status make_residual_modes(workspace *w, ritz_shapes *s) {
   SHB_TRY(wave_ritz_create(w->n_column, w->moment, &s->ritz));
   const size_t n = (size_t)s->ritz.n, columns = (size_t)w->n_column, q3 = (size_t)w->to->probe.n;
   if (n == 0) return SHB_OK;
-  s->psi      = malloc((columns * n + 1) * sizeof *s->psi);
-  s->at_probe = malloc((q3 * n + 1) * sizeof *s->at_probe);
-  s->size     = malloc((columns * n + 1) * sizeof *s->size);
-  SHB_CHECK(s->psi && s->at_probe && s->size, SHB_ERR_IO, "out of memory for residual modes");
+  s->psi      = shb_alloc(columns * n + 1, sizeof *s->psi);
+  s->at_probe = shb_alloc(q3 * n + 1, sizeof *s->at_probe);
+  s->size     = shb_alloc(columns * n + 1, sizeof *s->size);
   form_shapes(w, &s->ritz, w->n_column, w->sample, s->psi);
   form_shapes(w, &s->ritz, w->to->probe.n, w->probe, s->at_probe);
   for (size_t i = 0; i < columns * n; i++) s->size[i] = cabs(s->psi[i]);
   subtract_ritz_tails(w, s);
   const int kept = count_needed(w, s);
-  SHB_TRY(allocate_residual_modes(w, kept));
+  allocate_residual_modes(w, kept);
   store_residual_modes(w, s, kept);
   return SHB_OK;
 }
@@ -348,42 +341,32 @@ static bool fits_single_batch(const workspace *w, int n_column) {
   return n_column <= MAX_COLUMNS && n_column <= (double)MAX_NUMBERS / (3. * (double)w->op->order);
 }
 
-static shb_status create_columns(workspace *w) {
+static void create_columns(workspace *w) {
   const int with_probes = w->to->contact.n + w->to->load.dofs.n + w->to->probe.n;
   w->n_contact          = w->to->contact.n;
   w->n_column = w->n_term = w->n_contact + w->to->load.dofs.n;
-  SHB_TRY(modal_dofs_append(&w->column, &w->to->contact));
-  SHB_TRY(modal_dofs_append(&w->column, &w->to->load.dofs));
+  modal_dofs_append(&w->column, &w->to->contact);
+  modal_dofs_append(&w->column, &w->to->load.dofs);
   if (fits_single_batch(w, with_probes)) {
     w->n_column = with_probes;
-    SHB_TRY(modal_dofs_append(&w->column, &w->to->probe));
+    modal_dofs_append(&w->column, &w->to->probe);
   }
-  for (int i = 0; i < 2; i++) {
-    w->tail[i] = calloc((size_t)w->n_column + 1, sizeof **w->tail);
-    SHB_CHECK(w->tail[i], SHB_ERR_IO, "out of memory for the condensation");
-  }
-  return SHB_OK;
+  for (int i = 0; i < 2; i++)
+    w->tail[i] = shb_alloc_zeroed((size_t)w->n_column + 1, sizeof **w->tail);
 }
 
-static shb_status create_batch(workspace *w, int batch) {
+static void create_batch(workspace *w, int batch) {
   const size_t b = (size_t)batch, size = b * w->op->order;
-  w->batch  = batch;
-  w->X      = fem_large_malloc(size * sizeof *w->X);
-  w->Y      = fem_large_malloc(size * sizeof *w->Y);
-  w->MX     = fem_large_malloc(size * sizeof *w->MX);
-  w->C      = malloc(b * (size_t)w->modes->n * sizeof *w->C);
-  bool made = w->X && w->Y && w->MX && w->C;
+  w->batch = batch;
+  w->X     = fem_large_alloc(size, sizeof *w->X);
+  w->Y     = fem_large_alloc(size, sizeof *w->Y);
+  w->MX    = fem_large_alloc(size, sizeof *w->MX);
+  w->C     = shb_alloc(b * (size_t)w->modes->n, sizeof *w->C);
   for (int i = 0; i < BLOCKS; i++) {
-    w->sample[i] = malloc((size_t)w->n_column * b * sizeof **w->sample);
-    w->probe[i]  = malloc(((size_t)w->to->probe.n * b + 1) * sizeof **w->probe);
-    made         = made && w->sample[i] && w->probe[i];
+    w->sample[i] = shb_alloc((size_t)w->n_column * b, sizeof **w->sample);
+    w->probe[i]  = shb_alloc((size_t)w->to->probe.n * b + 1, sizeof **w->probe);
   }
-  for (int i = 0; i < 2 * BLOCKS; i++) {
-    w->moment[i] = malloc(b * b * sizeof **w->moment);
-    made         = made && w->moment[i];
-  }
-  SHB_CHECK(made, SHB_ERR_IO, "out of memory for the condensation");
-  return SHB_OK;
+  for (int i = 0; i < 2 * BLOCKS; i++) w->moment[i] = shb_alloc(b * b, sizeof **w->moment);
 }
 
 static void free_workspace(workspace *w) {
@@ -413,16 +396,16 @@ static void symmetrise(double *re, double *im, size_t n) {
 }
 
 static shb_status fill(workspace *w) {
-  SHB_TRY(create_columns(w));
+  create_columns(w);
   SHB_TRY(fill_shapes(w));
   const int n = w->n_column, nc = w->n_contact;
   if (nc == 0) return SHB_OK;
   const bool single_batch = fits_single_batch(w, w->n_column);
-  SHB_TRY(create_batch(w, single_batch || n < BATCH ? n : BATCH));
+  create_batch(w, single_batch || n < BATCH ? n : BATCH);
   for (int first = 0; first < n; first += w->batch) {
     const int count = n - first < w->batch ? n - first : w->batch;
     SHB_CHECK(!shb_interrupted(), SHB_INTERRUPTED, "interrupted");
-    SHB_TRY(compute_chain(w, first, count, single_batch));
+    compute_chain(w, first, count, single_batch);
     store_terms(w, first, count);
   }
   modal_model *m = w->model, *i = w->imaginary;

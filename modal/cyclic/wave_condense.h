@@ -15,7 +15,7 @@ void wave_spread(const wave_operator *op, const modal_dofs *dofs, int first, int
 
 /* Fill model, imaginary and backward of modal/model/nodal_diameters.h, zeroed first, except probe
  * names, interfaces, normals and areas. backward is left zero where the load is real, both where
- * the wave is. Errors: SHB_ERR_IO no memory; SHB_INTERRUPTED. */
+ * the wave is. Errors: SHB_INTERRUPTED. */
 shb_status wave_condense(wave_operator *op, const wave_modes *modes, const modal_condensation *to,
                          modal_model *model, modal_model *imaginary, modal_model *backward);
 

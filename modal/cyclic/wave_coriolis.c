@@ -2,6 +2,8 @@
 
 #include <stdlib.h>
 
+#include "mesh/base/memory.h"
+
 /* Y = G X from MX = M X, one block row at a time. */
 static void turn(const fem_rotation *rotation, fem_turning turning, size_t rows,
                  const double complex *MX, double complex *Y) {
@@ -20,24 +22,18 @@ static void turn(const fem_rotation *rotation, fem_turning turning, size_t rows,
   }
 }
 
-shb_status wave_coriolis(const wave_modes *modes, const fem_rotation *rotation, fem_turning turning,
-                         double *re, double *im) {
+void wave_coriolis(const wave_modes *modes, const fem_rotation *rotation, fem_turning turning,
+                   double *re, double *im) {
   const size_t    m = (size_t)modes->n, size = m * modes->order;
-  double complex *Y = malloc((size + 1) * sizeof *Y), *C = malloc((m * m + 1) * sizeof *C);
-  shb_status      status = SHB_OK;
-  if (Y && C) {
-    turn(rotation, turning, size / 3, modes->m_phi, Y);
-    wave_inner(modes->order, modes->n, modes->phi, modes->n, Y, C); /* phi_i^H Y_j at [j][i] */
-    for (size_t i = 0; i < m; i++)
-      for (size_t j = 0; j < m; j++) { /* rounding differences go */
-        const double complex value = (C[j * m + i] - conj(C[i * m + j])) / 2;
-        re[i * m + j]              = creal(value);
-        if (im) im[i * m + j] = cimag(value);
-      }
-  } else {
-    status = shb_fail(SHB_ERR_IO, __FILE__, __LINE__, "out of memory for the Coriolis terms");
-  }
+  double complex *Y = shb_alloc(size + 1, sizeof *Y), *C = shb_alloc(m * m + 1, sizeof *C);
+  turn(rotation, turning, size / 3, modes->m_phi, Y);
+  wave_inner(modes->order, modes->n, modes->phi, modes->n, Y, C); /* phi_i^H Y_j at [j][i] */
+  for (size_t i = 0; i < m; i++)
+    for (size_t j = 0; j < m; j++) { /* rounding differences go */
+      const double complex value = (C[j * m + i] - conj(C[i * m + j])) / 2;
+      re[i * m + j]              = creal(value);
+      if (im) im[i * m + j] = cimag(value);
+    }
   free(Y);
   free(C);
-  return status;
 }

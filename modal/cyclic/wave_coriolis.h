@@ -10,8 +10,8 @@
 #include "modal/cyclic/wave_modes.h"
 
 /* re + j im [n][n] <- phi^H G phi, 1/s, skew-Hermitian: re is skew-symmetric and im symmetric; im
- * NULL: real shapes. SHB_ERR_IO: no memory. */
-shb_status wave_coriolis(const wave_modes *modes, const fem_rotation *rotation, fem_turning turning,
-                         double *re, double *im);
+ * NULL: real shapes. */
+void wave_coriolis(const wave_modes *modes, const fem_rotation *rotation, fem_turning turning,
+                   double *re, double *im);
 
 #endif

@@ -4,21 +4,21 @@
 #include <string.h>
 
 #include "fem/body/stress.h"
+#include "mesh/base/memory.h"
 #include "modal/cyclic/wave_condense.h"
 
 enum { BATCH = 16 };
 
-static shb_status add_modes(const wave_operator *op, const wave_modes *modes, const fem_body *body,
-                            const double *state, wave_fields *f) {
+static void add_modes(const wave_operator *op, const wave_modes *modes, const fem_body *body,
+                      const double *state, wave_fields *f) {
   const size_t nodes = (size_t)body->mesh->n_nodes, m = (size_t)modes->n;
   f->n_modes = modes->n;
-  f->shape   = malloc(m * 3 * nodes * sizeof *f->shape);
-  f->stress  = malloc(m * FEM_STRESSES * nodes * sizeof *f->stress);
-  SHB_CHECK(f->shape && f->stress, SHB_ERR_IO, "out of memory for the mode shapes");
+  f->shape   = shb_alloc(m * 3 * nodes, sizeof *f->shape);
+  f->stress  = shb_alloc(m * FEM_STRESSES * nodes, sizeof *f->stress);
   for (size_t i = 0; i < m; i++)
     fem_sector_expand(op->sector, op->phase, modes->phi + i * modes->order,
                       f->shape + i * 3 * nodes);
-  return fem_nodal_stress_wave(body, state, op->phase, modes->n, f->shape, f->stress);
+  fem_nodal_stress_wave(body, state, op->phase, modes->n, f->shape, f->stress);
 }
 
 /* Vectors of one batch of residual columns. */
@@ -28,54 +28,47 @@ typedef struct {
   double complex *C;     /* [BATCH][modes] */
 } scratch;
 
-static shb_status add_batch(wave_operator *op, const wave_modes *modes, const modal_dofs *dofs,
-                            const fem_body *body, const double *state, int first,
-                            const scratch *own, wave_fields *f) {
+static void add_batch(wave_operator *op, const wave_modes *modes, const modal_dofs *dofs,
+                      const fem_body *body, const double *state, int first, const scratch *own,
+                      wave_fields *f) {
   const size_t size = 3 * (size_t)body->mesh->n_nodes, at = (size_t)first * size;
   const int    count = dofs->n - first < BATCH ? dofs->n - first : BATCH;
   wave_spread(op, dofs, first, count, count, own->x);
-  SHB_TRY(wave_operator_solve(op, count, own->x, own->x));
+  wave_operator_solve(op, count, own->x, own->x);
   wave_modes_project_out(modes, count, own->x, own->C);
   for (size_t c = 0; c < (size_t)count; c++)
     fem_sector_expand(op->sector, op->phase, own->x + c * op->order, own->nodal + c * size);
   for (size_t i = 0; i < (size_t)count * size; i++)
     f->residual[at + i] = (float complex)own->nodal[i];
-  return fem_nodal_stress_wave(body, state, op->phase, count, own->nodal,
-                               f->residual_stress + 2 * at);
+  fem_nodal_stress_wave(body, state, op->phase, count, own->nodal, f->residual_stress + 2 * at);
 }
 
-static shb_status add_columns(wave_operator *op, const wave_modes *modes, const modal_dofs *dofs,
-                              const fem_body *body, const double *state, wave_fields *f) {
+static void add_columns(wave_operator *op, const wave_modes *modes, const modal_dofs *dofs,
+                        const fem_body *body, const double *state, wave_fields *f) {
   const size_t nodes = (size_t)body->mesh->n_nodes, n = (size_t)dofs->n;
-  scratch      own    = {.x     = malloc(BATCH * op->order * sizeof *own.x),
-                         .nodal = malloc(BATCH * 3 * nodes * sizeof *own.nodal),
-                         .C     = malloc(BATCH * (size_t)modes->n * sizeof *own.C)};
-  shb_status   status = SHB_OK;
-  f->n_columns        = dofs->n;
-  f->residual         = malloc(n * 3 * nodes * sizeof *f->residual);
-  f->residual_stress  = malloc(n * FEM_STRESSES * nodes * sizeof *f->residual_stress);
-  if (!own.x || !own.nodal || !own.C || !f->residual || !f->residual_stress)
-    status = shb_fail(SHB_ERR_IO, __FILE__, __LINE__, "out of memory for the residual shapes");
-  for (int first = 0; status == SHB_OK && first < dofs->n; first += BATCH)
-    status = add_batch(op, modes, dofs, body, state, first, &own, f);
+  scratch      own   = {.x     = shb_alloc(BATCH * op->order, sizeof *own.x),
+                        .nodal = shb_alloc(BATCH * 3 * nodes, sizeof *own.nodal),
+                        .C     = shb_alloc(BATCH * (size_t)modes->n, sizeof *own.C)};
+  f->n_columns       = dofs->n;
+  f->residual        = shb_alloc(n * 3 * nodes, sizeof *f->residual);
+  f->residual_stress = shb_alloc(n * FEM_STRESSES * nodes, sizeof *f->residual_stress);
+  for (int first = 0; first < dofs->n; first += BATCH)
+    add_batch(op, modes, dofs, body, state, first, &own, f);
   free(own.x);
   free(own.nodal);
   free(own.C);
-  return status;
 }
 
-shb_status wave_fields_create(wave_operator *op, const wave_modes *modes,
-                              const modal_condensation *to, const fem_body *body,
-                              const double *state, bool columns, wave_fields *f) {
+void wave_fields_create(wave_operator *op, const wave_modes *modes, const modal_condensation *to,
+                        const fem_body *body, const double *state, bool columns, wave_fields *f) {
   modal_dofs dofs = {0};
   memset(f, 0, sizeof *f);
-  SHB_TRY(add_modes(op, modes, body, state, f));
-  if (!columns) return SHB_OK;
-  shb_status status = modal_dofs_append(&dofs, &to->contact);
-  if (status == SHB_OK) status = modal_dofs_append(&dofs, &to->load.dofs);
-  if (status == SHB_OK) status = add_columns(op, modes, &dofs, body, state, f);
+  add_modes(op, modes, body, state, f);
+  if (!columns) return;
+  modal_dofs_append(&dofs, &to->contact);
+  modal_dofs_append(&dofs, &to->load.dofs);
+  add_columns(op, modes, &dofs, body, state, f);
   modal_dofs_free(&dofs);
-  return status;
 }
 
 void wave_fields_free(wave_fields *f) {

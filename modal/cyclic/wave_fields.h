@@ -19,11 +19,10 @@ typedef struct {
  *
  * The residual columns are C P K^-1 C^H b, as modal/condense/residual_shapes.h has them.
  *   columns  in  whether they are wanted
- *   fields   out freed by the caller in any case
- * Errors: SHB_ERR_IO no memory. */
-shb_status wave_fields_create(wave_operator *op, const wave_modes *modes,
-                              const modal_condensation *to, const fem_body *body,
-                              const double *state, bool columns, wave_fields *fields);
-void       wave_fields_free(wave_fields *fields); /* also on a zeroed struct */
+ *   fields   out freed by the caller in any case */
+void wave_fields_create(wave_operator *op, const wave_modes *modes, const modal_condensation *to,
+                        const fem_body *body, const double *state, bool columns,
+                        wave_fields *fields);
+void wave_fields_free(wave_fields *fields); /* also on a zeroed struct */
 
 #endif

@@ -7,6 +7,7 @@
 #include "fem/body/energy.h"
 #include "fem/supernodal/large_pages.h"
 #include "mesh/base/constants.h"
+#include "mesh/base/memory.h"
 #include "mesh/base/progress.h"
 #include "modal/common/random_vector.h"
 #include "modal/cyclic/small_hermitian.h"
@@ -46,13 +47,13 @@ static shb_status extend(wave_basis *b, int wanted) {
   bool            good      = true;
   double complex *unused    = b->H;
   wave_basis_randomise(b, 0);
-  SHB_TRY(wave_basis_orthonormalise(b, NULL, unused, &good));
+  wave_basis_orthonormalise(b, NULL, unused, &good);
   while (good && converged < wanted && b->n < b->capacity) {
     const size_t at = (size_t)b->n * (size_t)(b->p * b->p);
     SHB_CHECK(!shb_interrupted(), SHB_INTERRUPTED, "interrupted");
     wave_basis_append(b);
-    SHB_TRY(wave_operator_solve(b->op, b->p, b->MW, b->W));
-    SHB_TRY(wave_basis_orthonormalise(b, b->D + at, b->B + at, &good));
+    wave_operator_solve(b->op, b->p, b->MW, b->W);
+    wave_basis_orthonormalise(b, b->D + at, b->B + at, &good);
     if (good && b->n * b->p >= wanted) SHB_TRY(find_pairs(b, wanted, &converged));
   }
   SHB_CHECK(converged >= wanted, SHB_NOT_CONVERGED,
@@ -94,11 +95,10 @@ static double complex normaliser(size_t order, const double complex *x, const do
 }
 
 /* phi = Q times the leading eigenvectors of H, largest Ritz value first. */
-static shb_status collect(wave_basis *b, wave_modes *out) {
+static void collect(wave_basis *b, wave_modes *out) {
   const int       m     = b->p * b->n;
   const size_t    order = b->order, n = (size_t)out->n;
-  double complex *S = malloc((size_t)m * n * sizeof *S);
-  SHB_CHECK(S, SHB_ERR_IO, "out of memory for the modes of a sector");
+  double complex *S = shb_alloc((size_t)m * n, sizeof *S);
   for (int i = 0; i < out->n; i++) {
     memcpy(S + (size_t)i * (size_t)m, b->H + (size_t)(m - 1 - i) * (size_t)m,
            (size_t)m * sizeof *S);
@@ -107,7 +107,7 @@ static shb_status collect(wave_basis *b, wave_modes *out) {
   memset(out->phi, 0, n * order * sizeof *out->phi);
   wave_add(order, 1, m, b->Q, S, out->n, out->phi);
   free(S);
-  SHB_TRY(wave_operator_mass(b->op, out->n, out->phi, out->m_phi));
+  wave_operator_mass(b->op, out->n, out->phi, out->m_phi);
   for (size_t i = 0; i < n; i++) {
     const double complex by = normaliser(order, out->phi + i * order, out->m_phi + i * order);
     for (size_t k = i * order; k < (i + 1) * order; k++) {
@@ -115,37 +115,31 @@ static shb_status collect(wave_basis *b, wave_modes *out) {
       out->m_phi[k] *= by;
     }
   }
-  return SHB_OK;
 }
 
 /* |phi - lambda K^-1 M phi| in the M norm. */
-static shb_status find_residuals(wave_operator *op, wave_modes *out) {
+static void find_residuals(wave_operator *op, wave_modes *out) {
   const size_t    size = (size_t)out->n * out->order;
-  double complex *X = malloc(size * sizeof *X), *MX = malloc(size * sizeof *MX);
-  shb_status      status = SHB_OK;
-  if (!X || !MX) status = shb_fail(SHB_ERR_IO, __FILE__, __LINE__, "out of memory for residuals");
-  if (status == SHB_OK) status = wave_operator_solve(op, out->n, out->m_phi, X);
-  for (size_t i = 0; status == SHB_OK && i < size; i++)
-    X[i] = out->phi[i] - out->lambda[i / out->order] * X[i];
-  if (status == SHB_OK) status = wave_operator_mass(op, out->n, X, MX);
-  for (int i = 0; status == SHB_OK && i < out->n; i++) {
+  double complex *X = shb_alloc(size, sizeof *X), *MX = shb_alloc(size, sizeof *MX);
+  wave_operator_solve(op, out->n, out->m_phi, X);
+  for (size_t i = 0; i < size; i++) X[i] = out->phi[i] - out->lambda[i / out->order] * X[i];
+  wave_operator_mass(op, out->n, X, MX);
+  for (int i = 0; i < out->n; i++) {
     double complex square;
     wave_inner(out->order, 1, X + (size_t)i * out->order, 1, MX + (size_t)i * out->order, &square);
     out->eigen_residual[i] = sqrt(fmax(creal(square), 0));
   }
   free(X);
   free(MX);
-  return status;
 }
 
 /* The eigenvalues from the strains of the real and of the imaginary part of the sector's motion. */
 static shb_status refine(const wave_operator *op, const fem_body *body, const double *state,
                          wave_modes *out) {
   const size_t    stride = 3 * (size_t)body->mesh->n_nodes;
-  double complex *nodal  = malloc(stride * sizeof *nodal);
-  double         *u      = malloc(FEM_FIELDS * stride * sizeof *u), energy[FEM_FIELDS];
-  const bool      made   = nodal && u;
-  for (int first = 0; made && first < out->n; first += FEM_FIELDS / 2) {
+  double complex *nodal  = shb_alloc(stride, sizeof *nodal);
+  double         *u      = shb_alloc(FEM_FIELDS * stride, sizeof *u), energy[FEM_FIELDS];
+  for (int first = 0; first < out->n; first += FEM_FIELDS / 2) {
     const int left = out->n - first, count = left < FEM_FIELDS / 2 ? left : FEM_FIELDS / 2;
     for (int i = 0; i < count; i++) {
       double *re = u + 2 * (size_t)i * stride, *im = re + stride;
@@ -159,7 +153,6 @@ static shb_status refine(const wave_operator *op, const fem_body *body, const do
     out->lambda[i] = fmax(out->lambda[i], out->lambda[i - 1]);
   free(nodal);
   free(u);
-  SHB_CHECK(made, SHB_ERR_IO, "out of memory for the modes of a sector");
   SHB_CHECK(out->lambda[0] > 0, SHB_ERR_INPUT,
             "rotor.speed: the static equilibrium at %.6g rad/s is not stable (lowest eigenvalue "
             "%.3g rad2/s2); give a lower speed",
@@ -167,17 +160,14 @@ static shb_status refine(const wave_operator *op, const fem_body *body, const do
   return SHB_OK;
 }
 
-static shb_status allocate(size_t order, int modes, wave_modes *out) {
+static void allocate(size_t order, int modes, wave_modes *out) {
   const size_t n      = (size_t)modes;
   out->n              = modes;
   out->order          = order;
-  out->lambda         = malloc(n * sizeof *out->lambda);
-  out->eigen_residual = calloc(n, sizeof *out->eigen_residual);
-  out->phi            = fem_large_malloc(n * order * sizeof *out->phi);
-  out->m_phi          = fem_large_malloc(n * order * sizeof *out->m_phi);
-  SHB_CHECK(out->lambda && out->eigen_residual && out->phi && out->m_phi, SHB_ERR_IO,
-            "out of memory for the modes of a sector");
-  return SHB_OK;
+  out->lambda         = shb_alloc(n, sizeof *out->lambda);
+  out->eigen_residual = shb_alloc_zeroed(n, sizeof *out->eigen_residual);
+  out->phi            = fem_large_alloc(n * order, sizeof *out->phi);
+  out->m_phi          = fem_large_alloc(n * order, sizeof *out->m_phi);
 }
 
 /* One run with blocks of p columns. */
@@ -185,9 +175,9 @@ static shb_status run(wave_operator *op, const wave_settings *settings, int p, w
                       modal_verdict *verdict) {
   const int  most = (int)fmin((double)op->order, 8. * settings->modes + 30. * p);
   wave_basis b;
-  SHB_TRY(wave_basis_create(op, p, most / p, &b));
+  wave_basis_create(op, p, most / p, &b);
   shb_status status = extend(&b, settings->modes);
-  if (status == SHB_OK) status = collect(&b, out);
+  if (status == SHB_OK) collect(&b, out);
   if (status == SHB_OK) status = check(&b, settings, &out->check, verdict);
   wave_basis_free(&b);
   return status;
@@ -199,7 +189,7 @@ shb_status wave_modes_solve(wave_operator *op, const wave_settings *settings, co
   memset(out, 0, sizeof *out);
   SHB_CHECK((size_t)settings->modes <= op->order, SHB_ERR_INPUT,
             "modal.modes: %d modes asked of a mesh with %zu free dofs", settings->modes, op->order);
-  SHB_TRY(allocate(op->order, settings->modes, out));
+  allocate(op->order, settings->modes, out);
   for (int p = FIRST_SIZE; verdict == MODAL_VERDICT_MISSING; p *= 2) {
     SHB_CHECK(
         p <= MOST_SIZE && (size_t)p <= op->order, SHB_NOT_CONVERGED,
@@ -208,7 +198,7 @@ shb_status wave_modes_solve(wave_operator *op, const wave_settings *settings, co
         modal_check_frequency(&out->check));
     SHB_TRY(run(op, settings, p, out, &verdict));
   }
-  SHB_TRY(find_residuals(op, out));
+  find_residuals(op, out);
   return refine(op, body, state, out);
 }
 

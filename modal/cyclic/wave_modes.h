@@ -25,8 +25,7 @@ typedef struct {
  *
  * The eigenvalues are Rayleigh quotients from the strains of the body about state, as those of
  * nodal diameter 0 (NULL: at rest). Errors: SHB_ERR_INPUT more modes than dofs, an equilibrium that
- * is not stable; SHB_NOT_CONVERGED, also if a mode stays missing; SHB_INTERRUPTED; SHB_ERR_IO no
- * memory. */
+ * is not stable; SHB_NOT_CONVERGED, also if a mode stays missing; SHB_INTERRUPTED. */
 shb_status wave_modes_solve(wave_operator *op, const wave_settings *settings, const fem_body *body,
                             const double *state, wave_modes *out);
 

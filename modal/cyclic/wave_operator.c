@@ -4,18 +4,16 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "mesh/base/memory.h"
+
 static const double complex one = 1, zero = 0;
 
 static shb_status factorise(const fem_hermitian_order *order, wave_operator *op) {
-  double complex(*value)[9] = malloc(((size_t)op->sector->n_coupled + 1) * sizeof *value);
-  bool   definite           = false;
-  SHB_CHECK(value, SHB_ERR_IO, "out of memory for the stiffness of a sector");
+  double complex(*value)[9] = shb_alloc((size_t)op->sector->n_coupled + 1, sizeof *value);
   fem_sector_coupled(op->sector, op->phase, value);
-  shb_status status = fem_hermitian_create(
-      order, conj(op->phase), (const double complex(*)[9])value, &definite, &op->factor);
+  op->factor = fem_hermitian_create(order, conj(op->phase), (const double complex(*)[9])value);
   free(value);
-  SHB_TRY(status);
-  SHB_CHECK(definite, SHB_ERR_INPUT,
+  SHB_CHECK(op->factor, SHB_ERR_INPUT,
             "the stiffness matrix of the sector is not positive definite: the clamp on group root "
             "does not hold the disc, the material is not physical, or the equilibrium at "
             "rotor.speed is not stable");
@@ -30,21 +28,19 @@ shb_status wave_operator_create(const fem_sector *sector, const fem_hermitian_or
   return factorise(order, op);
 }
 
-shb_status wave_operator_solve(wave_operator *op, int columns, const double complex *B,
-                               double complex *X) {
-  return fem_hermitian_solve(op->factor, columns, B, X);
+void wave_operator_solve(wave_operator *op, int columns, const double complex *B,
+                         double complex *X) {
+  fem_hermitian_solve(op->factor, columns, B, X);
 }
 
-shb_status wave_operator_mass(wave_operator *op, int columns, const double complex *X,
-                              double complex *Y) {
+void wave_operator_mass(wave_operator *op, int columns, const double complex *X,
+                        double complex *Y) {
   if (op->columns < columns) {
     free(op->scratch);
-    op->scratch = malloc(fem_sector_scratch(op->sector, columns) * sizeof *op->scratch);
-    op->columns = op->scratch ? columns : 0;
+    op->scratch = shb_alloc(fem_sector_scratch(op->sector, columns), sizeof *op->scratch);
+    op->columns = columns;
   }
-  SHB_CHECK(op->scratch, SHB_ERR_IO, "out of memory for products with the mass of a sector");
   fem_sector_mass(op->sector, op->phase, columns, X, Y, op->scratch);
-  return SHB_OK;
 }
 
 void wave_inner(size_t order, int nx, const double complex *X, int ny, const double complex *Y,

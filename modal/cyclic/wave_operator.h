@@ -19,17 +19,16 @@ typedef struct {
 } wave_operator;
 
 /* Factorise K(theta) of nodal diameter n of N blades; order: of sector->blocks. Errors:
- * SHB_ERR_INPUT not positive definite; SHB_ERR_IO no memory. */
+ * SHB_ERR_INPUT not positive definite. */
 shb_status wave_operator_create(const fem_sector *sector, const fem_hermitian_order *order, int n,
                                 int blades, wave_operator *op);
 
 /* X = K^-1 B; X may be B. */
-shb_status wave_operator_solve(wave_operator *op, int columns, const double complex *B,
-                               double complex *X);
+void wave_operator_solve(wave_operator *op, int columns, const double complex *B,
+                         double complex *X);
 
 /* Y = M X, different blocks. */
-shb_status wave_operator_mass(wave_operator *op, int columns, const double complex *X,
-                              double complex *Y);
+void wave_operator_mass(wave_operator *op, int columns, const double complex *X, double complex *Y);
 
 /* C = X^H Y: [y columns][x columns], by columns. */
 void wave_inner(size_t order, int nx, const double complex *X, int ny, const double complex *Y,

@@ -6,6 +6,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "mesh/base/memory.h"
 #include "modal/cyclic/small_hermitian.h"
 
 enum { BLOCKS = MODAL_RESIDUAL_BLOCKS };
@@ -80,47 +81,39 @@ static bool reduce(problem *p) {
   return small_hermitian_eigen(m, A, p->value, true);
 }
 
-static shb_status store(const problem *p, wave_ritz *ritz) {
+static void store(const problem *p, wave_ritz *ritz) {
   const int n = p->n, m = p->kept;
   ritz->n      = m;
-  ritz->lambda = malloc(((size_t)m + 1) * sizeof *ritz->lambda);
-  ritz->weight = malloc(((size_t)n * (size_t)m + 1) * sizeof *ritz->weight);
-  SHB_CHECK(ritz->lambda && ritz->weight, SHB_ERR_IO, "out of memory for residual modes");
+  ritz->lambda = shb_alloc((size_t)m + 1, sizeof *ritz->lambda);
+  ritz->weight = shb_alloc((size_t)n * (size_t)m + 1, sizeof *ritz->weight);
   memcpy(ritz->lambda, p->value, (size_t)m * sizeof *ritz->lambda);
-  if (m == 0) return SHB_OK;
+  if (m == 0) return;
   cblas_zgemm(CblasRowMajor, CblasNoTrans, CblasConjTrans, n, m, m, &one, p->T, m, p->K, m, &zero,
               ritz->weight, m);
   for (int i = 0; i < n; i++)
     for (int k = 0; k < m; k++) ritz->weight[i * m + k] *= p->scale[i];
-  return SHB_OK;
 }
 
 shb_status wave_ritz_create(int columns, double complex *const moment[2 * BLOCKS],
                             wave_ritz *ritz) {
   const size_t    n      = BLOCKS * (size_t)columns;
-  double complex *space  = calloc(3 * n * n + 1, sizeof *space);
-  double         *values = calloc(2 * n + 1, sizeof *values);
-  shb_status      status = SHB_OK;
+  double complex *space  = shb_alloc_zeroed(3 * n * n + 1, sizeof *space);
+  double         *values = shb_alloc_zeroed(2 * n + 1, sizeof *values);
+  problem         p      = {.columns = columns, .n = (int)n, .K = space, .value = values};
   memset(ritz, 0, sizeof *ritz);
-  if (space && values) {
-    problem p = {.columns = columns, .n = (int)n, .K = space, .value = values};
-    p.M       = p.K + n * n;
-    p.T       = p.M + n * n;
-    p.scale   = p.value + n;
-    for (int j = 0; j < 2 * BLOCKS; j++) wave_make_hermitian(moment[j], columns);
-    fill(&p, moment, 0, p.K);
-    fill(&p, moment, 1, p.M);
-    scale_columns(&p);
-    status = orthonormal(&p) && reduce(&p)
-                 ? store(&p, ritz)
-                 : shb_fail(SHB_ERR_IO, __FILE__, __LINE__,
-                            "the eigenvalues of the residual modes were not found");
-  } else
-    status = shb_fail(SHB_ERR_IO, __FILE__, __LINE__, "out of memory for residual modes");
+  p.M     = p.K + n * n;
+  p.T     = p.M + n * n;
+  p.scale = p.value + n;
+  for (int j = 0; j < 2 * BLOCKS; j++) wave_make_hermitian(moment[j], columns);
+  fill(&p, moment, 0, p.K);
+  fill(&p, moment, 1, p.M);
+  scale_columns(&p);
+  const bool found = orthonormal(&p) && reduce(&p);
+  if (found) store(&p, ritz);
   free(space);
   free(values);
-  if (status != SHB_OK) wave_ritz_free(ritz);
-  return status;
+  SHB_CHECK(found, SHB_ERR_IO, "the eigenvalues of the residual modes were not found");
+  return SHB_OK;
 }
 
 void wave_ritz_free(wave_ritz *ritz) {

@@ -13,7 +13,7 @@ typedef struct {
 } wave_ritz;
 
 /* Solve the Ritz problem. moment[j]: mu_(j+1), [columns][columns] by rows, made Hermitian in place.
- * Errors: SHB_ERR_IO no memory; the eigensolver failed. */
+ * Errors: SHB_ERR_IO the eigensolver failed. */
 shb_status wave_ritz_create(int columns, double complex *const moment[2 * MODAL_RESIDUAL_BLOCKS],
                             wave_ritz *ritz);
 void       wave_ritz_free(wave_ritz *ritz); /* also on a zeroed struct */

@@ -1,5 +1,6 @@
 #include "modal/cyclic/wave_search.h"
 #include "fem/supernodal/large_pages.h"
+#include "mesh/base/memory.h"
 #include "modal/cyclic/small_hermitian.h"
 
 #include <math.h>
@@ -52,60 +53,57 @@ static int couple_ritz_pairs(const wave_basis *b, double t, double complex *F,
 }
 
 /* Scale W by diag(M)^-1/2. */
-static shb_status scale_rows(const wave_basis *b) {
+static void scale_rows(const wave_basis *b) {
   const size_t rows = b->order / 3;
-  double      *d    = malloc((rows + 1) * sizeof *d);
-  SHB_CHECK(d, SHB_ERR_IO, "out of memory for the search of modes");
+  double      *d    = shb_alloc(rows + 1, sizeof *d);
   fem_sector_mass_diagonal(b->op->sector, d);
   for (size_t c = 0; c < (size_t)b->p; c++)
     for (size_t i = 0; i < b->order; i++) b->W[c * b->order + i] /= sqrt(d[i / 3]);
   free(d);
-  return SHB_OK;
 }
 
-static shb_status apply_mass(const search *s) {
-  return wave_operator_mass(s->b->op, s->b->p, s->b->W, s->b->MW);
+static void apply_mass(const search *s) {
+  wave_operator_mass(s->b->op, s->b->p, s->b->W, s->b->MW);
 }
 
 /* W = G times the block whose product with M is MW. */
-static shb_status apply(search *s) {
+static void apply(search *s) {
   wave_basis *b = s->b;
   const int   p = b->p;
   wave_inner(b->order, p, s->residual, p, b->MW, s->Y);
-  SHB_TRY(wave_operator_solve(b->op, p, b->MW, b->W));
-  SHB_TRY(wave_basis_project_out(b, NULL));
+  wave_operator_solve(b->op, p, b->MW, b->W);
+  wave_basis_project_out(b, NULL);
   for (int c = 0; c < p; c++)
     for (int r = 0; r < p; r++) {
       s->C[c * p + r] = 0;
       for (int k = 0; k < p; k++) s->C[c * p + r] += s->F[k * p + r] * s->Y[c * p + k];
     }
   wave_add(b->order, 1, p, s->residual, s->C, p, b->W);
-  return SHB_OK;
 }
 
 /* W -= X X^H M W; MW is updated. */
-static shb_status orthogonalise(search *s, const double complex *X) {
+static void orthogonalise(search *s, const double complex *X) {
   wave_basis *b = s->b;
   wave_inner(b->order, b->p, X, b->p, b->MW, s->C);
   wave_add(b->order, -1, b->p, X, s->C, b->p, b->W);
-  return apply_mass(s);
+  apply_mass(s);
 }
 
 /* W = W' B. Near a converged Ritz pair B is small and rounding errors dominate W': orthogonalise
  * again. */
-static shb_status normalise(search *s, int k, double t, double complex *B, bool *good) {
+static void normalise(search *s, int k, double t, double complex *B, bool *good) {
   wave_basis *b = s->b;
   double      least;
   for (int i = 0; i < b->p * b->p; i++) B[i] = i % (b->p + 1) == 0;
-  SHB_TRY(wave_basis_cholesky_qr(b, B, good));
+  wave_basis_cholesky_qr(b, B, good);
   least = cabs(B[0]);
   for (int i = 1; i < b->p; i++) least = fmin(least, cabs(B[i * (b->p + 1)]));
-  if (!*good || least > 1e-3 * t) return SHB_OK;
-  SHB_TRY(wave_basis_project_out(b, NULL));
-  SHB_TRY(apply_mass(s));
-  SHB_TRY(orthogonalise(s, s->current));
-  if (k > 0) SHB_TRY(orthogonalise(s, s->previous));
-  return wave_basis_cholesky_qr(b, B, good);
+  if (!*good || least > 1e-3 * t) return;
+  wave_basis_project_out(b, NULL);
+  apply_mass(s);
+  orthogonalise(s, s->current);
+  if (k > 0) orthogonalise(s, s->previous);
+  wave_basis_cholesky_qr(b, B, good);
 }
 
 /* W -= previous B^H */
@@ -121,21 +119,20 @@ static void copy_block(const wave_basis *b, double complex *to) {
 }
 
 /* One step of the three-term recurrence. The steps are too few for a loss of orthogonality. */
-static shb_status step(search *s, int k, double t, bool *good) {
+static void step(search *s, int k, double t, bool *good) {
   wave_basis  *b    = s->b;
   const size_t each = (size_t)b->p * (size_t)b->p, at = (size_t)k * each;
-  SHB_TRY(apply(s));
-  SHB_TRY(apply_mass(s));
+  apply(s);
+  apply_mass(s);
   wave_inner(b->order, b->p, s->current, b->p, b->MW, s->D + at);
   wave_add(b->order, -1, b->p, s->current, s->D + at, b->p, b->W);
   if (k > 0) subtract_previous(s, s->B + at - each);
-  SHB_TRY(apply_mass(s));
-  SHB_TRY(normalise(s, k, t, s->B + at, good));
+  apply_mass(s);
+  normalise(s, k, t, s->B + at, good);
   double complex *oldest = s->previous;
   s->previous            = s->current;
   s->current             = oldest;
   copy_block(b, s->current);
-  return SHB_OK;
 }
 
 /* Largest Ritz value of the first blocks. */
@@ -154,12 +151,12 @@ static shb_status iterate(search *s, double t, modal_missed_modes *out) {
   bool        good  = true;
   copy_block(b, s->residual);
   wave_basis_randomise(b, 1);
-  SHB_TRY(scale_rows(b));
-  SHB_TRY(wave_basis_orthonormalise(b, NULL, s->C, &good));
+  scale_rows(b);
+  wave_basis_orthonormalise(b, NULL, s->C, &good);
   copy_block(b, s->current);
   while (good && out->verdict == MODAL_VERDICT_UNDECIDED && out->steps < MAX_STEPS) {
     const double previous = out->ratio;
-    SHB_TRY(step(s, out->steps++, t, &good));
+    step(s, out->steps++, t, &good);
     SHB_TRY(largest_ritz_value(s, out->steps, &out->ratio));
     out->ratio /= t;
     out->probability = modal_missed_modes_probability(out->ratio, out->steps, parts * b->p,
@@ -176,19 +173,16 @@ shb_status wave_search(wave_basis *b, double t, modal_missed_modes *out) {
   const size_t    size = (size_t)b->p * b->order, each = (size_t)b->p * (size_t)b->p;
   const size_t    columns = (size_t)b->p * MAX_STEPS;
   search          s       = {.b = b};
-  double complex *vectors = fem_large_malloc(3 * size * sizeof *vectors);
-  double complex *small   = calloc((3 + 2 * MAX_STEPS) * each + columns * columns, sizeof *small);
-  double         *theta   = malloc(columns * sizeof *theta);
-  shb_status      status  = SHB_OK;
-  *out = (modal_missed_modes){.verdict = MODAL_VERDICT_UNDECIDED, .probability = 1};
-  if (vectors && small && theta) {
-    s.residual = vectors, s.current = vectors + size, s.previous = vectors + 2 * size;
-    s.F = small, s.Y = s.F + each, s.C = s.Y + each, s.D = s.C + each;
-    s.B = s.D + MAX_STEPS * each, s.H = s.B + MAX_STEPS * each, s.theta = theta;
-    out->count = couple_ritz_pairs(b, t, s.F, s.Y);
-    status     = iterate(&s, t, out);
-  } else
-    status = shb_fail(SHB_ERR_IO, __FILE__, __LINE__, "out of memory for the search of modes");
+  double complex *vectors = fem_large_alloc(3 * size, sizeof *vectors);
+  double complex *small =
+      shb_alloc_zeroed((3 + 2 * MAX_STEPS) * each + columns * columns, sizeof *small);
+  double *theta = shb_alloc(columns, sizeof *theta);
+  *out          = (modal_missed_modes){.verdict = MODAL_VERDICT_UNDECIDED, .probability = 1};
+  s.residual = vectors, s.current = vectors + size, s.previous = vectors + 2 * size;
+  s.F = small, s.Y = s.F + each, s.C = s.Y + each, s.D = s.C + each;
+  s.B = s.D + MAX_STEPS * each, s.H = s.B + MAX_STEPS * each, s.theta = theta;
+  out->count              = couple_ritz_pairs(b, t, s.F, s.Y);
+  const shb_status status = iterate(&s, t, out);
   free(vectors);
   free(small);
   free(theta);

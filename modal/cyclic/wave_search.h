@@ -9,7 +9,7 @@
 #include "modal/eigen/missed_modes.h"
 
 /* b: basis after a converged run, H holding the eigenvectors, theta the Ritz values, W the next
- * block; W is overwritten. t: limit of the eigenvalues of K^-1 M. Errors: SHB_ERR_IO no memory. */
+ * block; W is overwritten. t: limit of the eigenvalues of K^-1 M. */
 shb_status wave_search(wave_basis *b, double t, modal_missed_modes *out);
 
 #endif

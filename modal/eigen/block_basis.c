@@ -76,8 +76,7 @@ static PetscErrorCode inner_blocks(const modal_block_basis *b, int n, double *co
                                    const double *Y, double *out) {
   const size_t p = (size_t)b->p;
   PetscFunctionBeginUser;
-  PetscCheck(modal_block_inner((size_t)b->rows, p, (size_t)n, Q, Y, out), PETSC_COMM_SELF,
-             PETSC_ERR_MEM, "no memory for products of blocks");
+  modal_block_inner((size_t)b->rows, p, (size_t)n, Q, Y, out);
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, out, n * b->p * b->p, MPI_DOUBLE, MPI_SUM, b->comm));
   PetscFunctionReturn(0);
 }
@@ -172,8 +171,7 @@ PetscErrorCode modal_block_basis_append(modal_block_basis *b) {
   PetscFunctionBeginUser;
   const int slab = b->capacity - b->n < SLAB ? b->capacity - b->n : SLAB;
   b->Q[b->n]     = b->n % SLAB ? b->Q[b->n - 1] + size
-                               : fem_large_malloc(((size_t)slab * size + 1) * sizeof(double));
-  PetscCheck(b->Q[b->n], PETSC_COMM_SELF, PETSC_ERR_MEM, "no memory for the Lanczos basis");
+                               : fem_large_alloc((size_t)slab * size + 1, sizeof(double));
   PetscCall(MatDenseGetArrayRead(b->W, &W));
   memcpy(b->Q[b->n++], W, size * sizeof *W);
   PetscCall(MatDenseRestoreArrayRead(b->W, &W));

@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include "fem/supernodal/hot.h"
+#include "mesh/base/memory.h"
 
 /* PARTS: sums of rows that are made apart. CHUNK: rows that stay in the cache. */
 enum { PARTS = 32, CHUNK = 4096, LANES = 4, TOGETHER = 4 };
@@ -62,11 +63,10 @@ FEM_HOT static void add_part(size_t begin, size_t end, size_t rows, size_t p, si
   }
 }
 
-bool modal_block_inner(size_t rows, size_t p, size_t n, double *const *Q, const double *Y,
+void modal_block_inner(size_t rows, size_t p, size_t n, double *const *Q, const double *Y,
                        double *C) {
   const size_t size = n * p * p, each = (rows / PARTS / CHUNK + 1) * CHUNK;
-  double      *parts = calloc(PARTS * size + 1, sizeof *parts);
-  if (!parts) return false;
+  double      *parts = shb_alloc_zeroed(PARTS * size + 1, sizeof *parts);
 #pragma omp parallel for schedule(static)
   for (size_t part = 0; part < PARTS; part++) {
     const size_t begin = part * each, end = begin + each < rows ? begin + each : rows;
@@ -76,7 +76,6 @@ bool modal_block_inner(size_t rows, size_t p, size_t n, double *const *Q, const 
   for (size_t part = 0; part < PARTS; part++)
     for (size_t i = 0; i < size; i++) C[i] += parts[part * size + i];
   free(parts);
-  return true;
 }
 
 /* w -= sum of q_a weight_a */

@@ -9,9 +9,8 @@
 /* C_k = Q_k^T Y for n blocks.
  *   Q    in   [n], each [p][rows]
  *   Y    in   [p][rows]
- *   C    out  [n][p][p], C_k[c][a] of column a of Q_k and column c of Y
- * Returns false when out of memory. */
-bool modal_block_inner(size_t rows, size_t p, size_t n, double *const *Q, const double *Y,
+ *   C    out  [n][p][p], C_k[c][a] of column a of Q_k and column c of Y */
+void modal_block_inner(size_t rows, size_t p, size_t n, double *const *Q, const double *Y,
                        double *C);
 
 /* W -= sum of Q_k C_k, with the same C.

@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include "fem/solver/petsc_error.h"
+#include "mesh/base/memory.h"
 
 static PetscErrorCode project(const fem_body *body, const double *displacement,
                               const fem_system *system, const modal_eigen *eigen,
@@ -25,8 +26,7 @@ shb_status modal_participation_create(const fem_body *body, const double *displa
                                       const fem_system *system, const modal_eigen *eigen,
                                       modal_participation *out) {
   out->n_modes = eigen->n;
-  out->gamma   = calloc((size_t)eigen->n, FEM_RIGID * sizeof *out->gamma);
-  SHB_CHECK(out->gamma, SHB_ERR_IO, "out of memory for the participation of the modes");
+  out->gamma   = shb_alloc_zeroed((size_t)eigen->n, FEM_RIGID * sizeof *out->gamma);
   FEM_PETSC(project(body, displacement, system, eigen, out));
   return SHB_OK;
 }
@@ -35,8 +35,7 @@ shb_status modal_participation_create(const fem_body *body, const double *displa
 static shb_status write_columns(hid_t file, const modal_participation *p, const char *path,
                                 int first, int n, int power, const char *const text[2]) {
   const size_t m    = (size_t)p->n_modes;
-  double      *data = malloc(m * (size_t)n * sizeof *data);
-  SHB_CHECK(data, SHB_ERR_IO, "out of memory for the participation of the modes");
+  double      *data = shb_alloc(m * (size_t)n, sizeof *data);
   for (size_t i = 0; i < m * (size_t)n; i++) {
     double gamma = p->gamma[FEM_RIGID * (i / (size_t)n) + (size_t)first + i % (size_t)n];
     data[i]      = power == 2 ? gamma * gamma : gamma;

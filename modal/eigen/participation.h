@@ -21,7 +21,7 @@ typedef struct {
 } modal_participation;
 
 /* Compute them; out is zeroed before. displacement: [n_nodes][3] m of the equilibrium, NULL at
- * rest. Collective; every rank gets the result. Errors: SHB_ERR_IO no memory. */
+ * rest. Collective; every rank gets the result. */
 shb_status modal_participation_create(const fem_body *body, const double *displacement,
                                       const fem_system *system, const modal_eigen *eigen,
                                       modal_participation *out);

@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "mesh/base/constants.h"
+#include "mesh/base/memory.h"
 #include "modal/model/receptance.h"
 
 enum { SAMPLES = 201, MAX_BYTES = 64 << 20 };
@@ -70,23 +71,19 @@ shb_status modal_export_contact(hid_t file, const modal_patches *patches) {
   if (patches->n_pairs == 0) return SHB_OK;
   const size_t pairs = (size_t)patches->n_pairs;
   const int    n = patches->start[patches->n_pairs], sides = patches->has_left ? 2 : 1;
-  int         *nodes       = malloc(3 * (size_t)n * sizeof *nodes + 1);
-  double      *coordinates = malloc(6 * pairs * sizeof *coordinates + 1);
-  shb_status   status      = SHB_OK;
-  if (!nodes || !coordinates)
-    status = shb_fail(SHB_ERR_IO, __FILE__, __LINE__, "out of memory for the contact patches");
-  for (int p = 0; status == SHB_OK && p < patches->n_pairs; p++)
+  int         *nodes       = shb_alloc(3 * (size_t)n, sizeof *nodes);
+  double      *coordinates = shb_alloc(6 * pairs, sizeof *coordinates);
+  for (int p = 0; p < patches->n_pairs; p++)
     for (int e = patches->start[p]; e < patches->start[p + 1]; e++) {
       nodes[3 * e]     = p;
       nodes[3 * e + 1] = patches->node[0][e];
       nodes[3 * e + 2] = patches->has_left ? patches->node[1][e] : -1;
     }
-  for (int side = 0; status == SHB_OK && side < sides; side++)
+  for (int side = 0; side < sides; side++)
     memcpy(coordinates + 3 * pairs * (size_t)side, patches->centroid[side],
            3 * pairs * sizeof *coordinates);
-  if (status == SHB_OK)
-    status = h5_write_int(file, "contact/nodes", H5_SHAPE((hsize_t)n, 3), nodes, "-",
-                          "patch, right node, left node (-1: ground) of each entry");
+  shb_status status = h5_write_int(file, "contact/nodes", H5_SHAPE((hsize_t)n, 3), nodes, "-",
+                                   "patch, right node, left node (-1: ground) of each entry");
   if (status == SHB_OK)
     status = h5_write_double(file, "contact/weight", H5_SHAPE((hsize_t)n), patches->weight, "-",
                              "share of each entry in its patch's mean displacement");

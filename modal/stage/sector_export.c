@@ -3,6 +3,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 
+#include "mesh/base/memory.h"
 #include "modal/stage/model_export.h"
 
 static const char shape_text[] =
@@ -21,8 +22,7 @@ static shb_status write_shape(hid_t at, int n_nodes, bool is_real, const wave_fi
   const h5_shape size  = H5_SHAPE((hsize_t)f->n_modes, (hsize_t)n_nodes, 3);
   const size_t   count = 3 * (size_t)f->n_modes * (size_t)n_nodes;
   if (!is_real) return h5_write_complex(at, "modes/shape", size, f->shape, "kg^-1/2", shape_text);
-  double *real = malloc(count * sizeof *real + 1);
-  SHB_CHECK(real, SHB_ERR_IO, "out of memory for the mode shapes");
+  double *real = shb_alloc(count, sizeof *real);
   for (size_t i = 0; i < count; i++) real[i] = creal(f->shape[i]);
   shb_status status = h5_write_double(at, "modes/shape", size, real, "kg^-1/2", shape_text);
   free(real);
@@ -40,8 +40,7 @@ static shb_status write_single(hid_t at, int n_nodes, bool is_real, const single
   const h5_shape size  = H5_SHAPE((hsize_t)f->rows, (hsize_t)n_nodes, (hsize_t)f->width);
   const size_t   count = (size_t)h5_count(size);
   if (!is_real) return h5_write_complex_single(at, f->path, size, f->value, f->units, f->text);
-  float *real = malloc(count * sizeof *real + 1);
-  SHB_CHECK(real, SHB_ERR_IO, "out of memory for the stresses");
+  float *real = shb_alloc(count, sizeof *real);
   for (size_t i = 0; i < count; i++) real[i] = crealf(f->value[i]);
   shb_status status = h5_write_single(at, f->path, size, real, f->units, f->text);
   free(real);

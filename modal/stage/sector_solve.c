@@ -49,8 +49,7 @@ shb_status modal_sector_check(MPI_Comm comm, const modal_settings *settings) {
 
 shb_status modal_sector_list(const modal_settings *settings, modal_nodal_diameters *out) {
   const int most = settings->blades / 2;
-  int      *list = malloc(((size_t)most + 1) * sizeof *list), n = 0;
-  SHB_CHECK(list, SHB_ERR_IO, "out of memory for the nodal diameters");
+  int      *list = shb_alloc((size_t)most + 1, sizeof *list), n = 0;
   for (int d = 0; d <= most; d++) {
     bool wanted = d == 0 || settings->n_diameters < 0;
     for (int i = 0; i < settings->n_diameters; i++) wanted = wanted || settings->diameter[i] == d;
@@ -78,17 +77,13 @@ static bool wants_fields(const work *w) {
 }
 
 /* The Coriolis matrix of the modes of a nodal diameter, where it is asked for. */
-static shb_status add_coriolis(const work *w, const wave_modes *modes, modal_model *re,
-                               modal_model *im) {
+static void add_coriolis(const work *w, const wave_modes *modes, modal_model *re, modal_model *im) {
   const size_t square  = (size_t)modes->n * (size_t)modes->n;
   const bool   is_real = !im->probe; /* allocated for every complex model */
-  if (w->settings->coriolis == FEM_TURNS_UNSAID) return SHB_OK;
-  re->coriolis = calloc(square, sizeof *re->coriolis);
-  if (!is_real) im->coriolis = calloc(square, sizeof *im->coriolis);
-  SHB_CHECK(re->coriolis && (is_real || im->coriolis), SHB_ERR_IO,
-            "out of memory for the Coriolis terms");
-  return wave_coriolis(modes, &w->body->rotation, w->settings->coriolis, re->coriolis,
-                       im->coriolis);
+  if (w->settings->coriolis == FEM_TURNS_UNSAID) return;
+  re->coriolis = shb_alloc_zeroed(square, sizeof *re->coriolis);
+  if (!is_real) im->coriolis = shb_alloc_zeroed(square, sizeof *im->coriolis);
+  wave_coriolis(modes, &w->body->rotation, w->settings->coriolis, re->coriolis, im->coriolis);
 }
 
 /* Modes and condensation with a factor. */
@@ -98,13 +93,14 @@ static shb_status solve_with(const work *w, int i, wave_operator *op, wave_modes
   SHB_TRY(wave_modes_solve(op, &wanted, w->body, w->state, modes));
   w->out->check[i] = modes->check;
   if (wants_fields(w))
-    SHB_TRY(wave_fields_create(op, modes, &w->first->to, w->body, w->state,
-                               has_columns(w->first, all->n), &w->out->fields[i]));
+    wave_fields_create(op, modes, &w->first->to, w->body, w->state, has_columns(w->first, all->n),
+                       &w->out->fields[i]);
   SHB_TRY(wave_condense(op, modes, &w->first->to, &all->model[i], &all->imaginary[i],
                         &all->backward[i]));
-  SHB_TRY(add_coriolis(w, modes, &all->model[i], &all->imaginary[i]));
-  if (w->tracks) SHB_TRY(modal_sector_tracks_take(w->tracks, i, modes)); /* takes the shapes */
-  return modal_label(w->settings, &w->first->patches, &all->model[i]);
+  add_coriolis(w, modes, &all->model[i], &all->imaginary[i]);
+  if (w->tracks) modal_sector_tracks_take(w->tracks, i, modes); /* takes the shapes */
+  modal_label(w->settings, &w->first->patches, &all->model[i]);
+  return SHB_OK;
 }
 
 static shb_status solve_one(const work *w, int i) {
@@ -182,20 +178,17 @@ static void note(const work *w, shb_progress *progress) {
                       modal_check_frequency(&w->out->check[i]), w->out->check[i].method);
 }
 
-static shb_status allocate(modal_sector *out, work *w) {
+static void allocate(modal_sector *out, work *w) {
   const size_t n = (size_t)out->models.n;
-  out->check     = calloc(n, sizeof *out->check);
-  out->fields    = calloc(n, sizeof *out->fields);
-  w->status      = calloc(n, sizeof *w->status);
-  w->message     = calloc(n, sizeof *w->message);
-  SHB_CHECK(out->check && out->fields && w->status && w->message, SHB_ERR_IO,
-            "out of memory for the nodal diameters");
-  return SHB_OK;
+  out->check     = shb_alloc_zeroed(n, sizeof *out->check);
+  out->fields    = shb_alloc_zeroed(n, sizeof *out->fields);
+  w->status      = shb_alloc_zeroed(n, sizeof *w->status);
+  w->message     = shb_alloc_zeroed(n, sizeof *w->message);
 }
 
 static shb_status solve(work *w, shb_progress *progress, modal_result *first) {
   int threads = 1;
-  SHB_TRY(allocate(w->out, w));
+  allocate(w->out, w);
   w->out->models.model[0] = first->model;
   w->out->check[0]        = first->eigen.check;
   FEM_PETSC(modal_eigen_drop_factor(&first->eigen));

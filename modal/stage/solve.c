@@ -8,6 +8,7 @@
 #include "fem/body/energy.h"
 #include "fem/element/hourglass.h"
 #include "fem/solver/petsc_error.h"
+#include "mesh/base/memory.h"
 #include "modal/common/phases.h"
 #include "modal/common/session.h"
 #include "modal/condense/condense.h"
@@ -31,30 +32,24 @@ static shb_status probe_dofs(const mesh_fe *mesh, const modal_settings *settings
     SHB_CHECK(axes[2][0] == axes[2][0], SHB_ERR_INPUT,
               "probe.%s: its nearest node lies on the engine axis; check rotor.axis",
               settings->probe[q].name);
-    for (int a = 0; a < 3; a++) SHB_TRY(modal_dofs_add(dofs, 1, &node, &one, axes[a]));
+    for (int a = 0; a < 3; a++) modal_dofs_add(dofs, 1, &node, &one, axes[a]);
   }
   return SHB_OK;
 }
 
-static shb_status name_probes(const modal_settings *settings, modal_model *model) {
-  model->probe_name = calloc((size_t)settings->n_probes + 1, sizeof *model->probe_name);
-  SHB_CHECK(model->probe_name, SHB_ERR_IO, "out of memory for the probes");
-  for (int q = 0; q < settings->n_probes; q++) {
-    model->probe_name[q] = strdup(settings->probe[q].name);
-    SHB_CHECK(model->probe_name[q], SHB_ERR_IO, "out of memory for the probes");
-  }
-  return SHB_OK;
+static void name_probes(const modal_settings *settings, modal_model *model) {
+  model->probe_name = shb_alloc_zeroed((size_t)settings->n_probes + 1, sizeof *model->probe_name);
+  for (int q = 0; q < settings->n_probes; q++)
+    model->probe_name[q] = shb_text(settings->probe[q].name);
 }
 
-static shb_status copy_patches(const modal_patches *patches, modal_model *model) {
+static void copy_patches(const modal_patches *patches, modal_model *model) {
   const size_t n = (size_t)patches->n_pairs;
-  if (n == 0) return SHB_OK;
-  model->normal = malloc(3 * n * sizeof(double));
-  model->area   = malloc(n * sizeof(double));
-  SHB_CHECK(model->normal && model->area, SHB_ERR_IO, "out of memory for the contact patches");
+  if (n == 0) return;
+  model->normal = shb_alloc(3 * n, sizeof(double));
+  model->area   = shb_alloc(n, sizeof(double));
   memcpy(model->normal, patches->normal, 3 * n * sizeof(double));
   memcpy(model->area, patches->area, n * sizeof(double));
-  return SHB_OK;
 }
 
 /* Create an interface from its groups; error texts start with its name. */
@@ -95,27 +90,21 @@ static shb_status create_interfaces(const mesh_fe *mesh, const modal_settings *s
   }
   for (int i = 0; i < n && status == SHB_OK; i++)
     status = create_contact(mesh, settings, &settings->contact[i], &part[i]);
-  if (status == SHB_OK) status = modal_patches_join(n, part, out);
+  if (status == SHB_OK) modal_patches_join(n, part, out);
   for (int i = 0; i < n; i++) modal_patches_free(&part[i]);
   return status;
 }
 
 /* Copy the interface of each pair; a single interface has no name. */
-static shb_status name_interfaces(const modal_settings *settings, const modal_patches *patches,
-                                  modal_model *model) {
+static void name_interfaces(const modal_settings *settings, const modal_patches *patches,
+                            modal_model *model) {
   const int n = settings->n_contacts;
-  if (n < 2 || patches->n_pairs == 0) return SHB_OK;
-  model->interface      = malloc((size_t)patches->n_pairs * sizeof *model->interface);
-  model->interface_name = calloc((size_t)n, sizeof *model->interface_name);
-  SHB_CHECK(model->interface && model->interface_name, SHB_ERR_IO,
-            "out of memory for the contact patches");
+  if (n < 2 || patches->n_pairs == 0) return;
+  model->interface      = shb_alloc((size_t)patches->n_pairs, sizeof *model->interface);
+  model->interface_name = shb_alloc_zeroed((size_t)n, sizeof *model->interface_name);
   memcpy(model->interface, patches->interface, (size_t)patches->n_pairs * sizeof *model->interface);
-  for (model->n_interfaces = 0; model->n_interfaces < n; model->n_interfaces++) {
-    char *name = strdup(settings->contact[model->n_interfaces].name);
-    SHB_CHECK(name, SHB_ERR_IO, "out of memory for the contact patches");
-    model->interface_name[model->n_interfaces] = name;
-  }
-  return SHB_OK;
+  model->n_interfaces = n;
+  for (int i = 0; i < n; i++) model->interface_name[i] = shb_text(settings->contact[i].name);
 }
 
 /* Check the input before any lengthy computation, and create patches, probes and load patterns. */
@@ -131,7 +120,7 @@ static shb_status prepare(const mesh_fe *mesh, const modal_settings *settings,
   to->n_pairs  = patches->n_pairs;
   to->has_left = patches->has_left;
   to->damping  = settings->damping;
-  SHB_TRY(modal_patches_dofs(patches, &to->contact));
+  modal_patches_dofs(patches, &to->contact);
   SHB_TRY(probe_dofs(mesh, settings, &to->probe));
   if (settings->unloaded) return modal_load_create(mesh, 0, NULL, NULL, &to->load);
   const double *fallback = settings->n_probes > 0 ? settings->probe[0].at : NULL;
@@ -257,8 +246,7 @@ static shb_status add_coriolis(const fem_body *body, const modal_settings *setti
   const size_t m = (size_t)result->eigen.n;
   if (settings->coriolis == FEM_TURNS_UNSAID) return SHB_OK;
   result->coriolis       = settings->coriolis;
-  result->model.coriolis = calloc(m * m, sizeof *result->model.coriolis);
-  SHB_CHECK(result->model.coriolis, SHB_ERR_IO, "out of memory for the Coriolis terms");
+  result->model.coriolis = shb_alloc_zeroed(m * m, sizeof *result->model.coriolis);
   FEM_PETSC(
       modal_coriolis(&result->eigen, &body->rotation, settings->coriolis, result->model.coriolis));
   return SHB_OK;
@@ -292,21 +280,20 @@ static shb_status solve(MPI_Comm comm, const fem_body *body, const modal_setting
   modal_phase(comm, progress, "participation", "effective masses");
   SHB_TRY(modal_residual_shapes_create(&result->system, &result->eigen, to, &result->residual));
   modal_phase(comm, progress, "residual shapes", "%d columns", result->residual.n);
-  return modal_label(settings, &result->patches, &result->model);
+  modal_label(settings, &result->patches, &result->model);
+  return SHB_OK;
 }
 
-shb_status modal_label(const modal_settings *settings, const modal_patches *patches,
-                       modal_model *model) {
-  SHB_TRY(name_probes(settings, model));
-  SHB_TRY(name_interfaces(settings, patches, model));
-  return copy_patches(patches, model);
+void modal_label(const modal_settings *settings, const modal_patches *patches, modal_model *model) {
+  name_probes(settings, model);
+  name_interfaces(settings, patches, model);
+  copy_patches(patches, model);
 }
 
 shb_status modal_body_create(const mesh_fe *mesh, const modal_settings *settings,
                              modal_body **out) {
-  modal_body *b = calloc(1, sizeof *b);
-  *out          = b;
-  SHB_CHECK(b, SHB_ERR_IO, "out of memory");
+  modal_body *b  = shb_alloc_zeroed(1, sizeof *b);
+  *out           = b;
   b->material[0] = settings->material;
   for (int i = 0; i < settings->n_regions; i++) b->material[i] = settings->region[i].material;
   b->body = (fem_body){

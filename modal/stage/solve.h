@@ -75,7 +75,7 @@ typedef struct {
   fem_element  element;
 } modal_body;
 
-/* Free with free, also after an error. The mesh must outlive it. SHB_ERR_IO: no memory. */
+/* Free with free, also after an error. The mesh must outlive it. */
 shb_status modal_body_create(const mesh_fe *mesh, const modal_settings *settings,
                              modal_body **body);
 
@@ -92,10 +92,8 @@ typedef struct {
   fem_turning           coriolis; /* of the Coriolis matrix in the model */
 } modal_result;
 
-/* Give a model the names of probes and interfaces, normals and areas. Errors: SHB_ERR_IO no
- * memory. */
-shb_status modal_label(const modal_settings *settings, const modal_patches *patches,
-                       modal_model *model);
+/* Give a model the names of probes and interfaces, normals and areas. */
+void modal_label(const modal_settings *settings, const modal_patches *patches, modal_model *model);
 
 /* Assemble, solve the static equilibrium if the blade rotates, compute the modes, condense. K is
  * then the tangent stiffness at that equilibrium. Contact faces, axes and loads are those of the
@@ -108,7 +106,6 @@ shb_status modal_label(const modal_settings *settings, const modal_patches *patc
  *                      clamp, a single column of hexahedra without full_integration, a speed
  *                      without stable equilibrium
  *   SHB_NOT_CONVERGED  modes
- *   SHB_ERR_IO         no memory
  *   SHB_INTERRUPTED */
 shb_status modal_solve(MPI_Comm comm, const mesh_fe *mesh, const modal_settings *settings,
                        shb_progress *progress, modal_result *result);

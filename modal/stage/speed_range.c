@@ -1,4 +1,5 @@
 #include "modal/stage/speed_range.h"
+#include "mesh/base/memory.h"
 #include "modal/stage/sector_modes.h"
 
 #include <math.h>
@@ -71,13 +72,8 @@ static shb_status track(Mat before, int s, modal_result *r, modal_speeds *out) {
     modal_tracks_continue(NULL, s, NULL, out);
     return SHB_OK;
   }
-  double *C    = malloc(2 * (size_t)m * (size_t)m * sizeof *C);
-  int    *next = malloc((size_t)m * sizeof *next);
-  if (!C || !next) {
-    free(C);
-    free(next);
-    SHB_FAIL(SHB_ERR_IO, "out of memory to track %d modes", m);
-  }
+  double        *C       = shb_alloc(2 * (size_t)m * (size_t)m, sizeof *C);
+  int           *next    = shb_alloc((size_t)m, sizeof *next);
   double        *overlap = C + m * m;
   PetscErrorCode code    = project(before, &r->eigen, C);
   for (int i = 0; i < m * m && code == 0; i++) overlap[i] = fabs(C[i]);
@@ -220,9 +216,7 @@ shb_status modal_speed_range_solve(MPI_Comm comm, const mesh_fe *mesh,
   SHB_TRY(choose_modes(comm, mesh, settings, progress, &r.settings.modes));
   SHB_TRY(modal_speeds_create(settings->n_speeds, r.settings.modes, speeds));
   const size_t m  = (size_t)speeds->n_modes;
-  speeds->overlap = calloc((size_t)speeds->n * m * m, sizeof *speeds->overlap);
-  SHB_CHECK(speeds->overlap, SHB_ERR_IO, "out of memory to compare the modes of %d speeds",
-            speeds->n);
+  speeds->overlap = shb_alloc_zeroed((size_t)speeds->n * m * m, sizeof *speeds->overlap);
   memcpy(speeds->speed, settings->speeds, (size_t)speeds->n * sizeof *speeds->speed);
   qsort(speeds->speed, (size_t)speeds->n, sizeof *speeds->speed, ascending);
   return solve_all(&r, result);

@@ -9,6 +9,7 @@
 #include "fem/body/stress.h"
 #include "fem/solver/petsc_error.h"
 #include "mesh/base/constants.h"
+#include "mesh/base/memory.h"
 #include "mesh/core/cyclic_sides.h"
 #include "mesh/core/group_checks.h"
 #include "mesh/io/read.h"
@@ -24,11 +25,7 @@
 /* All mode shapes on rank 0, [m][n_nodes][3]; NULL elsewhere. Free with free. */
 static shb_status gather_shapes(const modal_result *result, int rank, double **shape) {
   const size_t stride = 3 * (size_t)result->system.n_nodes;
-  *shape = rank == 0 ? malloc((size_t)result->eigen.n * stride * sizeof **shape) : NULL;
-  SHB_TRY(modal_agree(result->system.comm, rank == 0 && !*shape
-                                               ? shb_fail(SHB_ERR_IO, __FILE__, __LINE__,
-                                                          "out of memory for the mode shapes")
-                                               : SHB_OK));
+  *shape = rank == 0 ? shb_alloc((size_t)result->eigen.n * stride, sizeof **shape) : NULL;
   for (int i = 0; i < result->eigen.n; i++) {
     Vec phi;
     FEM_PETSC(MatDenseGetColumnVecRead(result->eigen.phi, i, &phi));
@@ -46,15 +43,12 @@ static shb_status find_stresses(const mesh_fe *mesh, const modal_settings *setti
   const size_t  each  = (size_t)mesh->n_nodes * FEM_STRESSES * sizeof(float);
   const double *state = result->deflection.at.displacement;
   modal_body   *body;
-  of->stress          = malloc((size_t)modes * each);
-  of->residual_stress = malloc((size_t)columns * each + 1);
-  SHB_CHECK(of->stress && of->residual_stress, SHB_ERR_IO,
-            "out of memory for the stresses of %d modes", modes);
+  of->stress               = shb_alloc((size_t)modes, each);
+  of->residual_stress      = shb_alloc((size_t)columns, each);
   shb_status        status = modal_body_create(mesh, settings, &body);
   const fem_motions set[]  = {{modes, of->shape, of->stress},
                               {columns, result->residual.shape, of->residual_stress}};
-  if (status == SHB_OK)
-    status = fem_petsc_status(fem_nodal_stress_changes(&body->body, state, 2, set));
+  if (status == SHB_OK) fem_nodal_stress_changes(&body->body, state, 2, set);
   free(body);
   return status;
 }
@@ -94,10 +88,9 @@ static shb_status write_all(hid_t file, const contents *c) {
 
 /* The phases of progress are written to the file. */
 static shb_status publish(const char *path, const contents *all, const shb_progress *progress) {
-  char *temporary = shb_publish_temporary(path);
-  SHB_CHECK(temporary, SHB_ERR_IO, "out of memory");
-  hid_t      file   = -1;
-  shb_status status = h5_create(temporary, &file);
+  char      *temporary = shb_publish_temporary(path);
+  hid_t      file      = -1;
+  shb_status status    = h5_create(temporary, &file);
   if (status == SHB_OK) {
     int ranks;
     MPI_Comm_size(all->result->system.comm, &ranks);

@@ -4,6 +4,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "mesh/base/memory.h"
+
 /* Match rows and columns by decreasing overlap, each once. next[i]: column of row i. */
 static void match(int m, const double *overlap, int *next) {
   for (int i = 0; i < m; i++) next[i] = -1;
@@ -36,8 +38,7 @@ static shb_status create_speeds(const modal_nodal_diameters *models, int i, int 
                                 const double *speed, int m, modal_speeds *out) {
   SHB_TRY(modal_speeds_create(n, m, out));
   memcpy(out->speed, speed, (size_t)n * sizeof *speed);
-  out->overlap = calloc((size_t)n * (size_t)m * (size_t)m, sizeof *out->overlap);
-  SHB_CHECK(out->overlap, SHB_ERR_IO, "out of memory to compare the modes of %d speeds", n);
+  out->overlap       = shb_alloc_zeroed((size_t)n * (size_t)m * (size_t)m, sizeof *out->overlap);
   const bool is_real = 2 * models->diameter[i] == models->blades;
   return is_real ? SHB_OK : modal_speeds_make_complex(out);
 }
@@ -50,10 +51,8 @@ shb_status modal_sector_tracks_create(const modal_nodal_diameters *models, int n
   memcpy(speeds->diameter, models->diameter, (size_t)models->n * sizeof *models->diameter);
   for (int i = 1; i < models->n; i++)
     SHB_TRY(create_speeds(models, i, n, speed, m, &speeds->at[i]));
-  tracks->first  = calloc((size_t)models->n, sizeof *tracks->first);
-  tracks->before = calloc((size_t)models->n, sizeof *tracks->before);
-  SHB_CHECK(tracks->first && tracks->before, SHB_ERR_IO,
-            "out of memory for the modes of %d nodal diameters", models->n);
+  tracks->first  = shb_alloc_zeroed((size_t)models->n, sizeof *tracks->first);
+  tracks->before = shb_alloc_zeroed((size_t)models->n, sizeof *tracks->before);
   return SHB_OK;
 }
 
@@ -77,47 +76,35 @@ static void store_overlap(const double complex *first, int s, const wave_modes *
   }
 }
 
-static shb_status follow(const double complex *before, int s, const wave_modes *modes,
-                         double complex *C, modal_speeds *out) {
+static void follow(const double complex *before, int s, const wave_modes *modes, double complex *C,
+                   modal_speeds *out) {
   const size_t m       = (size_t)out->n_modes;
-  double      *overlap = malloc(m * m * sizeof *overlap);
-  int         *next    = malloc(m * sizeof *next);
-  const bool   made    = overlap && next;
-  if (made) {
-    wave_inner(modes->order, modes->n, before, modes->n, modes->m_phi, C);
-    for (size_t i = 0; i < m * m; i++) overlap[i] = cabs(C[i % m * m + i / m]);
-    modal_tracks_continue(overlap, s, next, out);
-  }
+  double      *overlap = shb_alloc(m * m, sizeof *overlap);
+  int         *next    = shb_alloc(m, sizeof *next);
+  wave_inner(modes->order, modes->n, before, modes->n, modes->m_phi, C);
+  for (size_t i = 0; i < m * m; i++) overlap[i] = cabs(C[i % m * m + i / m]);
+  modal_tracks_continue(overlap, s, next, out);
   free(overlap);
   free(next);
-  SHB_CHECK(made, SHB_ERR_IO, "out of memory to track %zu modes", m);
-  return SHB_OK;
 }
 
 static double complex *copy_of(const double complex *phi, size_t n) {
-  double complex *copy = malloc(n * sizeof *copy);
-  return copy ? memcpy(copy, phi, n * sizeof *copy) : NULL;
+  return memcpy(shb_alloc(n, sizeof *phi), phi, n * sizeof *phi);
 }
 
-shb_status modal_sector_tracks_take(modal_sector_tracks *tracks, int i, wave_modes *modes) {
+void modal_sector_tracks_take(modal_sector_tracks *tracks, int i, wave_modes *modes) {
   modal_speeds   *out = &tracks->speeds->at[i];
   const int       s   = tracks->s;
   const size_t    m   = (size_t)modes->n;
-  double complex *C   = malloc(m * m * sizeof *C);
-  SHB_CHECK(C, SHB_ERR_IO, "out of memory to track %zu modes", m);
+  double complex *C   = shb_alloc(m * m, sizeof *C);
   if (s == 0) tracks->first[i] = copy_of(modes->phi, m * modes->order);
-  shb_status status = SHB_OK;
-  if (!tracks->first[i])
-    status = shb_fail(SHB_ERR_IO, __FILE__, __LINE__, "out of memory to track %zu modes", m);
-  else if (s == 0)
+  if (s == 0)
     modal_tracks_continue(NULL, s, NULL, out);
   else
-    status = follow(tracks->before[i], s, modes, C, out);
-  if (status == SHB_OK) store_overlap(tracks->first[i], s, modes, C, out);
+    follow(tracks->before[i], s, modes, C, out);
+  store_overlap(tracks->first[i], s, modes, C, out);
   free(C);
-  SHB_TRY(status);
   free(tracks->before[i]);
   tracks->before[i] = modes->phi;
   modes->phi        = NULL;
-  return SHB_OK;
 }

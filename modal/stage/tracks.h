@@ -23,14 +23,14 @@ typedef struct {
 } modal_sector_tracks;
 
 /* Allocate those of all nodal diameters of the models, with m modes at each of n speeds.
- * modal_sector_tracks_free must be called in any case. Errors: SHB_ERR_IO no memory. */
+ * modal_sector_tracks_free must be called in any case. */
 shb_status modal_sector_tracks_create(const modal_nodal_diameters *models, int n,
                                       const double *speed, int m, modal_sector_speeds *speeds,
                                       modal_sector_tracks *tracks);
 void       modal_sector_tracks_free(modal_sector_tracks *tracks); /* the speeds are kept */
 
 /* Continue the tracks of nodal diameter i (an index) to its modes, and take over their shapes.
- * Threads may do so at once for different i. Errors: SHB_ERR_IO no memory. */
-shb_status modal_sector_tracks_take(modal_sector_tracks *tracks, int i, wave_modes *modes);
+ * Threads may do so at once for different i. */
+void modal_sector_tracks_take(modal_sector_tracks *tracks, int i, wave_modes *modes);
 
 #endif

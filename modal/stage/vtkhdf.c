@@ -5,6 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "mesh/base/memory.h"
 #include "modal/stage/model_export.h"
 
 static shb_status failed(const char *what) {
@@ -49,19 +50,17 @@ static shb_status write_header(hid_t group) {
 static shb_status write_cells(hid_t group, const mesh_fe *mesh) {
   const mesh_topology *topology = mesh_topology_of(mesh->kind);
   const size_t         n = (size_t)mesh->n_elements, each = (size_t)topology->nodes;
-  long long           *connectivity = malloc(each * n * sizeof *connectivity + 1);
-  long long           *offset       = malloc((n + 1) * sizeof *offset);
-  unsigned char       *type         = malloc(n + 1);
-  shb_status           status = connectivity && offset && type ? SHB_OK : failed("Connectivity");
-  for (size_t e = 0; status == SHB_OK && e <= n; e++) {
+  long long           *connectivity = shb_alloc(each * n, sizeof *connectivity);
+  long long           *offset       = shb_alloc(n + 1, sizeof *offset);
+  unsigned char       *type         = shb_alloc(n + 1, 1);
+  for (size_t e = 0; e <= n; e++) {
     offset[e] = (long long)each * (long long)e;
     if (e == n) break;
     type[e] = (unsigned char)topology->vtk;
     for (size_t i = 0; i < each; i++)
       connectivity[each * e + i] = mesh->connectivity[each * e + (size_t)topology->vtk_order[i]];
   }
-  if (status == SHB_OK)
-    status = write_array(group, "Connectivity", H5T_NATIVE_LLONG, each * n, connectivity);
+  shb_status status = write_array(group, "Connectivity", H5T_NATIVE_LLONG, each * n, connectivity);
   if (status == SHB_OK) status = write_array(group, "Offsets", H5T_NATIVE_LLONG, n + 1, offset);
   if (status == SHB_OK) status = write_array(group, "Types", H5T_NATIVE_UCHAR, n, type);
   free(connectivity);

@@ -51,7 +51,7 @@ static void set_unit(post_skin *skin) {
 shb_status post_skin_create(const mesh_fe *mesh, post_skin *skin) {
   mesh_face_set faces = {0};
   *skin               = (post_skin){0};
-  SHB_TRY(mesh_faces_outer(mesh, NULL, &faces));
+  mesh_faces_outer(mesh, NULL, &faces);
   const size_t n     = (size_t)mesh->n_nodes;
   int         *place = calloc(n + 1, sizeof *place);
   skin->node         = malloc((n + 1) * sizeof *skin->node);

@@ -171,7 +171,7 @@ static shb_status place(const post_blade_field *field, const mesh_face_set *face
 
 shb_status post_gauge_place(const post_blade_field *field, post_gauge *gauge) {
   mesh_face_set faces = {0};
-  SHB_TRY(mesh_faces_outer(&field->mesh, NULL, &faces));
+  mesh_faces_outer(&field->mesh, NULL, &faces);
   shb_status status = place(field, &faces, gauge);
   free(faces.nodes);
   return status;

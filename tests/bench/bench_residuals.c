@@ -48,7 +48,7 @@ static shb_status add_corners(const mesh_fe *mesh, int set, modal_dofs *dofs) {
       if (seen[node]) continue;
       seen[node] = true;
       for (int a = 0; a < 3 && end == SHB_OK; a++)
-        end = modal_dofs_add(dofs, 1, &node, &one, (double[3]){a == 0, a == 1, a == 2});
+        modal_dofs_add(dofs, 1, &node, &one, (double[3]){a == 0, a == 1, a == 2});
     }
   free(seen);
   return end;

@@ -107,6 +107,13 @@ void *realloc(void *old, size_t size) {
   return __libc_realloc(old, size);
 }
 
+void *__libc_memalign(size_t alignment, size_t size);
+
+void *aligned_alloc(size_t alignment, size_t size) {
+  if (OWN_CALL) FAIL("malloc", ENOMEM, NULL);
+  return __libc_memalign(alignment, size);
+}
+
 static int opened(const char *name, const char *path, int flags, mode_t mode) {
   FAIL("open", EMFILE, -1);
   HIDDEN(int (*)(const char *, int, ...), name);

@@ -69,9 +69,8 @@ void block_body_make(block_grid grid, int n_loads, block_body *body) {
   *body = (block_body){.grid = grid};
   block_factor_make(&body->grid, &body->f);
   double *block = block_grid_values(&body->grid, 45, 7);
-  assert_int_equal(
-      fem_supernodal_factorise(&body->f.panels, &body->f.lower, block, NULL, body->f.value),
-      FEM_FACTORISED);
+  assert_true(
+      fem_supernodal_factorise(&body->f.panels, &body->f.lower, block, NULL, body->f.value));
   body->K = block_factor_dense(&body->f, block);
   free(block);
   set_masses(body);

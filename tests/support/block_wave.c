@@ -66,7 +66,7 @@ bool block_wave_make(const block_grid *grid, signed char *exponent, double theta
   w->real = block_grid_values(grid, diagonal, 41);
   block_factor_make(grid, &w->f);
   set_matrix(w, theta);
-  assert_true(fem_panel_turns_create(&w->f.panels, &w->f.lower, exponent, &w->turns));
+  fem_panel_turns_create(&w->f.panels, &w->f.lower, exponent, &w->turns);
   place_panels(w, size);
   w->real_value = malloc((size[0] + 1) * sizeof *w->real_value);
   w->panels     = (fem_hermitian_panels){.s     = &w->f.panels,
@@ -76,10 +76,10 @@ bool block_wave_make(const block_grid *grid, signed char *exponent, double theta
   assert_true(w->real_value && w->panels.other);
   fem_hermitian_set_phase(cexp(I * theta), &w->panels);
   return fem_supernodal_factorise(&w->f.panels, &w->f.lower, w->real, w->turns.is_real,
-                                  w->real_value) == FEM_FACTORISED;
+                                  w->real_value);
 }
 
-fem_factorised block_wave_factorise(block_wave *w) {
+bool block_wave_factorise(block_wave *w) {
   const fem_hermitian_blocks A = {&w->f.lower, w->real, w->coupled_at,
                                   (const double complex(*)[9])w->coupled};
   return fem_hermitian_factorise(&A, &w->panels);

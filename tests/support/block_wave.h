@@ -24,8 +24,8 @@ bool block_wave_make(const block_grid *grid, signed char *exponent, double theta
                      block_wave *w);
 
 /* The complex panels. */
-fem_factorised block_wave_factorise(block_wave *w);
-void           block_wave_free(block_wave *w);
+bool block_wave_factorise(block_wave *w);
+void block_wave_free(block_wave *w);
 
 /* Exponents [block] of a grid: h[row] - h[column]; h NULL: 0. To be freed, or taken over. */
 signed char *block_wave_exponents(const block_grid *grid, const int *h);

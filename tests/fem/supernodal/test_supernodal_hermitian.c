@@ -49,7 +49,7 @@ static void check(block_grid grid, signed char *exponent, double diagonal) {
   block_wave w;
   int        real = 0;
   assert_true(block_wave_make(&grid, exponent, 1.1, diagonal, &w));
-  assert_int_equal(block_wave_factorise(&w), FEM_FACTORISED);
+  assert_true(block_wave_factorise(&w));
   for (int k = 0; k < w.f.panels.n_panels; k++) real += w.turns.is_real[k];
   const double worst = residual(&w);
   print_message("%d rows, %d of %d panels real: %.1e\n", w.f.n, real, w.f.panels.n_panels, worst);

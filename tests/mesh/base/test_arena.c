@@ -1,4 +1,5 @@
-/* Arrays of an arena are zeroed, aligned and disjoint. A failure is kept until all is freed. */
+/* Arrays of an arena are zeroed, aligned and disjoint. A failure of a try is kept until all is
+ * freed. */
 #include "mesh/base/arena.h"
 #include "tests/support/check.h"
 
@@ -37,9 +38,9 @@ static void failure_is_kept(void **state) {
   for (int i = 0; i < 2; i++) {
     shb_arena arena = {0};
     assert_non_null(shb_arena_take(&arena, 3, 8));
-    assert_null(shb_arena_take(&arena, count[i], size[i]));
+    assert_null(shb_arena_try(&arena, count[i], size[i]));
     assert_true(arena.failed);
-    assert_non_null(shb_arena_take(&arena, 3, 8));
+    assert_non_null(shb_arena_try(&arena, 3, 8));
     assert_true(arena.failed);
     shb_arena_free(&arena);
     assert_false(arena.failed);

@@ -7,6 +7,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include "mesh/base/crash_guard.h"
 #include "tests/support/check.h"
 #include "tests/support/scratch_folder.h"
 
@@ -88,15 +89,20 @@ static void a_folder_that_is_absent_is_told(void **state) {
   free(temporary);
 }
 
-static void abandoned_files_are_removed(void **state) {
+static void unfinished_files_are_removed_at_an_end_at_once(void **state) {
   (void)state;
-  char path[sizeof scratch_folder + 64];
+  char path[sizeof scratch_folder + 64], name[sizeof path + 32];
+  int  end;
   path_of("unfinished", path);
-  char *temporary = shb_publish_temporary(path);
-  write_text(temporary, "half");
-  shb_publish_abandon();
-  assert_int_not_equal(access(temporary, F_OK), 0);
-  free(temporary);
+  const pid_t child = fork();
+  if (child == 0) {
+    write_text(shb_publish_temporary(path), "half");
+    shb_end_at_once("", 7);
+  }
+  assert_int_equal(waitpid(child, &end, 0), child);
+  assert_int_equal(WEXITSTATUS(end), 7);
+  snprintf(name, sizeof name, "%s.tmp.%d", path, (int)child);
+  assert_int_not_equal(access(name, F_OK), 0);
 }
 
 /* FNV-1a of the empty text and of "a", from the definition of the hash. */
@@ -232,16 +238,17 @@ static void no_permission_and_no_space_are_told(void **state) {
 }
 
 int main(void) {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(renames_over_an_earlier_file),
-                                     cmocka_unit_test(a_folder_that_takes_files_is_left_as_it_was),
-                                     cmocka_unit_test(what_is_in_the_way_is_told),
-                                     cmocka_unit_test(no_permission_and_no_space_are_told),
-                                     cmocka_unit_test(a_folder_is_made_with_those_above),
-                                     cmocka_unit_test(a_link_is_not_replaced),
-                                     cmocka_unit_test(a_folder_that_is_absent_is_told),
-                                     cmocka_unit_test(abandoned_files_are_removed),
-                                     cmocka_unit_test(orphans_are_removed),
-                                     cmocka_unit_test(fingerprints_are_fnv_1a),
-                                     cmocka_unit_test(names_show_what_they_are)};
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(renames_over_an_earlier_file),
+      cmocka_unit_test(a_folder_that_takes_files_is_left_as_it_was),
+      cmocka_unit_test(what_is_in_the_way_is_told),
+      cmocka_unit_test(no_permission_and_no_space_are_told),
+      cmocka_unit_test(a_folder_is_made_with_those_above),
+      cmocka_unit_test(a_link_is_not_replaced),
+      cmocka_unit_test(a_folder_that_is_absent_is_told),
+      cmocka_unit_test(unfinished_files_are_removed_at_an_end_at_once),
+      cmocka_unit_test(orphans_are_removed),
+      cmocka_unit_test(fingerprints_are_fnv_1a),
+      cmocka_unit_test(names_show_what_they_are)};
   return cmocka_run_group_tests(tests, scratch_make, scratch_remove);
 }

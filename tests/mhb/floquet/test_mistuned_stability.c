@@ -149,7 +149,7 @@ static void one_dense_structure_has_the_same(void **state) {
     mistuned       g;
     periodic       whole;
     solve(&places[i], DELTA, NULL, &g);
-    assert_ok(mhb_dense_ring(g.ring, &dense));
+    mhb_dense_ring(g.ring, &dense);
     mhb_dense_ring_settings(&g.settings, &of_dense);
     periodic_create(&dense, &of_dense, places[i].w, g.motion.x, &whole);
     mhb_multipliers out = periodic_multipliers(&g.motion, SUBSTEPS, mine);
@@ -198,7 +198,7 @@ typedef struct {
 static void march_from(const mistuned *of, marched *a) {
   const int      n = 3 * BLADES, nb = 2 * FINE + 1;
   double complex force[(FINE + 1) * 3 * BLADES];
-  assert_ok(mhb_dense_ring(of->ring, &a->model));
+  mhb_dense_ring(of->ring, &a->model);
   mhb_dense_ring_settings(&of->settings, &a->settings);
   for (int k = 0; k <= FINE; k++)
     for (int r = 0; r < n; r++) {

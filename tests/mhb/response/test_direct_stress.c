@@ -81,13 +81,11 @@ static void make_model(model *m) {
     assert_int_equal(MatDenseRestoreColumnVecRead(m->result.eigen.phi, i, &phi), 0);
   }
   assert_ok(modal_body_create(&m->mesh, &m->settings, &m->body));
-  assert_int_equal(fem_nodal_stress_change(&m->body->body, NULL, MODES, m->shape, m->stress), 0);
+  fem_nodal_stress_change(&m->body->body, NULL, MODES, m->shape, m->stress);
   const modal_residual_shapes *residual = &m->result.residual;
   assert_int_equal(residual->n, 7);
   m->residual_stress = malloc(7 * 6 * n * sizeof *m->residual_stress);
-  assert_int_equal(fem_nodal_stress_change(&m->body->body, NULL, residual->n, residual->shape,
-                                           m->residual_stress),
-                   0);
+  fem_nodal_stress_change(&m->body->body, NULL, residual->n, residual->shape, m->residual_stress);
 }
 
 static void free_model(model *m) {
@@ -182,7 +180,7 @@ static void stress_of(const model *m, const double complex *u, double complex *s
   double      *parts  = malloc(6 * n * sizeof *parts);
   float       *stress = malloc(12 * n * sizeof *stress);
   for (size_t i = 0; i < 3 * n; i++) parts[i] = creal(u[i]), parts[3 * n + i] = cimag(u[i]);
-  assert_int_equal(fem_nodal_stress_change(&m->body->body, NULL, 2, parts, stress), 0);
+  fem_nodal_stress_change(&m->body->body, NULL, 2, parts, stress);
   for (size_t i = 0; i < 6 * n; i++) sigma[i] = CMPLX(stress[i], stress[6 * n + i]);
   free(parts), free(stress);
 }
@@ -211,7 +209,7 @@ static void compare(const model *m, const mhb_settings *s, const mhb_response *r
   double complex   *sum = calloc(3 * n, sizeof *f), *sigma = calloc(6 * n, sizeof *f);
   double complex   *sum_sigma = calloc(6 * n, sizeof *f), x[6], du[3], p[3];
   assert_ok(mhb_receptance_create(&m->result.model, s, HARMONICS, &receptance));
-  assert_ok(modal_patches_dofs(&m->result.patches, &dofs));
+  modal_patches_dofs(&m->result.patches, &dofs);
   assert_ok(modal_load_create(&m->mesh, 1, &m->settings.load, NULL, &load));
   for (int c = 0; c < load.dofs.n; c++) add_dof(&load.dofs, c, load.weight[load.dofs.n + c], f);
   const mhb_relative *t = &receptance->part->relative;

@@ -41,13 +41,13 @@ static void add_dofs(body *b) {
     for (int a = 0; a < 3; a++) {
       const double axis[3] = {a == 0, a == 1, a == 2}, one = 1;
       const bool   last = i == LOADED - 1 && a == 2;
-      assert_ok(modal_dofs_add(&b->to.contact, last ? PATCH : 1, last ? node : &node[i],
-                               last ? weight : &one, axis));
+      modal_dofs_add(&b->to.contact, last ? PATCH : 1, last ? node : &node[i], last ? weight : &one,
+                     axis);
     }
   for (int a = 0; a < 3; a++) {
     const double axis[3] = {a == 0, a == 1, a == 2}, one = 1;
     const int    tip = b->mesh.n_nodes - 1;
-    assert_ok(modal_dofs_add(&b->to.probe, 1, &tip, &one, axis));
+    modal_dofs_add(&b->to.probe, 1, &tip, &one, axis);
   }
   b->to.n_pairs = LOADED;
   b->to.damping = (modal_damping){.ratio = 0.002};

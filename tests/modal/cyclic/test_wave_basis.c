@@ -19,14 +19,14 @@ static void run(const small_sector *s, int diameter, int n, lanczos *l) {
   bool           good;
   dense_wave_create(s, diameter, &l->dense);
   assert_ok(wave_operator_create(&s->sector, s->order, diameter, SMALL_BLADES, &l->op));
-  assert_ok(wave_basis_create(&l->op, P, n, &l->b));
+  wave_basis_create(&l->op, P, n, &l->b);
   wave_basis_randomise(&l->b, 0);
-  assert_ok(wave_basis_orthonormalise(&l->b, NULL, R, &good));
+  wave_basis_orthonormalise(&l->b, NULL, R, &good);
   for (int k = 0; k < n; k++) {
     wave_basis_append(&l->b);
     assert_int_equal(l->b.n, k + 1);
-    assert_ok(wave_operator_solve(&l->op, P, l->b.MW, l->b.W));
-    assert_ok(wave_basis_orthonormalise(&l->b, l->b.D + P * P * k, l->b.B + P * P * k, &good));
+    wave_operator_solve(&l->op, P, l->b.MW, l->b.W);
+    wave_basis_orthonormalise(&l->b, l->b.D + P * P * k, l->b.B + P * P * k, &good);
     assert_true(good);
   }
 }
@@ -133,7 +133,7 @@ static void a_block_is_split_into_its_parts(void **state) {
   double complex *W    = random_complex(size, 4), *C;
   memcpy(l.b.W, W, size * sizeof *W);
   C = mass_products(&l.dense, 2 * P, l.b.Q, P, W);
-  assert_ok(wave_basis_orthonormalise(&l.b, last, R, &good));
+  wave_basis_orthonormalise(&l.b, last, R, &good);
   assert_true(good);
   for (int c = 0; c < P; c++)
     for (int r = 0; r < P; r++)
@@ -157,7 +157,7 @@ static void equal_columns_are_told(void **state) {
   run(*state, 1, 1, &l);
   memcpy(l.b.W + l.b.order, l.b.W, l.b.order * sizeof *l.b.W);
   memset(l.b.W + 2 * l.b.order, 0, l.b.order * sizeof *l.b.W);
-  assert_ok(wave_basis_orthonormalise(&l.b, NULL, R, &good));
+  wave_basis_orthonormalise(&l.b, NULL, R, &good);
   assert_false(good);
   drop(&l);
 }
@@ -170,7 +170,7 @@ static void random_blocks_are_normal(void **state) {
     wave_operator op;
     wave_basis    b;
     assert_ok(wave_operator_create(&s->sector, s->order, d, SMALL_BLADES, &op));
-    assert_ok(wave_basis_create(&op, MANY, 1, &b));
+    wave_basis_create(&op, MANY, 1, &b);
     const size_t   n    = MANY * b.order;
     double complex mean = 0, square = 0, first;
     double         size = 0, fourth = 0;

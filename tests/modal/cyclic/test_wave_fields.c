@@ -52,8 +52,8 @@ static void check_stress(const scene *s, int count, const double complex *motion
   float complex *own  = malloc(each * sizeof *own);
   for (int c = 0; c < count; c++) {
     double most = 0;
-    assert_ok(fem_nodal_stress_wave(&s->sector.body, NULL, s->dense.phase, 1,
-                                    motion + c * s->dense.nodal, own));
+    fem_nodal_stress_wave(&s->sector.body, NULL, s->dense.phase, 1, motion + c * s->dense.nodal,
+                          own);
     for (size_t i = 0; i < each; i++) most = fmax(most, cabs(own[i]));
     for (size_t i = 0; i < each; i++)
       assert_small(cabs(own[i] - stress[(size_t)c * each + i]), 1e-5 * most);
@@ -66,8 +66,7 @@ static void shapes_and_their_stresses(void **state) {
   modal_condensation to;
   wave_fields        f;
   small_condensation(&s->sector, 1, &to);
-  assert_ok(wave_fields_create((wave_operator *)&s->op, &s->modes, &to, &s->sector.body, NULL,
-                               false, &f));
+  wave_fields_create((wave_operator *)&s->op, &s->modes, &to, &s->sector.body, NULL, false, &f);
   assert_int_equal(f.n_modes, MODES);
   assert_int_equal(f.n_columns, 0);
   assert_null(f.residual);
@@ -86,8 +85,7 @@ static void residual_columns_and_their_stresses(void **state) {
   modal_condensation to;
   wave_fields        f;
   small_condensation(&s->sector, 6, &to);
-  assert_ok(
-      wave_fields_create((wave_operator *)&s->op, &s->modes, &to, &s->sector.body, NULL, true, &f));
+  wave_fields_create((wave_operator *)&s->op, &s->modes, &to, &s->sector.body, NULL, true, &f);
   const int    n    = to.contact.n + to.load.dofs.n;
   const size_t size = (size_t)(n * s->dense.nodal);
   assert_int_equal(n, 38);

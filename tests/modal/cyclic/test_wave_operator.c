@@ -52,10 +52,10 @@ static void solutions_and_products_are_the_dense_ones(void **state) {
       const size_t    size = (size_t)(w.n * count);
       double complex *X = random_complex(size, 8), *Y = malloc(size * sizeof *Y);
       double complex *Z = malloc(size * sizeof *Z);
-      assert_ok(wave_operator_solve(&op, count, X, Y));
+      wave_operator_solve(&op, count, X, Y);
       dense_multiply(w.n, w.K, count, Y, Z);
       const double solution = complex_difference(size, Z, X);
-      assert_ok(wave_operator_mass(&op, count, X, Y));
+      wave_operator_mass(&op, count, X, Y);
       dense_multiply(w.n, w.M, count, X, Z);
       const double product = complex_difference(size, Y, Z);
       print_message("nodal diameter %d, %d columns: K^-1 %.1e, M %.1e\n", d, count, solution,
@@ -63,8 +63,8 @@ static void solutions_and_products_are_the_dense_ones(void **state) {
       assert_below(solution, 1e-12);
       assert_below(product, 1e-14);
       memcpy(Z, X, size * sizeof *Z);
-      assert_ok(wave_operator_solve(&op, count, X, Y));
-      assert_ok(wave_operator_solve(&op, count, Z, Z)); /* in place */
+      wave_operator_solve(&op, count, X, Y);
+      wave_operator_solve(&op, count, Z, Z); /* in place */
       assert_memory_equal(Z, Y, size * sizeof *Z);
       free(X);
       free(Y);
@@ -83,9 +83,9 @@ static void the_backward_wave_is_the_conjugate(void **state) {
   assert_ok(wave_operator_create(&s->sector, s->order, -1, SMALL_BLADES, &op[1]));
   const size_t    n = op[0].order;
   double complex *b = random_complex(n, 8), *x = malloc(n * sizeof *x), *y = malloc(n * sizeof *y);
-  assert_ok(wave_operator_solve(&op[0], 1, b, x));
+  wave_operator_solve(&op[0], 1, b, x);
   for (size_t i = 0; i < n; i++) b[i] = conj(b[i]);
-  assert_ok(wave_operator_solve(&op[1], 1, b, y));
+  wave_operator_solve(&op[1], 1, b, y);
   for (size_t i = 0; i < n; i++) y[i] = conj(y[i]);
   assert_below(complex_difference(n, y, x), 1e-13);
   free(b);

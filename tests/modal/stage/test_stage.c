@@ -82,7 +82,7 @@ static void check_stress(const char *path) {
   assert_ok(h5_read_double(file, "/modes/stress", &of_stress, &stress));
   assert_ok(h5_close(file));
   assert_ok(modal_body_create(&mesh, &settings, &body));
-  assert_int_equal(fem_nodal_stress_change(&body->body, NULL, 8, shape, wanted), 0);
+  fem_nodal_stress_change(&body->body, NULL, 8, shape, wanted);
   for (size_t i = 0; i < 6 * all; i++) {
     error = fmax(error, fabs(stress[i] - wanted[i]));
     most  = fmax(most, fabs(stress[i]));
