@@ -6,6 +6,9 @@ shb_test(cases/schema UNIT case faults stage_settings motion nodal_diameters LIB
 shb_python_test(cases.schema.key_schema UNIT cases/schema/test_key_schema.py
   $<TARGET_FILE:shroudhb> ${CASES})
 
+shb_test(cases/front UNIT pinned LIBRARIES shb_cases_front
+  DEFINITIONS TESTS_SOURCE="${CMAKE_CURRENT_SOURCE_DIR}")
+
 shb_test(cases/contact UNIT hysteresis_picture LIBRARIES shb_cases_contact)
 shb_test(cases/commands UNIT up_to_date modal_changes balance_run INTEGRATION contact_points
   LIBRARIES shb_cases_commands tests_models)
