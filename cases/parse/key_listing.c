@@ -67,45 +67,11 @@ void case_print_keys(FILE *out) {
 
 /* The condition of a key in words. NULL if there is none, or if the key decides it itself. */
 static const char *applies_text(const case_key *key) {
-  static const char *const text[] = {
-      [CASE_IF_BLADE]      = "parametric blade",
-      [CASE_IF_DISC]       = "with `mesh.blade.disc`",
-      [CASE_IF_MESH_FILE]  = "with `mesh.file`",
-      [CASE_IF_SIZE]       = "`mesh.file` is a solid",
-      [CASE_IF_OWN_MODES]  = "without `modal.file`",
-      [CASE_IF_MODAL_FILE] = "instead of `mesh`",
-      [CASE_IF_MATERIAL]   = "one material",
-      [CASE_IF_MATERIALS]  = "several materials",
-      [CASE_IF_AUTO_MODES] = "`modal.modes: auto`",
-      [CASE_IF_CRYSTAL]    = "with `material.G`",
-      [CASE_IF_INTERFACE]  = "one interface",
-      [CASE_IF_POINTS]     = "one interface, without `modal.file`",
-      [CASE_IF_PATCHES]    = "`contact.points: auto`",
-      [CASE_IF_INTERFACES] = "several interfaces",
-      [CASE_IF_VARIED]     = "several interfaces, with `mhb.vary`",
-      [CASE_IF_ORDER]      = "contact to the neighbour, or a run-up",
-      [CASE_IF_RUN_UP]     = NULL,
-      [CASE_IF_SECTOR]     = "contact to the neighbour, or parametric blade",
-      [CASE_IF_PRESSURE]   = "one of four loads",
-      [CASE_IF_TRACTION]   = "one of four loads",
-      [CASE_IF_FORCE]      = "one of four loads",
-      [CASE_IF_FIELD]      = "one of four loads",
-      [CASE_IF_LOADS]      = "several loads",
-      [CASE_IF_FACTORS]    = "not with `field` or `loads`",
-      [CASE_IF_FORCE_AT]   = "with `force`",
-      [CASE_IF_AUTO]       = "`mhb.harmonics: auto`",
-      [CASE_IF_FOLLOWED]   = "one of five",
-      [CASE_IF_TRACKED]    = "`mhb.track` not `nothing`",
-      [CASE_IF_MISTUNED]   = "blades that differ",
-      [CASE_IF_STABILITY]  = "`mhb.stability` not `never`",
-      [CASE_IF_SEARCH]     = "`mhb.search.starts` above 0",
-      [CASE_IF_SEARCH_AT]  = "`mhb.search.starts` above 0",
-      [CASE_IF_SWEEP]      = "`integrate.start: state`",
-      [CASE_IF_NOT_SCALED] = "not with `mhb.vary.scale`"};
-  const char *when = (size_t)key->when < sizeof text / sizeof *text ? text[key->when] : NULL;
-  char        own[96];
+  const char *when = case_condition_words(key->only ? key->only : key->when);
+  char        own[96], leaf[96];
   snprintf(own, sizeof own, "with `%s`", key->path);
-  return when && strcmp(when, own) == 0 ? NULL : when;
+  snprintf(leaf, sizeof leaf, "with `%s`", case_key_leaf(key->path));
+  return when && (strcmp(when, own) == 0 || strcmp(when, leaf) == 0) ? NULL : when;
 }
 
 /* Prints a cell of a Markdown table, in which | must be escaped. */

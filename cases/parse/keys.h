@@ -6,7 +6,7 @@
 #include <stdbool.h>
 #include <stddef.h>
 
-#include "cases/parse/case_file.h"
+#include "cases/parse/conditions.h"
 
 /* Type of a key: the value in the file, and after the colon the type of its slot. */
 typedef enum {
@@ -45,48 +45,6 @@ typedef enum {
   CASE_N_TYPES
 } case_type;
 
-/* Condition under which a key is read. */
-typedef enum {
-  CASE_ALWAYS,
-  CASE_IF_BLADE,      /* parametric blade: neither mesh.file nor modal.file */
-  CASE_IF_DISC,       /* the same, with mesh.blade.disc */
-  CASE_IF_MESH_FILE,  /* mesh.file, and no modal.file */
-  CASE_IF_SIZE,       /* mesh.file is a solid */
-  CASE_IF_OWN_MODES,  /* no modal.file */
-  CASE_IF_MODAL_FILE, /* modal.file */
-  CASE_IF_MATERIAL,   /* no modal.file, and one material */
-  CASE_IF_MATERIALS,  /* several, by volumes */
-  CASE_IF_AUTO_MODES, /* modal.modes: auto */
-  CASE_IF_CRYSTAL,    /* material.G given */
-  CASE_IF_INTERFACE,  /* one contact interface */
-  CASE_IF_POINTS,     /* the same, and no modal.file */
-  CASE_IF_PATCHES,    /* contact.points: auto */
-  CASE_IF_INTERFACES, /* several by name */
-  CASE_IF_VARIED,     /* several, and mhb.vary follows a parameter of one of them */
-  CASE_IF_ORDER,      /* contact.to: neighbour, or mhb.run_up: yes */
-  CASE_IF_RUN_UP,     /* mhb.run_up: yes */
-  CASE_IF_SECTOR,     /* neighbour or parametric blade */
-  CASE_IF_MISTUNED,   /* rotor.mistuning given */
-  CASE_IF_PSI,        /* psi given */
-  CASE_IF_PHI,        /* phi given */
-  CASE_IF_PRESSURE,   /* excitation by pressure, without modal.file; the next ones likewise */
-  CASE_IF_TRACTION,
-  CASE_IF_FORCE,
-  CASE_IF_FIELD,
-  CASE_IF_LOADS,     /* several loads */
-  CASE_IF_FACTORS,   /* any other load */
-  CASE_IF_FORCE_AT,  /* excitation by force with a point of application of its own */
-  CASE_IF_OUTPUT,    /* converge.output given */
-  CASE_IF_AUTO,      /* harmonics: auto */
-  CASE_IF_FOLLOWED,  /* the parameter of this row is followed */
-  CASE_IF_TRACKED,   /* peaks or folds are followed */
-  CASE_IF_STABILITY, /* multipliers are computed */
-  CASE_IF_SEARCH,    /* there are random starts */
-  CASE_IF_SEARCH_AT, /* at frequencies that are given */
-  CASE_IF_SWEEP,     /* time integration that starts from the state at the previous frequency */
-  CASE_IF_NOT_SCALED /* mhb.vary does not follow the scale of the excitation */
-} case_condition;
-
 typedef struct {
   const char    *path; /* "contact.mu"; "[]" stands for any index */
   case_type      type;
@@ -98,11 +56,12 @@ typedef struct {
   bool           required;     /* whether its stages require it when the condition holds */
   bool           spare;        /* the modes alone do not require it */
   int            stages;       /* mask of the stages whose result depends on the key */
-  case_condition when;
-  size_t         at;       /* offset in case_file, or in the element for "[]" rows */
-  size_t         count_at; /* offset of the number of values or elements */
-  size_t         each;     /* CASE_LIST: size of an element; least and most bound their number */
-  const char    *help;     /* one line */
+  case_condition when, only;   /* both must hold: of the file, of the element */
+  size_t         at;           /* offset in case_file, or in the element for "[]" rows */
+  size_t         element;      /* likewise, of what the conditions are about */
+  size_t         count_at;     /* offset of the number of values or elements */
+  size_t         each; /* CASE_LIST: size of an element; least and most bound their number */
+  const char    *help; /* one line */
   /* the keys that may be given in place of a required one, for messages; NULL if none */
   const char *instead;
 } case_key;
@@ -115,6 +74,12 @@ typedef struct {
 
 /* Row of path (with "[]" for indices), or NULL. */
 const case_key *case_key_find(case_keys keys, const char *path);
+
+/* The rest of path in the elements of a list, "radius" of "LIST[].radius"; NULL: it is not there. */
+const char *case_key_in_list(const char *path, const char *list);
+
+/* Whether the conditions of a row hold. base: the file, or the element of a "[]" row. */
+bool case_key_applies(const case_key *key, const case_file *file, const void *base);
 
 /* Whether path is a block of keys: a proper prefix of some row. */
 bool case_key_is_block(case_keys keys, const char *path);

@@ -182,6 +182,7 @@ bool case_list_factors(const case_value_context *c, const case_node *node, void 
   if (node->kind != CASE_MAPPING) return case_value_refuse(c, node);
   bool good = true, given[FEM_MAX_LOAD_HARMONICS + 1] = {false};
   load->n_harmonics = 0;
+  memset(load->factor, 0, sizeof load->factor); /* the default */
   for (int i = 0; i < node->n; i++) {
     const case_node *child = &node->child[i];
     char             path[CASE_PATH], why[CASE_WHY];

@@ -167,7 +167,7 @@ static void check_followed(case_reader *r) {
         "give always",
         mhb_track_word(mhb->track));
   if (tracked && r->file->run_up) case_reader_issue(r, "mhb.track", "does not go with mhb.run_up");
-  if (tracked && r->file->points < 0)
+  if (tracked && case_points_are_auto(r->file))
     case_reader_issue(r, "mhb.track",
                       "does not go with contact.points: auto; give the number of points");
   if (given > 0 && !single && !tracked)
@@ -253,7 +253,7 @@ static void check_run_up_speeds(case_reader *r) {
 static void check_run_up(case_reader *r) {
   const case_file *file = r->file;
   if (!file->run_up) return;
-  if (file->points < 0)
+  if (case_points_are_auto(file))
     case_reader_issue(r, "contact.points",
                       "is auto, which does not go with mhb.run_up; give the number of points");
   if (case_reader_good(r, "excitation.engine_order") && file->engine_order < 1) {
@@ -369,7 +369,7 @@ static void check_mistuning(case_reader *r, int stages) {
   if (file->run_up) case_reader_issue(r, path, "does not go with mhb.run_up");
   if (file->mhb.track != MHB_TRACK_NOTHING)
     case_reader_issue(r, path, "does not go with mhb.track");
-  if (file->points < 0)
+  if (case_points_are_auto(file))
     case_reader_issue(r, path, "does not go with contact.points: auto; give the number of points");
 }
 
@@ -430,10 +430,13 @@ bool case_check_values(case_reader *r, int stages) {
   if (stages & CASE_MHB) check_integrate(r);
   if (own) check_extension(r);
   if (own && stages & (CASE_MESH | CASE_MODAL)) lost = check_file(r, "mesh.file", file->mesh_file);
-  if (own && stages & CASE_MODAL && file->load.kind == FEM_LOAD_FIELD && !lost)
-    lost = check_file(r, "excitation.field", file->field_file);
-  for (int i = 0; i < file->n_loads && own && stages & CASE_MODAL && !lost; i++)
-    lost = check_file(r, "excitation.loads", file->loads[i].field);
+  for (int i = 0; i < file->n_loads && own && stages & CASE_MODAL && !lost; i++) {
+    const case_place p = case_reader_place(r, "excitation.loads", "excitation", i);
+    char             path[CASE_PATH];
+    case_path(path, "%s.field", p.path);
+    if (file->loads[i].load.kind == FEM_LOAD_FIELD)
+      lost = check_file(r, path, file->loads[i].field);
+  }
   if (!own && stages & CASE_MHB) lost = check_file(r, "modal.file", file->modal_file);
   if (stages & CASE_MHB && !lost && file->mistuning.file)
     lost = check_file(r, "rotor.mistuning", file->mistuning.file);

@@ -8,6 +8,7 @@
 #include "cases/parse/reader.h"
 #include "cases/parse/value.h"
 #include "cases/parse/value_context.h"
+#include "cases/schema/interfaces.h"
 
 static const case_key signal_rows[] = {
     {"motion.v", CASE_SIGNAL, "m", .required = true, .stages = CASE_MHB,
@@ -70,6 +71,8 @@ static bool read_document(case_issues *issues, case_motion *out) {
   case_reader reader = {.issues = issues, .keys = case_motion_keys(row), .file = &file};
   case_reader_walk(&reader, root);
   if (root && root->kind == CASE_MAPPING) case_reader_require(&reader, CASE_MHB);
+  file.mhb.interface[0] = file.interfaces[0].mhb;
+  case_lead(&file.mhb, 0);
   if (file.mhb.n_preloads > 1 && case_reader_good(&reader, "contact.n0"))
     case_reader_issue(&reader, "contact.n0", "is a list; a prescribed motion takes one number");
   int m            = longest(&reader);

@@ -178,13 +178,12 @@ static void print_list(FILE *out, const case_key *list, const case_file *file, i
   int         n    = *(const int *)((const char *)file + list->count_at);
   for (int i = 0; i < n; i++, base += list->each)
     for (int k = 0; k < keys.n; k++) {
-      const case_key *key    = &keys.key[k];
-      size_t          length = strlen(list->path);
+      const case_key *key  = &keys.key[k];
+      const char     *rest = case_key_in_list(key->path, list->path);
       char            path[CASE_PATH];
-      if (strncmp(key->path, list->path, length) != 0 || strncmp(key->path + length, "[].", 3) != 0)
-        continue;
-      case_path(path, "%s[%d].%s", list->path, i, key->path + length + 3);
-      if (key->stages & stages) print_value(out, key, path, file, base);
+      if (!rest || !(key->stages & stages) || !case_key_applies(key, file, base)) continue;
+      case_path(path, "%s[%d].%s", list->path, i, rest);
+      print_value(out, key, path, file, base);
     }
 }
 
@@ -205,7 +204,7 @@ char *case_settings(const case_file *file, case_stage stage) {
   if (!out) return NULL;
   case_keys keys = case_key_table();
   for (int i = 0; i < keys.n; i++)
-    if ((keys.key[i].stages & (int)stage) && case_key_applies(&keys.key[i], file))
+    if ((keys.key[i].stages & (int)stage) && case_key_applies(&keys.key[i], file, file))
       print_key(out, &keys.key[i], file, (int)stage);
   if (fclose(out) != 0) {
     free(text);
