@@ -189,7 +189,7 @@ static void faults_of_loads(void **state) {
       {"-90 Pa", "0 Pa", "10:18: error: excitation.loads[1].pressure: is 0; nothing would move\n",
        1},
       {"at: [0, 0, 1 mm], ", "",
-       "11:15: error: excitation.loads[2].force.vector: has no place to act", 1},
+       "11:24: error: excitation.loads[2].force.vector: has no place to act", 1},
       {", vector: [5 N, 0, 0]", "",
        "11:15: error: excitation.loads[2].force.vector: missing; expected [x, y, z] in N\n", 1},
       {"vector: [5 N, 0, 0]", "vektor: [5 N, 0, 0]",
