@@ -43,26 +43,6 @@ static const case_key *row_of(const char *path) {
   return key;
 }
 
-bool study_key_is_number(const case_key *key) {
-  switch (key->type) {
-    case CASE_NUMBER:
-    case CASE_INTEGER:
-    case CASE_COUNT:
-    case CASE_AUTO:
-    case CASE_ACCURACY:
-    case CASE_VECTOR:
-    case CASE_TRIPLE:
-    case CASE_INTERVAL:
-    case CASE_SWEEP:
-    case CASE_STIFFNESS:
-    case CASE_PRELOADS:
-    case CASE_DAMPING:
-      return true;
-    default:
-      return false;
-  }
-}
-
 /* A part of a path as the key table has it: an index becomes "[]". Returns the length of the part
  * with its index. */
 static size_t part_of(const char *at, char word[CASE_PATH], char pattern[CASE_PATH]) {
@@ -235,12 +215,12 @@ bool study_key_start(case_issues *issues, const case_node *node, const char *pat
     refuse_path(issues, node, path);
     return false;
   }
-  if (!study_key_is_number(row)) {
+  if (!case_types[row->type].number) {
     case_issue_add(issues, node->key_line, node->key_column, path,
                    "is not a number; a study varies numbers");
     return false;
   }
-  key->whole = row->type == CASE_INTEGER || row->type == CASE_COUNT || row->type == CASE_AUTO;
+  key->whole = case_types[row->type].whole;
   snprintf(key->unit, sizeof key->unit, "%s", row->unit[0] ? row->unit : "-");
   return true;
 }

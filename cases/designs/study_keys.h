@@ -36,9 +36,6 @@ typedef struct {
 void study_keys_read(case_issues *issues, const case_node *node, study_keys *keys);
 void study_keys_free(study_keys *keys);
 
-/* Whether a study can vary a key of the key table. */
-bool study_key_is_number(const case_key *row);
-
 /* Set path, unit and kind of a key. False if the path is no number of a case. */
 bool study_key_start(case_issues *issues, const case_node *node, const char *path, study_key *key);
 

@@ -4,39 +4,6 @@
 
 #include "cases/parse/key_table.h"
 
-static const char *type_name(const case_key *key) {
-  static const char *const names[CASE_N_TYPES] = {[CASE_NUMBER]    = "number",
-                                                  [CASE_INTEGER]   = "integer",
-                                                  [CASE_COUNT]     = "integer or all",
-                                                  [CASE_AUTO]      = "integer or auto",
-                                                  [CASE_CHOICE]    = "word",
-                                                  [CASE_SWITCH]    = "word",
-                                                  [CASE_ACCURACY]  = "word or number",
-                                                  [CASE_WORD]      = "word",
-                                                  [CASE_LABEL]     = "word",
-                                                  [CASE_FILE_NAME] = "file",
-                                                  [CASE_VECTOR]    = "[x, y, z]",
-                                                  [CASE_TRIPLE]    = "number or list",
-                                                  [CASE_INTERVAL]  = "[from, to]",
-                                                  [CASE_SWEEP]     = "[from, to] or number",
-                                                  [CASE_STIFFNESS] = "number or list",
-                                                  [CASE_PRELOADS]  = "number(s)",
-                                                  [CASE_PLACES]    = "list",
-                                                  [CASE_ORDERS]    = "list",
-                                                  [CASE_POINTS]    = "integer or list",
-                                                  [CASE_SAVED]     = "word or list",
-                                                  [CASE_DIAMETERS] = "word or list",
-                                                  [CASE_FACTORS]   = "mapping",
-                                                  [CASE_PROBES]    = "mapping",
-                                                  [CASE_GAUGES]    = "mapping",
-                                                  [CASE_MISTUNING] = "number(s), mapping",
-                                                  [CASE_DAMPING]   = "number(s), mapping",
-                                                  [CASE_GROUPS]    = "mapping",
-                                                  [CASE_LIST]      = "list",
-                                                  [CASE_SIGNAL]    = "list"};
-  return names[key->type];
-}
-
 static void print_key(const case_key *key, FILE *out) {
   char range[128];
   case_key_range(key, range, sizeof range);
@@ -44,7 +11,7 @@ static void print_key(const case_key *key, FILE *out) {
   for (char *c = range; key->words && *c; c++)
     if (*c == ' ') *c = '|';
   const char *fallback = key->fallback ? key->fallback : key->required ? "required" : "-";
-  fprintf(out, "%-31s %-14s %-6s %-30s %-16s %s\n", key->path, type_name(key),
+  fprintf(out, "%-31s %-14s %-6s %-30s %-16s %s\n", key->path, case_types[key->type].name,
           key->unit[0] ? key->unit : "-", range[0] ? range : "-", fallback, key->help);
 }
 
@@ -87,7 +54,7 @@ static void print_row(const case_key *key, const char *block, FILE *out) {
   const char *path = case_key_below(key->path, block), *applies = applies_text(key);
   case_key_range(key, range, sizeof range);
   fprintf(out, "| `%s` | ", path ? path : key->path);
-  print_cell(type_name(key), out);
+  print_cell(case_types[key->type].name, out);
   fprintf(out, " | %s | ", key->unit);
   for (const char *c = key->words; c && *c; c++) fputs(*c == ' ' ? ", " : (char[2]){*c, 0}, out);
   if (key->words && range[0]) fputs(", ", out);

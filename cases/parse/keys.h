@@ -5,10 +5,12 @@
 
 #include <stdbool.h>
 #include <stddef.h>
+#include <stdio.h>
 
 #include "cases/parse/conditions.h"
 
-/* Type of a key: the value in the file, and after the colon the type of its slot. */
+/* Type of a key: the value in the file, and after the colon the type of its slot. A row of
+ * case_types (cases/parse/value.c) says the rest. */
 typedef enum {
   CASE_NUMBER,    /* number with a unit: double */
   CASE_INTEGER,   /* int */
@@ -45,7 +47,7 @@ typedef enum {
   CASE_N_TYPES
 } case_type;
 
-typedef struct {
+typedef struct case_key {
   const char    *path; /* "contact.mu"; "[]" stands for any index */
   case_type      type;
   const char    *unit;         /* SI; "" without a dimension */
@@ -65,6 +67,31 @@ typedef struct {
   /* the keys that may be given in place of a required one, for messages; NULL if none */
   const char *instead;
 } case_key;
+
+struct case_value_context;
+struct case_node;
+
+/* A value to be printed as it stands in the settings of a stage. */
+typedef struct {
+  FILE            *out;
+  const case_key  *key;
+  const char      *path; /* of the line */
+  const case_file *file;
+  const void      *slot;
+} case_printed;
+
+/* What all keys of a type have in common. */
+typedef struct {
+  const char *name;     /* in `shroudhb keys` */
+  const char *expected; /* in messages; the words and the unit of a key follow */
+  const char *forms;    /* in the JSON Schema (cases/schema/key_schema.c) */
+  bool (*read)(const struct case_value_context *c, const struct case_node *node, void *slot);
+  void (*print)(const case_printed *p);
+  bool own_lines;     /* print makes whole lines, one or more or none; else the value alone */
+  bool number, whole; /* a study can vary it; in whole numbers */
+} case_type_row;
+
+extern const case_type_row case_types[CASE_N_TYPES];
 
 typedef struct {
   int n;

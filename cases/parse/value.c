@@ -12,6 +12,7 @@
 #include "cases/parse/units.h"
 #include "cases/parse/value_context.h"
 #include "mesh/base/publish.h"
+#include "mesh/base/shortest.h"
 
 /* Of the tangential stiffness. The contact law needs the more steps the larger it is: at 2e7 twice
  * as many as at 1. */
@@ -287,37 +288,229 @@ static bool read_signal(const case_value_context *c, const case_node *node, void
   return node->kind == CASE_SEQUENCE || case_value_refuse(c, node);
 }
 
+/* ---------------------------------------------------------------- values as text */
+
+/* The path as in the case file, so that settings do not depend on the working folder. */
+static const char *inside(const case_file *file, const char *path) {
+  const size_t n = strlen(file->folder);
+  return strncmp(path, file->folder, n) == 0 && path[n] == '/' ? path + n + 1 : path;
+}
+
+static void print_number(const case_printed *p) {
+  shb_print_shortest(p->out, 1, p->slot);
+}
+
+static void print_two(const case_printed *p) {
+  shb_print_shortest(p->out, 2, p->slot);
+}
+
+static void print_three(const case_printed *p) {
+  shb_print_shortest(p->out, 3, p->slot);
+}
+
+/* One number if the three are equal. */
+static void print_triple(const case_printed *p) {
+  const double *v = p->slot;
+  shb_print_shortest(p->out, v[0] == v[1] && v[1] == v[2] ? 1 : 3, v);
+}
+
+static void print_integer(const case_printed *p) {
+  fprintf(p->out, "%d", *(const int *)p->slot);
+}
+
+static void print_auto(const case_printed *p) {
+  if (*(const int *)p->slot < p->key->least)
+    fputs("auto", p->out);
+  else
+    print_integer(p);
+}
+
+static void print_word(const case_printed *p, int index) {
+  const char *words = p->key->words;
+  for (; index > 0; index--) words = strchr(words, ' ') + 1;
+  fprintf(p->out, "%.*s", (int)strcspn(words, " "), words);
+}
+
+static void print_choice(const case_printed *p) {
+  print_word(p, *(const int *)p->slot);
+}
+
+static void print_switch(const case_printed *p) {
+  print_word(p, *(const bool *)p->slot);
+}
+
+static void print_label(const case_printed *p) {
+  fputs(p->slot, p->out);
+}
+
+static void print_text(const case_printed *p) {
+  fputs(*(char *const *)p->slot, p->out);
+}
+
+static void print_file_name(const case_printed *p) {
+  const char *path = *(char *const *)p->slot;
+  fputs(path ? inside(p->file, path) : "-", p->out);
+}
+
+static void print_preloads(const case_printed *p) {
+  const char *base = (const char *)p->slot - p->key->at;
+  shb_print_shortest(p->out, *(const int *)(base + p->key->count_at), p->slot);
+}
+
+static void print_integers(FILE *out, int n, const int *value) {
+  for (int i = 0; i < n; i++) fprintf(out, "%s%d", i ? " " : "", value[i]);
+}
+
+static void print_places(const case_printed *p) {
+  shb_print_shortest(p->out, p->file->mhb.search.n_at, p->slot);
+}
+
+static void print_orders(const case_printed *p) {
+  print_integers(p->out, p->file->mhb.search.n_orders, p->slot);
+}
+
+static void print_points(const case_printed *p) {
+  const mhb_integration_settings *asked = &p->file->integrate;
+  if (asked->listed)
+    shb_print_shortest(p->out, asked->n_frequencies, p->slot);
+  else
+    fprintf(p->out, "%d points", asked->n_frequencies);
+}
+
+static void print_saved(const case_printed *p) {
+  const mhb_save_settings *save = p->slot;
+  if (save->what == MHB_SAVE_LISTED)
+    shb_print_shortest(p->out, save->n, save->frequency);
+  else
+    print_word(p, (int)save->what);
+}
+
+/* Of a file its content counts, not its name. */
+static void print_mistuning(const case_printed *p) {
+  const case_mistuning *m = p->slot;
+  char                  fingerprint[17], deviation[SHB_SHORTEST];
+  if (m->kind == CASE_MISTUNED_LIST) shb_print_shortest(p->out, m->n, m->each);
+  if (m->kind == CASE_MISTUNED_RANDOM)
+    fprintf(p->out, "deviation %s seed %d samples %d", shb_shortest(m->deviation, deviation),
+            m->seed, m->samples);
+  if (m->kind != CASE_MISTUNED_FILE) return;
+  if (shb_fingerprint(m->file, fingerprint) != SHB_OK) strcpy(fingerprint, "-");
+  fprintf(p->out, "file %s %s", inside(p->file, m->file), fingerprint);
+  if (m->hz) fprintf(p->out, " Hz mean %s", shb_shortest(m->mean, deviation));
+}
+
+static void print_damping(const case_printed *p) {
+  case_damping_print(p->out, p->slot);
+}
+
+/* auto depends on the engine order and goes by what the file holds
+ * (cases/schema/nodal_diameters.h). */
+static void print_diameters(const case_printed *p) {
+  const case_diameters *diameters = p->slot;
+  if (diameters->what == CASE_DIAMETERS_AUTO) return;
+  fprintf(p->out, "%s = %s", p->path, diameters->what == CASE_DIAMETERS_ALL ? "all" : "");
+  print_integers(p->out, diameters->n, diameters->list);
+  fputc('\n', p->out);
+}
+
+static void print_factors(const case_printed *p) {
+  const fem_load *load = p->slot;
+  for (int k = 0; k <= load->n_harmonics; k++) {
+    const double parts[2] = {creal(load->factor[k]), cimag(load->factor[k])};
+    if (load->factor[k] == 0) continue;
+    fprintf(p->out, "%s.%d = ", p->path, k);
+    shb_print_shortest(p->out, 2, parts);
+    fputc('\n', p->out);
+  }
+}
+
+static void print_probes(const case_printed *p) {
+  for (int i = 0; i < p->file->n_probes; i++) {
+    fprintf(p->out, "%s.%s = ", p->path, p->file->probe[i].name);
+    shb_print_shortest(p->out, 3, p->file->probe[i].at);
+    fputc('\n', p->out);
+  }
+}
+
+static void print_gauges(const case_printed *p) {
+  for (int i = 0; i < p->file->n_gauges; i++) {
+    fprintf(p->out, "%s.%s = ", p->path, p->file->gauge[i].name);
+    shb_print_shortest(p->out, 3, p->file->gauge[i].at);
+    fputs("; ", p->out);
+    shb_print_shortest(p->out, 3, p->file->gauge[i].direction);
+    fputc('\n', p->out);
+  }
+}
+
+static void print_groups(const case_printed *p) {
+  case_groups_print(p->out, p->path, p->slot);
+}
+
+/* ---------------------------------------------------------------- the table of types */
+
+/* clang-format off */
+const case_type_row case_types[CASE_N_TYPES] = {
+  [CASE_NUMBER]    = {"number", "a number", "N", read_number, print_number, .number = true},
+  [CASE_INTEGER]   = {"integer", "a whole number", "I", case_value_integer, print_integer,
+                      .number = true, .whole = true},
+  [CASE_COUNT]     = {"integer or all", "a whole number or all", "I =all w", read_count,
+                      print_integer, .number = true, .whole = true},
+  [CASE_AUTO]      = {"integer or auto", "a whole number or auto", "I =auto", read_count,
+                      print_auto, .number = true, .whole = true},
+  [CASE_CHOICE]    = {"word", "one of", "W", read_choice, print_choice},
+  [CASE_SWITCH]    = {"word", "one of", "W", read_switch, print_switch},
+  [CASE_ACCURACY]  = {"word or number", "a number or one of", "W N", read_accuracy, print_number,
+                      .number = true},
+  [CASE_WORD]      = {"word", "a name", "S", read_word, print_text},
+  [CASE_LABEL]     = {"word", "the name of a group", "S", read_label, print_label},
+  [CASE_FILE_NAME] = {"file", "a file name", "S", read_file_name, print_file_name},
+  [CASE_VECTOR]    = {"[x, y, z]", "[x, y, z]", "3", read_vector, print_three, .number = true},
+  [CASE_TRIPLE]    = {"number or list", "a number or three, for the axes", "N 3", read_triple,
+                      print_triple, .number = true},
+  [CASE_INTERVAL]  = {"[from, to]", "[from, to]", "2", read_interval, print_two, .number = true},
+  [CASE_SWEEP]     = {"[from, to] or number", "[from, to] or a number", "N 2", read_sweep,
+                      print_two, .number = true},
+  [CASE_STIFFNESS] = {"number or list", "a number or [kuu, kuw, kww]", "N 3", read_stiffness,
+                      print_three, .number = true},
+  [CASE_PRELOADS]  = {"number(s)", "a number, a list or {from, to, points}",
+                      "N * {^(from|to|points)$}", case_list_preloads, print_preloads,
+                      .number = true},
+  [CASE_PLACES]    = {"list", "a list of numbers", "*", case_list_places, print_places},
+  [CASE_ORDERS]    = {"list", "a list of whole numbers", "J", case_list_orders, print_orders},
+  [CASE_POINTS]    = {"integer or list", "a whole number of points or a list", "I *",
+                      case_list_frequencies, print_points},
+  [CASE_SAVED]     = {"word or list", "a list of frequencies or one of", "W *", read_saved,
+                      print_saved},
+  [CASE_DIAMETERS] = {"word or list", "a list of whole numbers or one of", "W J", read_diameters,
+                      print_diameters, .own_lines = true},
+  [CASE_FACTORS]   = {"mapping", "a mapping {harmonic: [factor, phase]}", "{^[0-9]+$}",
+                      case_list_factors, print_factors, .own_lines = true},
+  [CASE_PROBES]    = {"mapping", "a mapping {name: [x, y, z]}", "{}", case_list_probes,
+                      print_probes, .own_lines = true},
+  [CASE_GAUGES]    = {"mapping", "a mapping {name: {at: [x, y, z], direction: [x, y, z]}}", "{}",
+                      case_list_gauges, print_gauges, .own_lines = true},
+  [CASE_MISTUNING] = {"number(s), mapping", "a list, {file: NAME} or {deviation: 1 %, seed: 7}",
+                      "* {^(file|unit|mean|deviation|seed|samples)$}", read_mistuning,
+                      print_mistuning},
+  [CASE_DAMPING]   = {"number(s), mapping",
+                      "a number, a list, {loss_factor: ...} or {rayleigh: [alpha, beta]}",
+                      "N * {^(loss_factor|rayleigh)$}", read_damping, print_damping,
+                      .number = true},
+  [CASE_GROUPS]    = {"mapping", "a mapping {group: rule}", "{}", read_groups, print_groups,
+                      .own_lines = true},
+  [CASE_LIST]      = {"list", "a list of mappings", "", NULL, NULL}, /* by the reader */
+  [CASE_SIGNAL]    = {"list", "a list of [amplitude, phase]", "A", read_signal, NULL}};
+/* clang-format on */
+
 bool case_value_read(case_issues *issues, const case_key *key, const char *path,
                      const case_node *node, case_file *file, void *slot) {
-  static bool (*const readers[CASE_N_TYPES])(const case_value_context *, const case_node *,
-                                             void *) = {[CASE_NUMBER]    = read_number,
-                                                        [CASE_INTEGER]   = case_value_integer,
-                                                        [CASE_COUNT]     = read_count,
-                                                        [CASE_CHOICE]    = read_choice,
-                                                        [CASE_SWITCH]    = read_switch,
-                                                        [CASE_ACCURACY]  = read_accuracy,
-                                                        [CASE_WORD]      = read_word,
-                                                        [CASE_LABEL]     = read_label,
-                                                        [CASE_FILE_NAME] = read_file_name,
-                                                        [CASE_VECTOR]    = read_vector,
-                                                        [CASE_TRIPLE]    = read_triple,
-                                                        [CASE_INTERVAL]  = read_interval,
-                                                        [CASE_SWEEP]     = read_sweep,
-                                                        [CASE_STIFFNESS] = read_stiffness,
-                                                        [CASE_PRELOADS]  = case_list_preloads,
-                                                        [CASE_FACTORS]   = case_list_factors,
-                                                        [CASE_PROBES]    = case_list_probes,
-                                                        [CASE_GAUGES]    = case_list_gauges,
-                                                        [CASE_MISTUNING] = read_mistuning,
-                                                        [CASE_DAMPING]   = read_damping,
-                                                        [CASE_GROUPS]    = read_groups,
-                                                        [CASE_SIGNAL]    = read_signal,
-                                                        [CASE_AUTO]      = read_count,
-                                                        [CASE_PLACES]    = case_list_places,
-                                                        [CASE_ORDERS]    = case_list_orders,
-                                                        [CASE_POINTS]    = case_list_frequencies,
-                                                        [CASE_SAVED]     = read_saved,
-                                                        [CASE_DIAMETERS] = read_diameters};
   const case_value_context c = {.issues = issues, .key = key, .path = path, .file = file};
-  return readers[key->type](&c, node, slot);
+  return case_types[key->type].read(&c, node, slot);
+}
+
+void case_value_print(const case_printed *p) {
+  const case_type_row *type = &case_types[p->key->type];
+  if (!type->own_lines) fprintf(p->out, "%s = ", p->path);
+  type->print(p);
+  if (!type->own_lines) fputc('\n', p->out);
 }

@@ -8,11 +8,11 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-#include "cases/parse/unused_keys.h"
 #include "cases/schema/case_paths.h"
 #include "cases/schema/interfaces.h"
 #include "cases/schema/loads.h"
 #include "cases/schema/materials.h"
+#include "cases/schema/unused_keys.h"
 #include "mesh/base/constants.h"
 #include "mesh/core/file_format.h"
 #include "mesh/table/text_file.h"

@@ -200,7 +200,7 @@ static void faults_of_loads(void **state) {
        "8:13: error: excitation.pressure: put it into excitation.loads", 1},
       {"group: suction", "group: load",
        "3:12: error: mesh.groups.suction: unknown group; known are root", 1},
-      {"pressure: -90 Pa", "field: none.h5", "9:5: error: excitation.loads: ", 1},
+      {"pressure: -90 Pa", "field: none.h5", "10:15: error: excitation.loads[1].field: ", 1},
   };
   check_faults(loads, rows, sizeof rows / sizeof *rows);
 }

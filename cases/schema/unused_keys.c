@@ -1,4 +1,4 @@
-#include "cases/parse/unused_keys.h"
+#include "cases/schema/unused_keys.h"
 
 #include <string.h>
 
