@@ -5,6 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "cases/designs/study_table.h"
 #include "cases/parse/key_table.h"
 #include "cases/parse/units.h"
 
@@ -145,40 +146,26 @@ static bool refuse_comma(case_issues *issues, const case_node *one, const char *
 
 /* Read the members of {from, to, points, scale}; false after a fault. */
 static bool read_members(case_issues *issues, const case_node *node, study_key *key) {
-  static const case_key members[] = {
-      {.path = "from"}, {.path = "to"}, {.path = "points"}, {.path = "scale"}};
-  const case_keys all  = {4, members};
-  bool            good = true;
+  const int before = issues->n;
+  int       scale  = 0;
   for (int i = 0; i < node->n; i++) {
     const case_node *one = &node->child[i];
-    char             hint[256], why[CASE_WHY];
-    if (refuse_comma(issues, one, key->path)) {
-      good = false;
-    } else if (strcmp(one->key, "from") == 0) {
-      good = study_key_number(issues, key, one, &key->from) && good;
-    } else if (strcmp(one->key, "to") == 0) {
-      good = study_key_number(issues, key, one, &key->to) && good;
-    } else if (strcmp(one->key, "points") == 0) {
-      if (one->kind != CASE_SCALAR || !case_integer(one->text, &key->n, why) || key->n < 1 ||
-          key->n > STUDY_MOST_DESIGNS) {
-        case_issue_add(issues, one->line, one->column, key->path,
-                       "points: expected a whole number from 1 to %d", STUDY_MOST_DESIGNS);
-        good = false;
-      }
-    } else if (strcmp(one->key, "scale") == 0) {
-      key->log = one->kind == CASE_SCALAR && strcmp(one->text, "log") == 0;
-      if (!key->log && (one->kind != CASE_SCALAR || strcmp(one->text, "linear") != 0)) {
-        fault(issues, one, key->path, "scale: expected linear or log");
-        good = false;
-      }
-    } else {
-      case_key_suggest(all, "", one->key, hint, sizeof hint);
-      case_issue_add(issues, one->key_line, one->key_column, key->path, "%s: unknown key%s",
-                     one->key, hint);
-      good = false;
-    }
+    char             path[CASE_PATH];
+    case_path(path, "%s.%s", key->path, one->key);
+    if (refuse_comma(issues, one, key->path)) continue;
+    if (strcmp(one->key, "from") == 0)
+      study_key_number(issues, key, one, &key->from);
+    else if (strcmp(one->key, "to") == 0)
+      study_key_number(issues, key, one, &key->to);
+    else if (strcmp(one->key, "points") == 0)
+      study_table_read(issues, "vary{}.points", path, one, &key->n);
+    else if (strcmp(one->key, "scale") == 0)
+      study_table_read(issues, "vary{}.scale", path, one, &scale);
+    else
+      study_table_refuse(issues, "vary{}", key->path, one);
   }
-  return good;
+  key->log = scale == 1;
+  return issues->n == before;
 }
 
 static void read_range(case_issues *issues, const case_node *node, study_key *key) {

@@ -5,11 +5,12 @@
 #include <stdbool.h>
 
 #include "cases/designs/output_names.h"
+#include "cases/designs/study_table.h"
 #include "cases/parse/keys.h"
 #include "cases/parse/yaml.h"
 #include "cases/plan/distribution.h"
 
-enum { STUDY_MAX_KEYS = 32, STUDY_MOST_DESIGNS = 100000, STUDY_KEY_TEXT = CASE_PATH + 16 };
+enum { STUDY_MAX_KEYS = 32, STUDY_KEY_TEXT = CASE_PATH + 16 };
 
 typedef struct {
   char              path[CASE_PATH]; /* "mesh.blade.sections[4].thickness" */

@@ -9,8 +9,8 @@
 /* clang-format off */
 
 /* ROW(name, test, words, needed)
- *   test    by file and of what the key belongs to (material, load, interface, or any element); own:
- *           the modes are computed here
+ *   test    by file and by what the key belongs to: material, load, interface; own: the modes are
+ *           computed here
  *   words   of the reference page; NULL: none
  *   needed  the message about a key that is given where it is not read; NULL: told elsewhere */
 #define CASE_CONDITIONS(ROW)                                                                       \

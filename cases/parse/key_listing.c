@@ -15,15 +15,19 @@ static void print_key(const case_key *key, FILE *out) {
           key->unit[0] ? key->unit : "-", range[0] ? range : "-", fallback, key->help);
 }
 
-void case_print_keys(FILE *out) {
-  case_keys keys = case_key_table();
+void case_print_key_table(case_keys keys, FILE *out) {
   fprintf(out, "%-31s %-14s %-6s %-30s %-16s %s\n", "key", "value", "unit", "range (in SI)",
           "default", "meaning");
   for (int i = 0; i < keys.n; i++) {
-    size_t n = strcspn(keys.key[i].path, ".");
-    if (i == 0 || strncmp(keys.key[i].path, keys.key[i - 1].path, n + 1) != 0) fputc('\n', out);
+    const char  *path = keys.key[i].path, *last = i > 0 ? keys.key[i - 1].path : "";
+    const size_t n = strcspn(path, ".{");
+    if (strncmp(path, last, n) != 0 || !strchr(".{", last[n])) fputc('\n', out);
     print_key(&keys.key[i], out);
   }
+}
+
+void case_print_keys(FILE *out) {
+  case_print_key_table(case_key_table(), out);
   fputs(
       "\nNumbers may carry a unit (6000 rpm, 35 deg, 2 MN/m, 7.85 g/cm3, 0.2 %); bare numbers are "
       "SI.\n",

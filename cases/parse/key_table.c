@@ -2,7 +2,7 @@
 #include "cases/parse/key_table.h"
 
 #define AT(member) .at = offsetof(case_file, member)
-#define LIST(member, count) \
+#define LIST(member, count)                                                                        \
   AT(member), .count_at = offsetof(case_file, count), .each = sizeof(*((case_file *)0)->member)
 /* Where a member of the only, or of the first, element of a list is; of any element. */
 #define FIRST(list, member) AT(list[0].member), .element = offsetof(case_file, list)
@@ -60,10 +60,10 @@ enum { MOST_HARMONICS = 200 };
   {PATH "pressure", CASE_NUMBER, "Pa", -1e12, 1e12, .required = REQUIRED, .spare = true,           \
    .instead = "traction, force, field or loads", IN(load.pressure), .stages = CASE_MODAL,          \
    .when = WHEN, .only = CASE_IF_PRESSURE,                                                         \
-   .help = "on the group load, into the surface; one of pressure, traction, force, field"},        \
+   .help = "on the loaded faces, into the surface; one of pressure, traction, force, field"},      \
   {PATH "traction", CASE_VECTOR, "Pa", -1e12, 1e12, .required = true, IN(load.traction),           \
    .stages = CASE_MODAL, .when = WHEN, .only = CASE_IF_TRACTION,                                   \
-   .help = "on the group load, along a direction in mesh axes"},                                   \
+   .help = "on the loaded faces, along a direction in mesh axes"},                                 \
   {PATH "force.at", CASE_VECTOR, "m", -1e3, 1e3, IN(load.at), .stages = CASE_MODAL,                \
    .when = WHEN, .only = CASE_IF_FORCE_AT,                                                         \
    .help = "where the force acts: the node nearest to it; default: the first probe"},              \
@@ -72,7 +72,7 @@ enum { MOST_HARMONICS = 200 };
    .help = "force in mesh axes"},                                                                  \
   {PATH "field", CASE_FILE_NAME, "", .required = true, IN(field), .stages = CASE_MODAL,            \
    .when = WHEN, .only = CASE_IF_FIELD,                                                            \
-   .help = "HDF5 file of forces at nodes or of pressure at the nodes of the group, amplitude and " \
+   .help = "HDF5 file of forces at nodes or of pressure at loaded nodes, amplitude and "           \
            "phase a harmonic"},                                                                    \
   {PATH "harmonics", CASE_FACTORS, "", .fallback = "{1: [1, 0 deg]}", IN(load),                    \
    .stages = CASE_MODAL, .when = WHEN, .only = CASE_IF_FACTORS,                                    \
@@ -316,7 +316,7 @@ static const case_key table[] = {
      INTERFACE(mhb.to_ground), .stages = CASE_MODAL | CASE_MHB,
      .help = "what its right face meets; default: contact.to"},
     FACE_KEYS("contact.interfaces[].", INTERFACE, CASE_ALWAYS, CASE_IF_OWN_MODES)
-    LAW_KEYS("contact.interfaces[].", INTERFACE, INTERFACE_COUNT, CASE_ALWAYS)
+    LAW_KEYS("contact.interfaces[].", INTERFACE, INTERFACE_COUNT, CASE_IF_INTERFACES)
 
     {"mhb.frequency", CASE_SWEEP, "Hz", 0, 1e9, true, .required = true, AT(mhb.frequency),
      .stages = CASE_MHB,
@@ -334,8 +334,8 @@ static const case_key table[] = {
     {"mhb.vary.mu", CASE_INTERVAL, "", 0, 1e6, VARIED(vary[MHB_IN_MU]), .stages = CASE_MHB,
      .when = CASE_IF_FOLLOWED,
      .help = "or the friction coefficient, in place of contact.mu"},
-    {"mhb.vary.ku", CASE_INTERVAL, "N/m", 0, 1e15, true, VARIED(vary[MHB_IN_KU]), .stages = CASE_MHB,
-     .when = CASE_IF_FOLLOWED,
+    {"mhb.vary.ku", CASE_INTERVAL, "N/m", 0, 1e15, true, VARIED(vary[MHB_IN_KU]),
+     .stages = CASE_MHB, .when = CASE_IF_FOLLOWED,
      .help = "or kuu; kuw and kww stay in the proportion that contact.ku gives"},
     {"mhb.vary.kv", CASE_INTERVAL, "N/m", 0, 1e15, VARIED(vary[MHB_IN_KV]), .stages = CASE_MHB,
      .when = CASE_IF_FOLLOWED,

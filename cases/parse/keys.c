@@ -78,7 +78,7 @@ int case_edit_distance(const char *a, const char *b) {
 bool case_key_part(const char *path, const char *block, char part[CASE_LONGEST_WORD]) {
   const char *rest = case_key_below(path, block);
   if (!rest) return false;
-  size_t n = strcspn(rest, ".[");
+  size_t n = strcspn(rest, ".[{");
   if (n >= CASE_LONGEST_WORD) n = CASE_LONGEST_WORD - 1;
   memcpy(part, rest, n);
   part[n] = '\0';

@@ -43,6 +43,8 @@ typedef enum {
   CASE_LIST,
   /* list of deviations, {file: }, or {deviation: , seed: , samples: }: the case_file's mistuning */
   CASE_MISTUNING,
+  CASE_KEYS,   /* {name of the user's choice: value}; read by cases/designs, as the next */
+  CASE_NAMES,  /* list of names */
   CASE_SIGNAL, /* [[amplitude, phase], ...] from harmonic 0; read by schema/motion.c */
   CASE_N_TYPES
 } case_type;
@@ -102,7 +104,7 @@ typedef struct {
 /* Row of path (with "[]" for indices), or NULL. */
 const case_key *case_key_find(case_keys keys, const char *path);
 
-/* The rest of path in the elements of a list, "radius" of "LIST[].radius"; NULL: it is not there. */
+/* The rest of path in the elements of a list, "radius" of "LIST[].radius"; NULL: it is none. */
 const char *case_key_in_list(const char *path, const char *list);
 
 /* Whether the conditions of a row hold. base: the file, or the element of a "[]" row. */

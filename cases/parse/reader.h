@@ -49,8 +49,8 @@ bool case_reader_good(const case_reader *reader, const char *path);
 void case_reader_issue(const case_reader *reader, const char *path, const char *format, ...)
     __attribute__((format(printf, 3, 4)));
 
-/* The place of one of several elements: an element of a list, or the block that stands for a list
- * of one where the list is not given. */
+/* The place of one of several elements: an element of a list. Where the list is not given, the
+ * block that stands for a list of one. */
 typedef struct {
   case_reader *reader;
   char         path[CASE_PATH]; /* "materials[1]" or "material" */

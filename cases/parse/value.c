@@ -499,6 +499,8 @@ const case_type_row case_types[CASE_N_TYPES] = {
   [CASE_GROUPS]    = {"mapping", "a mapping {group: rule}", "{}", read_groups, print_groups,
                       .own_lines = true},
   [CASE_LIST]      = {"list", "a list of mappings", "", NULL, NULL}, /* by the reader */
+  [CASE_KEYS]      = {"mapping", "a mapping", "{}", NULL, NULL},
+  [CASE_NAMES]     = {"list", "a list of names", "A", NULL, NULL},
   [CASE_SIGNAL]    = {"list", "a list of [amplitude, phase]", "A", read_signal, NULL}};
 /* clang-format on */
 

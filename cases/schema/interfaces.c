@@ -85,8 +85,8 @@ static void check_alike(case_reader *r, int i) {
                      own->mhb.to_ground ? "neighbour" : "ground");
   if (!r->file->modal_file && (own->points < 0) != (first->points < 0))
     case_place_issue(&p, "points", "is %s, that of %s is %s; auto chooses those of all interfaces",
-                     own->points < 0 ? "auto" : "none", first->mhb.name,
-                     own->points < 0 ? "none" : "auto");
+                     own->points < 0 ? "auto" : "a number", first->mhb.name,
+                     own->points < 0 ? "a number" : "auto");
 }
 
 /* The lists of preloads go together: entry k of one with entry k of the others. */

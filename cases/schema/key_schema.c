@@ -136,7 +136,8 @@ static void print_required(case_keys keys, const char *block, FILE *out) {
   bool first = true;
   for (int i = 0; i < keys.n; i++) {
     const char *rest = case_key_below(keys.key[i].path, block);
-    if (!rest || strpbrk(rest, ".[") || !keys.key[i].required || keys.key[i].when != CASE_ALWAYS)
+    if (!rest || strpbrk(rest, ".[") || !keys.key[i].required || keys.key[i].when != CASE_ALWAYS ||
+        keys.key[i].only != CASE_ALWAYS)
       continue;
     fprintf(out, "%s\"%s\"", first ? ", \"required\": [" : ", ", rest);
     first = false;

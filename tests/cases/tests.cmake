@@ -38,7 +38,7 @@ shb_test(cases/plan UNIT sampling statistics sobol_indices design_statistics
   LIBRARIES shb_cases_plan PkgConfig::GSL m)
 shb_test(cases/peaks INTEGRATION design_run LIBRARIES shb_cases_peaks tests_models)
 shb_test(cases/designs UNIT design_table digest output_names refusals study_keys study_optimise
-  study_plan study_schema study_spec uncertain_keys LIBRARIES shb_cases_designs)
+  study_plan study_schema study_spec study_table uncertain_keys LIBRARIES shb_cases_designs)
 shb_test(cases/study UNIT line_minimum optimiser optimisation dakota_files design_message
   nearest_design crew study_summary study_run LIBRARIES shb_cases_study tests_studies MPI::MPI_C
   SOURCES ../cases/study/crew.c ../cases/study/study_run.c ../cases/study/study_summary.c)

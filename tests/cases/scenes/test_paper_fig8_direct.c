@@ -128,8 +128,8 @@ static int create_body(void **state) {
   snprintf(path, sizeof path, "%s/paper_fig8.msh", folder);
   assert_ok(read_mesh(path, &whole.mesh));
   assert_ok(mesh_fe_orient(&whole.mesh, whole.file.axis));
-  ok(fem_system_create(PETSC_COMM_SELF, &whole.mesh, &whole.file.materials[0].material, FEM_STANDARD,
-                       &whole.system));
+  ok(fem_system_create(PETSC_COMM_SELF, &whole.mesh, &whole.file.materials[0].material,
+                       FEM_STANDARD, &whole.system));
   ok(MatConvert(whole.system.K, MATSEQAIJ, MAT_INITIAL_MATRIX, &whole.K));
   ok(MatConvert(whole.system.M, MATSEQAIJ, MAT_INITIAL_MATRIX, &whole.M));
   eigen.modes = whole.file.modes;

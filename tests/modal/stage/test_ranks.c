@@ -31,9 +31,9 @@ static void check_ranks(double speed) {
                              .damping  = {.ratio = 0.002},
                              .n_probes = 1,
                              .probe    = &probe};
-  settings                = one_of_each(
-                     settings, 3, false,
-                     (fem_load){.kind = FEM_LOAD_PRESSURE, .pressure = 200, .n_harmonics = 1, .factor = {0, 1}});
+  const fem_load load     = {
+          .kind = FEM_LOAD_PRESSURE, .pressure = 200, .n_harmonics = 1, .factor = {0, 1}};
+  settings = one_of_each(settings, 3, false, load);
   modal_result one, all;
   int          rank;
   MPI_Comm_rank(PETSC_COMM_WORLD, &rank);
