@@ -108,8 +108,9 @@ shb_status study_spec_design(const study_spec *s, const double *value, const cha
   for (; 2 * sets < n; sets++) text[sets] = words[2 * sets + 1];
   snprintf(named, sizeof named, "name=%s", name ? name : "");
   if (name) text[sets++] = named;
-  const case_overrides overrides = {sets, text, into, s->base.text};
-  *file                          = (case_file){.no_memory = status != SHB_OK};
+  const case_overrides overrides = {
+      .n = sets, .text = text, .into = into, .document = s->base.text};
+  *file = (case_file){.no_memory = status != SHB_OK};
   if (status == SHB_OK) status = case_read_with(s->case_path, &overrides, STAGES, errors, file);
   for (int i = 0; i < 2 * STUDY_MAX_KEYS; i++) free(words[i]);
   return status;

@@ -27,6 +27,9 @@
   ROW(CASE_IF_MATERIAL, own && !file->has_materials, "one material", NULL)                         \
   ROW(CASE_IF_MATERIALS, own && file->has_materials, "several materials", NULL)                    \
   ROW(CASE_IF_CRYSTAL, material->constants.G[0] != 0, "with `G`", NULL)                            \
+  /* auto depends on the engine order: schema/nodal_diameters.h goes by what the file holds */     \
+  ROW(CASE_IF_DIAMETERS, file->diameters.what != CASE_DIAMETERS_AUTO, "without `modal.file`",      \
+      NULL)                                                                                        \
   ROW(CASE_IF_AUTO_MODES, own && file->modes == 0, "`modal.modes: auto`", NULL)                    \
   ROW(CASE_IF_INTERFACE, !file->has_interfaces, "one interface", NULL)                             \
   ROW(CASE_IF_POINTS, own && !file->has_interfaces, "one interface, without `modal.file`", NULL)   \

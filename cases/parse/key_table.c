@@ -2,8 +2,9 @@
 #include "cases/parse/key_table.h"
 
 #define AT(member) .at = offsetof(case_file, member)
-#define LIST(member, count)                                                                        \
+#define LIST(member, count) \
   AT(member), .count_at = offsetof(case_file, count), .each = sizeof(*((case_file *)0)->member)
+#define LISTED(member, count, most) AT(member), .count_at = offsetof(case_file, count), .room = most
 /* Where a member of the only, or of the first, element of a list is; of any element. */
 #define FIRST(list, member) AT(list[0].member), .element = offsetof(case_file, list)
 #define FIRST_MATERIAL(member) FIRST(materials, member)
@@ -249,8 +250,10 @@ static const case_key table[] = {
      .stages = CASE_MODAL, .when = CASE_IF_OWN_MODES,
      .help = "that no mode is missing: by a search of what the modes leave out (auto), or by "
              "counting with a second factorisation"},
-    {"modal.nodal_diameters", CASE_DIAMETERS, "", 0, 500, .words = "auto all", .fallback = "auto",
-     AT(diameters), .stages = CASE_MODAL, .when = CASE_IF_OWN_MODES,
+    {"modal.nodal_diameters", CASE_WORD_OR_INTEGERS, "", 0, 500, .words = "auto all",
+     .fallback = "auto", LISTED(diameters.list, diameters.n, CASE_MOST_DIAMETERS),
+     .what_at = offsetof(case_file, diameters.what), .stages = CASE_MODAL,
+     .when = CASE_IF_OWN_MODES, .only = CASE_IF_DIAMETERS,
      .help = "of a sector with a disc (groups cyclic_right, cyclic_left): those that the harmonics "
              "need, 0 to N/2 (stability needs all), or a list"},
     {"modal.integration", CASE_SWITCH, "", .words = "reduced full", .fallback = "reduced",
@@ -387,8 +390,9 @@ static const case_key table[] = {
      AT(mhb.lasting), .stages = CASE_MHB, .when = CASE_IF_STABILITY,
      .help = "the motion that takes over where the wave is modulated, by integration of the whole "
              "ring: a sweep and few points a curve; every modulated point; nothing"},
-    {"mhb.save", CASE_SAVED, "Hz", 0, 1e9, true, .words = "peaks all", .fallback = "peaks",
-     AT(mhb.save), .stages = CASE_MHB,
+    {"mhb.save", CASE_WORD_OR_NUMBERS, "Hz", 0, 1e9, true, .words = "peaks all",
+     .fallback = "peaks", LISTED(mhb.save.frequency, mhb.save.n, MHB_MAX_SAVED),
+     .what_at = offsetof(case_file, mhb.save.what), .stages = CASE_MHB,
      .help = "points of which the amplitude of every mode is kept, for stress and pictures of the "
              "whole blade: the peaks, all, or those at these frequencies, at most 64"},
     {"mhb.flips", CASE_SWITCH, "", .words = "mark follow", .fallback = "follow", AT(mhb.flips),
@@ -400,11 +404,13 @@ static const case_key table[] = {
      .help = "random starts at each frequency and order, to find curves that nothing leads to; "
              "auto: one or more of order 1 at the lowest and the highest peak of all preloads, 0: "
              "no search, 40: a good first look"},
-    {"mhb.search.at", CASE_PLACES, "Hz", 0, 1e9, true, AT(mhb.search.at), .stages = CASE_MHB,
+    {"mhb.search.at", CASE_NUMBERS, "Hz", 0, 1e9, true,
+     LISTED(mhb.search.at, mhb.search.n_at, MHB_MAX_SEARCH_AT), .stages = CASE_MHB,
      .when = CASE_IF_SEARCH_AT,
      .help = "frequencies at which to search, at most 64; default: six, evenly over the range"},
-    {"mhb.search.orders", CASE_ORDERS, "", 1, 16, .fallback = "[1, 2, 3]", AT(mhb.search.order),
-     .stages = CASE_MHB, .when = CASE_IF_SEARCH,
+    {"mhb.search.orders", CASE_INTEGERS, "", 1, 16, .fallback = "[1, 2, 3]",
+     LISTED(mhb.search.order, mhb.search.n_orders, MHB_MAX_SEARCH_ORDERS), .stages = CASE_MHB,
+     .when = CASE_IF_SEARCH,
      .help = "orders searched for, at most 8: 1 repeats like the main curve, nu after nu times as "
              "long"},
 

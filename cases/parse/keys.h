@@ -28,16 +28,16 @@ typedef enum {
   CASE_SWEEP,     /* the same, or a number for both: double[2] */
   CASE_STIFFNESS, /* number or [kuu, kuw, kww], positive definite: double[3] */
   CASE_PRELOADS,  /* number, list, or {from, to, points}: double[], their number at count_at */
-  CASE_PLACES,    /* list of frequencies: the case_file's mhb.search */
-  CASE_ORDERS,    /* list of whole numbers, ascending: the case_file's mhb.search */
-  CASE_POINTS,    /* number of points, or list: the case_file's integrate.frequency */
-  CASE_SAVED,     /* one of words, or list of frequencies: the case_file's mhb.save */
-  CASE_DIAMETERS, /* one of words, or list of whole numbers, ascending: the case_file's diameters */
-  CASE_FACTORS,   /* {k: [factor, phase]}: fem_load, its factors */
-  CASE_PROBES,    /* {name: [x, y, z]}: the case_file's probe */
-  CASE_GAUGES,    /* {name: {at: [x, y, z], direction: [x, y, z]}}: the case_file's gauge */
-  CASE_DAMPING,   /* ratio, list of ratios, {loss_factor: } or {rayleigh: }: damping */
-  CASE_GROUPS,    /* {group: rule}: the case_file's source.rules */
+  CASE_NUMBERS,   /* list: double[], their number at count_at, at most room */
+  CASE_INTEGERS,  /* list of whole numbers, ascending: int[], likewise */
+  CASE_WORD_OR_NUMBERS,  /* one of words, its place at what_at, or a list, the place after them */
+  CASE_WORD_OR_INTEGERS, /* likewise */
+  CASE_POINTS,           /* number of points, or list: the case_file's integrate.frequency */
+  CASE_FACTORS,          /* {k: [factor, phase]}: fem_load, its factors */
+  CASE_PROBES,           /* {name: [x, y, z]}: the case_file's probe */
+  CASE_GAUGES,           /* {name: {at: [x, y, z], direction: [x, y, z]}}: the case_file's gauge */
+  CASE_DAMPING,          /* ratio, list of ratios, {loss_factor: } or {rayleigh: }: damping */
+  CASE_GROUPS,           /* {group: rule}: the case_file's source.rules */
   /* list of mappings, whose keys are rows "LIST[].KEY"; elements of size each, counted at
    * count_at */
   CASE_LIST,
@@ -64,8 +64,10 @@ typedef struct case_key {
   size_t         at;           /* offset in case_file, or in the element for "[]" rows */
   size_t         element;      /* likewise, of what the conditions are about */
   size_t         count_at;     /* offset of the number of values or elements */
-  size_t         each; /* CASE_LIST: size of an element; least and most bound their number */
-  const char    *help; /* one line */
+  size_t         each;    /* CASE_LIST: size of an element; least and most bound their number */
+  size_t         what_at; /* of a word or a list: offset of an enum of int size */
+  int            room;    /* most numbers of a list */
+  const char    *help;    /* one line */
   /* the keys that may be given in place of a required one, for messages; NULL if none */
   const char *instead;
 } case_key;

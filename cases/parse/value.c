@@ -83,12 +83,21 @@ static bool read_accuracy(const case_value_context *c, const case_node *node, vo
   return index >= 0;
 }
 
-/* Reads a list of frequencies, or one of the words; they are in the order of mhb_save_when. */
-static bool read_saved(const case_value_context *c, const case_node *node, void *slot) {
-  mhb_save_settings *save = slot;
-  if (node->kind == CASE_SEQUENCE) return case_list_saved(c, node, slot);
-  int index = choose(c, node);
-  if (index >= 0) save->what = (mhb_save_when)index;
+static int n_words(const char *words) {
+  int n = 1;
+  for (const char *c = words; *c; c++) n += *c == ' ';
+  return n;
+}
+
+/* Reads a list, or one of the words. */
+static bool read_word_or_list(const case_value_context *c, const case_node *node, void *slot) {
+  int *what = (int *)((char *)slot - c->key->at + c->key->what_at);
+  if (node->kind == CASE_SEQUENCE) {
+    *what = n_words(c->key->words);
+    return case_list_numbers(c, node, slot);
+  }
+  const int index = choose(c, node);
+  if (index >= 0) *what = index;
   return index >= 0;
 }
 
@@ -267,14 +276,6 @@ static bool read_stiffness(const case_value_context *c, const case_node *node, v
   return false;
 }
 
-static bool read_diameters(const case_value_context *c, const case_node *node, void *slot) {
-  case_diameters *diameters = slot;
-  if (node->kind == CASE_SEQUENCE) return case_list_diameters(c, node, slot);
-  int index = choose(c, node);
-  if (index >= 0) diameters->what = (case_diameters_kind)index;
-  return index >= 0;
-}
-
 static bool read_damping(const case_value_context *c, const case_node *node, void *slot) {
   return case_damping_read(c->issues, c->path, node, slot);
 }
@@ -352,21 +353,27 @@ static void print_file_name(const case_printed *p) {
   fputs(path ? inside(p->file, path) : "-", p->out);
 }
 
-static void print_preloads(const case_printed *p) {
+static void print_numbers(const case_printed *p) {
   const char *base = (const char *)p->slot - p->key->at;
   shb_print_shortest(p->out, *(const int *)(base + p->key->count_at), p->slot);
 }
 
-static void print_integers(FILE *out, int n, const int *value) {
-  for (int i = 0; i < n; i++) fprintf(out, "%s%d", i ? " " : "", value[i]);
+static void print_integers(const case_printed *p) {
+  const char *base = (const char *)p->slot - p->key->at;
+  const int  *v    = p->slot;
+  for (int i = 0; i < *(const int *)(base + p->key->count_at); i++)
+    fprintf(p->out, "%s%d", i ? " " : "", v[i]);
 }
 
-static void print_places(const case_printed *p) {
-  shb_print_shortest(p->out, p->file->mhb.search.n_at, p->slot);
-}
-
-static void print_orders(const case_printed *p) {
-  print_integers(p->out, p->file->mhb.search.n_orders, p->slot);
+static void print_word_or_list(const case_printed *p) {
+  const char *base = (const char *)p->slot - p->key->at;
+  const int   what = *(const int *)(base + p->key->what_at);
+  if (what < n_words(p->key->words))
+    print_word(p, what);
+  else if (p->key->type == CASE_WORD_OR_INTEGERS)
+    print_integers(p);
+  else
+    print_numbers(p);
 }
 
 static void print_points(const case_printed *p) {
@@ -375,14 +382,6 @@ static void print_points(const case_printed *p) {
     shb_print_shortest(p->out, asked->n_frequencies, p->slot);
   else
     fprintf(p->out, "%d points", asked->n_frequencies);
-}
-
-static void print_saved(const case_printed *p) {
-  const mhb_save_settings *save = p->slot;
-  if (save->what == MHB_SAVE_LISTED)
-    shb_print_shortest(p->out, save->n, save->frequency);
-  else
-    print_word(p, (int)save->what);
 }
 
 /* Of a file its content counts, not its name. */
@@ -401,16 +400,6 @@ static void print_mistuning(const case_printed *p) {
 
 static void print_damping(const case_printed *p) {
   case_damping_print(p->out, p->slot);
-}
-
-/* auto depends on the engine order and goes by what the file holds
- * (cases/schema/nodal_diameters.h). */
-static void print_diameters(const case_printed *p) {
-  const case_diameters *diameters = p->slot;
-  if (diameters->what == CASE_DIAMETERS_AUTO) return;
-  fprintf(p->out, "%s = %s", p->path, diameters->what == CASE_DIAMETERS_ALL ? "all" : "");
-  print_integers(p->out, diameters->n, diameters->list);
-  fputc('\n', p->out);
 }
 
 static void print_factors(const case_printed *p) {
@@ -473,16 +462,16 @@ const case_type_row case_types[CASE_N_TYPES] = {
   [CASE_STIFFNESS] = {"number or list", "a number or [kuu, kuw, kww]", "N 3", read_stiffness,
                       print_three, .number = true},
   [CASE_PRELOADS]  = {"number(s)", "a number, a list or {from, to, points}",
-                      "N * {^(from|to|points)$}", case_list_preloads, print_preloads,
+                      "N * {^(from|to|points)$}", case_list_preloads, print_numbers,
                       .number = true},
-  [CASE_PLACES]    = {"list", "a list of numbers", "*", case_list_places, print_places},
-  [CASE_ORDERS]    = {"list", "a list of whole numbers", "J", case_list_orders, print_orders},
+  [CASE_NUMBERS]   = {"list", "a list of numbers", "*", case_list_numbers, print_numbers},
+  [CASE_INTEGERS]  = {"list", "a list of whole numbers", "J", case_list_numbers, print_integers},
+  [CASE_WORD_OR_NUMBERS]  = {"word or list", "a list of numbers or one of", "W *",
+                             read_word_or_list, print_word_or_list},
+  [CASE_WORD_OR_INTEGERS] = {"word or list", "a list of whole numbers or one of", "W J",
+                             read_word_or_list, print_word_or_list},
   [CASE_POINTS]    = {"integer or list", "a whole number of points or a list", "I *",
                       case_list_frequencies, print_points},
-  [CASE_SAVED]     = {"word or list", "a list of frequencies or one of", "W *", read_saved,
-                      print_saved},
-  [CASE_DIAMETERS] = {"word or list", "a list of whole numbers or one of", "W J", read_diameters,
-                      print_diameters, .own_lines = true},
   [CASE_FACTORS]   = {"mapping", "a mapping {harmonic: [factor, phase]}", "{^[0-9]+$}",
                       case_list_factors, print_factors, .own_lines = true},
   [CASE_PROBES]    = {"mapping", "a mapping {name: [x, y, z]}", "{}", case_list_probes,

@@ -57,28 +57,25 @@ static void check_sections(case_reader *r) {
   const mesh_blade   *blade  = &r->file->blade;
   const case_node    *node   = case_reader_given(r, path);
   for (int i = 0; node && case_reader_good(r, path) && i < blade->n_sections; i++) {
-    const mesh_section *s     = &blade->section[i];
-    const case_node    *place = &node->child[i];
+    const mesh_section *s = &blade->section[i];
     char                full[CASE_PATH];
     case_path(full, "%s[%d]", path, i);
     if (i > 0 && s->radius <= s[-1].radius)
-      case_issue_add(r->issues, place->line, place->column, full,
-                     "radius is %g m, must be above that of the section before, %g m", s->radius,
-                     s[-1].radius);
+      case_reader_issue(r, full, "radius is %g m, must be above that of the section before, %g m",
+                        s->radius, s[-1].radius);
     const double least = .01 * MESH_MIN_THICKNESS * s->chord;
     const double most  = .01 * MESH_MAX_THICKNESS * s->chord;
     const double bend  = .01 * MESH_MAX_CAMBER * s->chord;
     if (s->thickness <= least || s->thickness >= most)
-      case_issue_add(r->issues, place->line, place->column, full,
-                     "thickness is %g m, must be between 1 %% and 50 %% of the chord, %g to %g m",
-                     s->thickness, least, most);
+      case_reader_issue(
+          r, full, "thickness is %g m, must be between 1 %% and 50 %% of the chord, %g to %g m",
+          s->thickness, least, most);
     if (fabs(s->camber) > bend)
-      case_issue_add(r->issues, place->line, place->column, full,
-                     "camber is %g m, must be at most 40 %% of the chord, %g m, either way",
-                     s->camber, bend);
+      case_reader_issue(r, full,
+                        "camber is %g m, must be at most 40 %% of the chord, %g m, either way",
+                        s->camber, bend);
     if (fabs(s->twist) > MESH_MAX_TWIST / degree)
-      case_issue_add(r->issues, place->line, place->column, full,
-                     "twist is %g deg, must be -80 to 80 deg", s->twist * degree);
+      case_reader_issue(r, full, "twist is %g deg, must be -80 to 80 deg", s->twist * degree);
   }
   double height = blade->root_height;
   if (node && case_reader_good(r, path) && case_reader_good(r, "mesh.blade.root.height") &&
@@ -282,9 +279,8 @@ static void check_places(case_reader *r, const char *key, int n, const double *f
     char path[CASE_PATH];
     case_path(path, "%s[%d]", key, i);
     if (frequency[i] < mhb->frequency[0] || frequency[i] > mhb->frequency[1])
-      case_issue_add(r->issues, node->child[i].line, node->child[i].column, path,
-                     "is %g Hz, must be within mhb.frequency, %g to %g Hz", frequency[i],
-                     mhb->frequency[0], mhb->frequency[1]);
+      case_reader_issue(r, path, "is %g Hz, must be within mhb.frequency, %g to %g Hz",
+                        frequency[i], mhb->frequency[0], mhb->frequency[1]);
   }
 }
 
@@ -302,10 +298,10 @@ static void check_integrate(case_reader *r) {
     char full[CASE_PATH];
     case_path(full, "%s[%d]", path, i);
     if (asked->frequency[i] < mhb->frequency[0] || asked->frequency[i] > mhb->frequency[1])
-      case_issue_add(r->issues, node->child[i].line, node->child[i].column, full,
-                     "is %g Hz, must be within mhb.frequency, %g to %g Hz, where there are "
-                     "solutions to start on; or set integrate.start to rest or state",
-                     asked->frequency[i], mhb->frequency[0], mhb->frequency[1]);
+      case_reader_issue(r, full,
+                        "is %g Hz, must be within mhb.frequency, %g to %g Hz, where there are "
+                        "solutions to start on; or set integrate.start to rest or state",
+                        asked->frequency[i], mhb->frequency[0], mhb->frequency[1]);
   }
 }
 
