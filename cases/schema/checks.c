@@ -36,12 +36,13 @@ static void check_blade(case_reader *r, int stages) {
   double            degree = 180 / SHB_PI;
   if (r->file->modal_file || !(stages & CASE_MESH) || !case_reader_has_block(r, "mesh.blade"))
     return;
-  if (case_reader_good(r, "contact.psi") && fabs(blade->psi) * degree > MESH_MAX_PSI)
-    case_reader_issue(r, "contact.psi", "a parametric blade needs -%d to %d deg", MESH_MAX_PSI,
-                      MESH_MAX_PSI);
-  if (case_reader_good(r, "contact.phi") && fabs(blade->phi) * degree > MESH_MAX_PHI)
-    case_reader_issue(r, "contact.phi", "a parametric blade needs -%d to %d deg", MESH_MAX_PHI,
-                      MESH_MAX_PHI);
+  const case_place contact = case_reader_place(r, "contact.interfaces", "contact", 0);
+  if (case_place_good(&contact, "psi") && fabs(blade->psi) * degree > MESH_MAX_PSI)
+    case_place_issue(&contact, "psi", "a parametric blade needs -%d to %d deg", MESH_MAX_PSI,
+                     MESH_MAX_PSI);
+  if (case_place_good(&contact, "phi") && fabs(blade->phi) * degree > MESH_MAX_PHI)
+    case_place_issue(&contact, "phi", "a parametric blade needs -%d to %d deg", MESH_MAX_PHI,
+                     MESH_MAX_PHI);
   if (case_reader_good(r, "rotor.blades") && blade->blades == 2)
     case_reader_issue(r, "rotor.blades", "a parametric blade needs 3 or more");
 }

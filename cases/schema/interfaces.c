@@ -2,6 +2,7 @@
 
 #include <string.h>
 
+#include "mesh/core/fe_mesh.h"
 #include "mhb/problem/parameter.h"
 
 static const char list_path[] = "contact.interfaces", vary_path[] = "mhb.vary.interface";
@@ -147,7 +148,10 @@ void case_check_interfaces(case_reader *r, int stages) {
   if (!file->has_interfaces) return;
   check_single_keys(r);
   if (!case_reader_good(r, list_path)) return;
-  if (!file->modal_file && !file->mesh_file && file->n_interfaces > 0)
+  const case_interface *first = &file->interfaces[0];
+  const bool            usual = strcmp(first->right, mesh_set_name(MESH_CONTACT_RIGHT)) == 0 &&
+                     strcmp(first->left, mesh_set_name(MESH_CONTACT_LEFT)) == 0;
+  if (!file->modal_file && !file->mesh_file && (file->n_interfaces > 1 || !usual))
     case_reader_issue(r, list_path, "mesh.blade has one interface: give a mesh.file for several");
   for (int i = 0; i < file->n_interfaces; i++) {
     check_names(r, i);

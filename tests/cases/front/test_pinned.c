@@ -76,6 +76,12 @@ static void one_of_each(void **state) {
   compare("single");
 }
 
+/* A list of one is computed as the block is, and shown with its name. */
+static void lists_of_one(void **state) {
+  (void)state;
+  compare("list_of_one");
+}
+
 static void several_interfaces(void **state) {
   (void)state;
   compare("interfaces");
@@ -87,7 +93,7 @@ static void several_materials_and_loads(void **state) {
 }
 
 int main(void) {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(one_of_each),
+  const struct CMUnitTest tests[] = {cmocka_unit_test(one_of_each), cmocka_unit_test(lists_of_one),
                                      cmocka_unit_test(several_interfaces),
                                      cmocka_unit_test(several_materials_and_loads)};
   return cmocka_run_group_tests(tests, NULL, NULL);
