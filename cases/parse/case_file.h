@@ -47,7 +47,7 @@ typedef struct {
 /* A contact interface. */
 typedef struct {
   mhb_interface mhb;                               /* name "": the only one */
-  char          right[MESH_WORD], left[MESH_WORD]; /* groups of faces; "": the usual ones */
+  char          right[MESH_WORD], left[MESH_WORD]; /* groups of faces */
   int           points;                            /* contact patches; 0 = all, -1 = auto */
 } case_interface;
 
