@@ -148,7 +148,7 @@ static shb_status solve(const case_file *file, const char *modal, char *settings
   mhb_sampling   sampling   = balance_sampling(file);
   sampling.crew             = crew;
   if (status == SHB_OK && model.run_up) note_run_up(progress, &model);
-  if (status == SHB_OK && file->points < 0) note_points(progress, file, &model);
+  if (status == SHB_OK && case_points_are_auto(file)) note_points(progress, file, &model);
   if (status == SHB_OK && !file->modal_file) status = case_model_judge_points(&model);
   if (status == SHB_OK) status = case_model_face(&model, modal);
   if (status == SHB_OK && model.settings.track != MHB_TRACK_NOTHING)

@@ -78,7 +78,7 @@ static int set_override(int argc, char **argv, int *i, command_options *out) {
 }
 
 shb_status command_read(const command_options *o, int stages, case_file *out) {
-  case_overrides overrides = {o->n_set, o->set, o->into, NULL};
+  case_overrides overrides = {.n = o->n_set, .text = o->set, .into = o->into};
   char          *document  = NULL;
   size_t         length;
   if (o->text) SHB_TRY(case_text_read(o->text, &document, &length));

@@ -214,11 +214,11 @@ static void undo(modal_model *model, modal_nodal_diameters *disc, contact_points
 shb_status contact_points_choose(modal_model *model, modal_nodal_diameters *disc,
                                  const mhb_settings *asked, double tolerance,
                                  contact_points **out) {
-  mhb_settings s    = outline_of(asked);
-  const int    all  = model->n_pairs;
+  mhb_settings s   = outline_of(asked);
+  const int    all = model->n_pairs, faces = model->n_interfaces > 1 ? model->n_interfaces : 1;
   s.nodal_diameters = disc;
   *out              = NULL;
-  for (int patches = 1; patches < all;) {
+  for (int patches = faces; patches < all;) {
     double error = 0;
     SHB_TRY(contact_points_join(model, disc, patches, out));
     const bool flat = (*out)->joining.spread <= MODAL_FLAT;

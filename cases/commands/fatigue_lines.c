@@ -5,7 +5,7 @@
 bool case_has_fatigue(const case_file *file) {
   for (int i = 0; i < file->n_materials; i++)
     if (file->materials[i].endurance > 0) return true;
-  return file->endurance > 0;
+  return false;
 }
 
 shb_status case_fatigue_read(const case_file *file, const char *modal, int n_nodes,
@@ -13,8 +13,9 @@ shb_status case_fatigue_read(const case_file *file, const char *modal, int n_nod
   const char *name[MESH_MAX_VOLUMES];
   double      stiffness[MESH_MAX_VOLUMES];
   s->region  = NULL;
-  s->fatigue = (post_fatigue){.endurance = file->endurance, .ultimate = file->ultimate};
-  if (file->n_materials == 0 || !case_has_fatigue(file)) return SHB_OK;
+  s->fatigue = (post_fatigue){.endurance = file->materials[0].endurance,
+                              .ultimate  = file->materials[0].ultimate};
+  if (!file->has_materials || !case_has_fatigue(file)) return SHB_OK;
   for (int i = 0; i < file->n_materials; i++) {
     name[i]      = file->materials[i].group;
     stiffness[i] = file->materials[i].material.E;

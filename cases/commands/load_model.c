@@ -145,7 +145,7 @@ static shb_status check_disc(const case_file *file, const char *path, const case
 
 /* contact.points: auto. */
 static shb_status choose_points(const case_file *file, case_model *m) {
-  if (file->points >= 0 || file->modal_file) return SHB_OK;
+  if (!case_points_are_auto(file) || file->modal_file) return SHB_OK;
   SHB_TRY(
       contact_points_choose(&m->model, m->disc, &m->settings, file->points_tolerance, &m->points));
   if (m->points) m->settings.other_pairs = &m->points->pairs;

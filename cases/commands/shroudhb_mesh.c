@@ -55,13 +55,11 @@ static shb_status check_contact(const case_file *file, mesh_fe *mesh, mesh_pairi
   *pairing  = (mesh_pairing){0};
   bool both = mesh->set[MESH_CONTACT_RIGHT].n > 0 && mesh->set[MESH_CONTACT_LEFT].n > 0;
   if (!file->has_contact && !(both && file->blades > 1)) return SHB_OK; /* touches nothing */
-  if (file->n_interfaces == 0)
-    return check_faces(file, "contact_right", "contact_left", mesh, pairing);
-  *pairing = (mesh_pairing){0};
   for (int i = 0; i < file->n_interfaces; i++) {
     const case_interface *own = &file->interfaces[i];
     mesh_pairing          one;
     shb_status            status = check_faces(file, own->right, own->left, mesh, &one);
+    if (status != SHB_OK && !own->mhb.name[0]) return status;
     if (status != SHB_OK)
       return shb_fail(status, __FILE__, __LINE__, "contact interface %s: %s", own->mhb.name,
                       shb_message());

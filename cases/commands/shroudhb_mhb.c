@@ -10,11 +10,13 @@
 #include "cases/schema/case.h"
 #include "mesh/base/memory.h"
 #include "mesh/base/progress.h"
+#include "mesh/base/publish.h"
 
 static const char usage[] =
     "usage: shroudhb-mhb [--quiet] [--verbose] [--force] [--set KEY=VALUE]... [--into FOLDER] "
     "CASE.yaml\n"
-    "       shroudhb-mhb --contact MOTION.yaml [--svg OUT.svg]\n"
+    "       shroudhb-mhb --contact [--set KEY=VALUE]... [--into FOLDER] MOTION.yaml [--svg "
+    "OUT.svg]\n"
     "\n"
     "Solves the multi-harmonic balance of CASE.yaml on its modal file and writes "
     "NAME.response.h5;\n"
@@ -23,12 +25,23 @@ static const char usage[] =
     "its\n"
     "hysteresis loops, friction path and states.\n";
 
+/* The picture goes into the folder of --into. */
+static int contact(const command_options *o) {
+  const case_overrides overrides  = {.n = o->n_set, .text = o->set};
+  const bool           moves      = o->svg && o->into && o->svg[0] != '/';
+  char                 path[4096] = "";
+  shb_status           status     = o->into ? shb_make_folder(o->into) : SHB_OK;
+  if (moves) snprintf(path, sizeof path, "%s/%s", o->into, o->svg);
+  if (status == SHB_OK)
+    status = contact_command(o->path, &overrides, moves ? path : o->svg, stdout);
+  return command_finish(status);
+}
+
 int main(int argc, char **argv) {
   command_options options;
   int             code = command_parse(argc, argv, usage, &options);
   if (code >= 0) return code;
-  if (options.mode && strcmp(options.mode, "contact") == 0)
-    return command_finish(contact_command(options.path, options.svg, stdout));
+  if (options.mode && strcmp(options.mode, "contact") == 0) return contact(&options);
   if (options.svg) {
     fputs("shroudhb: error: --svg goes with --contact; see --help\n", stderr);
     return SHB_ERR_INPUT;

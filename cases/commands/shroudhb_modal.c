@@ -104,25 +104,25 @@ static modal_settings stage_settings(const case_file *file, modal_probe probe[CA
                                      fem_load      loads[CASE_MAX_LOADS],
                                      modal_contact contacts[MHB_MAX_INTERFACES],
                                      int           diameters[CASE_MOST_DIAMETERS]) {
-  const mhb_settings *mhb = &file->mhb;
   for (int q = 0; q < file->n_probes; q++) {
     probe[q].name = file->probe[q].name;
     memcpy(probe[q].at, file->probe[q].at, sizeof probe[q].at);
   }
   for (int i = 0; i < file->n_materials; i++)
-    region[i] = (modal_region){file->materials[i].group, file->materials[i].material};
+    region[i] = (modal_region){file->has_materials ? file->materials[i].group : NULL,
+                               file->materials[i].material};
   for (int i = 0; i < file->n_loads; i++) loads[i] = file->loads[i].load;
   for (int i = 0; i < file->n_interfaces; i++) {
     const case_interface *own = &file->interfaces[i];
     contacts[i]               = (modal_contact){own->mhb.name,
                                                 own->right,
                                                 own->left,
-                                                own->points,
+                                                own->mhb.to_ground,
+                                  own->points > 0 ? own->points : 0,
                                   own->mhb.has_psi ? &own->mhb.psi : NULL,
                                   own->mhb.has_phi ? &own->mhb.phi : NULL};
   }
   modal_settings out = {
-      .material         = file->material,
       .n_regions        = file->n_materials,
       .region           = region,
       .axis             = file->axis,
@@ -139,16 +139,10 @@ static modal_settings stage_settings(const case_file *file, modal_probe probe[CA
       .damping          = file->damping,
       .check            = file->check,
       .spares_stiffness = true,
-      .load             = file->load,
       .n_probes         = file->n_probes,
       .probe            = probe,
-      .to_ground        = mhb->to_ground,
-      .points           = file->points > 0 ? file->points : 0,
-      .psi              = mhb->has_psi ? &mhb->psi : NULL,
-      .phi              = mhb->has_phi ? &mhb->phi : NULL,
       .may_be_free      = !file->has_contact,
-      .unloaded         = !file->has_load,
-      .n_loads          = file->n_loads,
+      .n_loads          = file->has_load ? file->n_loads : 0,
       .loads            = loads,
       .n_contacts       = file->n_interfaces,
       .contact          = contacts,
@@ -245,10 +239,9 @@ static void warn_locking(const char *key, double nu) {
 }
 
 static void warn(const case_file *file) {
-  if (!file->has_materials) warn_locking("material.nu", file->constants.nu[0]);
-  for (int i = 0; file->has_materials && i < file->n_materials; i++) {
-    char key[64];
-    snprintf(key, sizeof key, "materials[%d].nu", i);
+  for (int i = 0; i < file->n_materials; i++) {
+    char key[64] = "material.nu";
+    if (file->has_materials) snprintf(key, sizeof key, "materials[%d].nu", i);
     warn_locking(key, file->materials[i].constants.nu[0]);
   }
 }

@@ -15,11 +15,12 @@
 #include "modal/hdf5/h5.h"
 
 /* Adds a line for the field of a load, if it has one. */
-static shb_status add_field(const char *path, int load, char *text, size_t size) {
-  char fingerprint[17], which[24] = "";
+static shb_status add_field(const case_file *file, int load, char *text, size_t size) {
+  const char *path = file->loads[load].field;
+  char        fingerprint[17], which[24] = "";
   if (!path) return SHB_OK;
   SHB_TRY(shb_fingerprint(path, fingerprint));
-  if (load >= 0) snprintf(which, sizeof which, "loads[%d].", load);
+  if (file->has_loads) snprintf(which, sizeof which, "loads[%d].", load);
   size_t used = strlen(text);
   snprintf(text + used, size - used, "excitation.%sfield.fingerprint = %s\n", which, fingerprint);
   return SHB_OK;
@@ -28,11 +29,11 @@ static shb_status add_field(const char *path, int load, char *text, size_t size)
 shb_status up_to_date_settings(const case_file *file, case_stage stage, const char *input,
                                char **text) {
   const char *name = stage == CASE_MODAL ? "mesh" : "modal";
-  char        fingerprint[17], field[64 * (CASE_MAX_LOADS + 1)] = "";
+  char        fingerprint[17], field[64 * CASE_MAX_LOADS] = "";
   SHB_TRY(stage == CASE_MODAL ? mesh_source_fingerprint(input, fingerprint)
                               : shb_fingerprint(input, fingerprint));
-  for (int i = -1; i < file->n_loads && stage == CASE_MODAL; i++)
-    SHB_TRY(add_field(i < 0 ? file->field_file : file->loads[i].field, i, field, sizeof field));
+  for (int i = 0; i < file->n_loads && stage == CASE_MODAL; i++)
+    SHB_TRY(add_field(file, i, field, sizeof field));
   char *keys = case_settings(file, stage);
   SHB_CHECK(keys, SHB_ERR_IO, "out of memory");
   size_t size = strlen(keys) + strlen(field) + 128;

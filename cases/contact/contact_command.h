@@ -4,6 +4,7 @@
 
 #include <stdio.h>
 
+#include "cases/schema/overrides.h"
 #include "mesh/base/status.h"
 
 /* Read a motion file and print to out
@@ -13,10 +14,12 @@
  *   mean_friction: determined | undetermined
  * A force is x(t) = Re sum A_k exp(jkwt); n is the normal load including the preload.
  *
- *   svg  in  path of a picture (hysteresis_picture.h), or NULL
+ *   overrides  in  of keys of the file, or NULL
+ *   svg        in  path of a picture (hysteresis_picture.h), or NULL
  *
  * Errors: as case_motion_read. SHB_ERR_INPUT also if svg is the file that is read.
  * SHB_NOT_CONVERGED if the slider did not become periodic; everything is printed and drawn. */
-shb_status contact_command(const char *path, const char *svg, FILE *out);
+shb_status contact_command(const char *path, const case_overrides *overrides, const char *svg,
+                           FILE *out);
 
 #endif

@@ -83,7 +83,7 @@ static shb_status choose_points_of_disc(convergence_study *s, const mhb_settings
 /* With contact.points: auto all ladders but that of the points have as many as the case needs. */
 static shb_status choose_points(convergence_study *s, const case_file *own) {
   s->n_pairs = s->model.n_pairs;
-  if (s->file->points >= 0 || s->file->modal_file) return SHB_OK;
+  if (!case_points_are_auto(s->file) || s->file->modal_file) return SHB_OK;
   mhb_settings settings = s->file->mhb;
   settings.n_preloads   = own->mhb.n_preloads;
   for (int i = 0; i < own->mhb.n_preloads; i++) settings.n0[i] = own->mhb.n0[i];
@@ -100,7 +100,7 @@ static shb_status check_disc(convergence_study *s) {
   modal_nodal_diameters d;
   case_model            m;
   case_file             whole = *s->file;
-  whole.points                = 0; /* whatever is chosen */
+  whole.interfaces[0].points  = 0; /* whatever is chosen */
   SHB_TRY(modal_nodal_diameters_read(s->variant[0].modal, &d));
   s->disc = d.n > 0;
   modal_nodal_diameters_free(&d);

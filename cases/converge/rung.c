@@ -50,7 +50,8 @@ shb_status rung_apply(const rung_setting *s, case_file *file) {
   mhb->harmonics        = s->harmonics;
   mhb->motion_tolerance = s->tolerance;
   mhb->tolerance        = s->accuracy;
-  if (file->points < 0) file->points = 0; /* the setting says how many */
+  for (int i = 0; i < file->n_interfaces; i++) /* the setting says how many */
+    if (file->interfaces[i].points < 0) file->interfaces[i].points = 0;
   mhb->stability     = MHB_STABILITY_NEVER;
   mhb->search.starts = 0;
   mhb->resume        = false;

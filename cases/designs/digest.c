@@ -59,7 +59,6 @@ shb_status digest_inputs(const case_file *file, char **inputs) {
   SHB_CHECK(out, SHB_ERR_IO, "out of memory");
   shb_status status = add_mesh(file->mesh_file, out);
   if (status == SHB_OK) status = add_file(file->modal_file, out);
-  if (status == SHB_OK) status = add_file(file->field_file, out);
   for (int i = 0; i < file->n_loads && status == SHB_OK; i++)
     status = add_file(file->loads[i].field, out);
   if (status == SHB_OK) status = add_file(file->mistuning.file, out);

@@ -87,7 +87,7 @@ static int parse_mode(const char *name, const offer *o, study_output *out, char 
 static bool has_fatigue(const case_file *file) {
   for (int i = 0; i < file->n_materials; i++)
     if (file->materials[i].endurance > 0) return true;
-  return file->endurance > 0;
+  return false;
 }
 
 /* Whether the case gives what stress, safety and strain need; else a reason. */

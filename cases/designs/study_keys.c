@@ -5,6 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "cases/designs/study_table.h"
 #include "cases/parse/key_table.h"
 #include "cases/parse/units.h"
 
@@ -41,26 +42,6 @@ static const case_key *row_of(const char *path) {
     key            = case_key_find(case_key_table(), pattern);
   }
   return key;
-}
-
-bool study_key_is_number(const case_key *key) {
-  switch (key->type) {
-    case CASE_NUMBER:
-    case CASE_INTEGER:
-    case CASE_COUNT:
-    case CASE_AUTO:
-    case CASE_ACCURACY:
-    case CASE_VECTOR:
-    case CASE_TRIPLE:
-    case CASE_INTERVAL:
-    case CASE_SWEEP:
-    case CASE_STIFFNESS:
-    case CASE_PRELOADS:
-    case CASE_DAMPING:
-      return true;
-    default:
-      return false;
-  }
 }
 
 /* A part of a path as the key table has it: an index becomes "[]". Returns the length of the part
@@ -165,40 +146,26 @@ static bool refuse_comma(case_issues *issues, const case_node *one, const char *
 
 /* Read the members of {from, to, points, scale}; false after a fault. */
 static bool read_members(case_issues *issues, const case_node *node, study_key *key) {
-  static const case_key members[] = {
-      {.path = "from"}, {.path = "to"}, {.path = "points"}, {.path = "scale"}};
-  const case_keys all  = {4, members};
-  bool            good = true;
+  const int before = issues->n;
+  int       scale  = 0;
   for (int i = 0; i < node->n; i++) {
     const case_node *one = &node->child[i];
-    char             hint[256], why[CASE_WHY];
-    if (refuse_comma(issues, one, key->path)) {
-      good = false;
-    } else if (strcmp(one->key, "from") == 0) {
-      good = study_key_number(issues, key, one, &key->from) && good;
-    } else if (strcmp(one->key, "to") == 0) {
-      good = study_key_number(issues, key, one, &key->to) && good;
-    } else if (strcmp(one->key, "points") == 0) {
-      if (one->kind != CASE_SCALAR || !case_integer(one->text, &key->n, why) || key->n < 1 ||
-          key->n > STUDY_MOST_DESIGNS) {
-        case_issue_add(issues, one->line, one->column, key->path,
-                       "points: expected a whole number from 1 to %d", STUDY_MOST_DESIGNS);
-        good = false;
-      }
-    } else if (strcmp(one->key, "scale") == 0) {
-      key->log = one->kind == CASE_SCALAR && strcmp(one->text, "log") == 0;
-      if (!key->log && (one->kind != CASE_SCALAR || strcmp(one->text, "linear") != 0)) {
-        fault(issues, one, key->path, "scale: expected linear or log");
-        good = false;
-      }
-    } else {
-      case_key_suggest(all, "", one->key, hint, sizeof hint);
-      case_issue_add(issues, one->key_line, one->key_column, key->path, "%s: unknown key%s",
-                     one->key, hint);
-      good = false;
-    }
+    char             path[CASE_PATH];
+    case_path(path, "%s.%s", key->path, one->key);
+    if (refuse_comma(issues, one, key->path)) continue;
+    if (strcmp(one->key, "from") == 0)
+      study_key_number(issues, key, one, &key->from);
+    else if (strcmp(one->key, "to") == 0)
+      study_key_number(issues, key, one, &key->to);
+    else if (strcmp(one->key, "points") == 0)
+      study_table_read(issues, "vary{}.points", path, one, &key->n);
+    else if (strcmp(one->key, "scale") == 0)
+      study_table_read(issues, "vary{}.scale", path, one, &scale);
+    else
+      study_table_refuse(issues, "vary{}", key->path, one);
   }
-  return good;
+  key->log = scale == 1;
+  return issues->n == before;
 }
 
 static void read_range(case_issues *issues, const case_node *node, study_key *key) {
@@ -235,12 +202,12 @@ bool study_key_start(case_issues *issues, const case_node *node, const char *pat
     refuse_path(issues, node, path);
     return false;
   }
-  if (!study_key_is_number(row)) {
+  if (!case_types[row->type].number) {
     case_issue_add(issues, node->key_line, node->key_column, path,
                    "is not a number; a study varies numbers");
     return false;
   }
-  key->whole = row->type == CASE_INTEGER || row->type == CASE_COUNT || row->type == CASE_AUTO;
+  key->whole = case_types[row->type].whole;
   snprintf(key->unit, sizeof key->unit, "%s", row->unit[0] ? row->unit : "-");
   return true;
 }

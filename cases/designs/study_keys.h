@@ -5,11 +5,12 @@
 #include <stdbool.h>
 
 #include "cases/designs/output_names.h"
+#include "cases/designs/study_table.h"
 #include "cases/parse/keys.h"
 #include "cases/parse/yaml.h"
 #include "cases/plan/distribution.h"
 
-enum { STUDY_MAX_KEYS = 32, STUDY_MOST_DESIGNS = 100000, STUDY_KEY_TEXT = CASE_PATH + 16 };
+enum { STUDY_MAX_KEYS = 32, STUDY_KEY_TEXT = CASE_PATH + 16 };
 
 typedef struct {
   char              path[CASE_PATH]; /* "mesh.blade.sections[4].thickness" */
@@ -35,9 +36,6 @@ typedef struct {
 /* Read the mapping of varied keys. Faults are recorded, here and below. */
 void study_keys_read(case_issues *issues, const case_node *node, study_keys *keys);
 void study_keys_free(study_keys *keys);
-
-/* Whether a study can vary a key of the key table. */
-bool study_key_is_number(const case_key *row);
 
 /* Set path, unit and kind of a key. False if the path is no number of a case. */
 bool study_key_start(case_issues *issues, const case_node *node, const char *path, study_key *key);

@@ -4,20 +4,12 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "cases/parse/keys.h"
+#include "cases/designs/study_table.h"
 #include "cases/parse/units.h"
 #include "cases/plan/sampling.h"
 #include "mhb/tracking/peak_system.h"
 
-enum { MOST_EVALUATIONS = 100000, LEAST_A_START = 5, MOST_OUTPUTS = 64 };
-
-static const case_key members[] = {
-    {.path = "minimise"}, {.path = "at_most"}, {.path = "at_least"}, {.path = "evaluations"},
-    {.path = "starts"},   {.path = "seed"},    {.path = "algorithm"}};
-static const case_keys all = {sizeof members / sizeof *members, members};
-
-static const char *const algorithms[STUDY_N_ALGORITHMS] = {"sbplx", "crs", "isres", "direct",
-                                                           "slope"};
+enum { MOST_OUTPUTS = 64 };
 
 typedef struct {
   case_issues         *issues;
@@ -26,7 +18,8 @@ typedef struct {
 } reading;
 
 const char *study_algorithm_name(study_algorithm algorithm) {
-  return algorithms[algorithm];
+  static const char *const name[STUDY_N_ALGORITHMS] = {"sbplx", "crs", "isres", "direct", "slope"};
+  return name[algorithm];
 }
 
 static void fault(reading *r, const case_node *node, const char *text) {
@@ -84,56 +77,33 @@ static void read_limits(reading *r, const case_node *node, bool least) {
   }
 }
 
-static int whole(reading *r, const case_node *node, int least, int most) {
-  char why[CASE_WHY];
-  int  value = least;
-  if (node->kind != CASE_SCALAR || !case_integer(node->text, &value, why) || value < least ||
-      value > most) {
-    case_issue_add(r->issues, node->line, node->column, "optimise",
-                   "%s: expected a whole number from %d to %d", node->key, least, most);
-    return least;
-  }
-  return value;
-}
-
-static void read_algorithm(reading *r, const case_node *node) {
-  int i = 0;
-  while (i < STUDY_N_ALGORITHMS &&
-         (node->kind != CASE_SCALAR || strcmp(node->text, algorithms[i]) != 0))
-    i++;
-  if (i == STUDY_N_ALGORITHMS)
-    fault(r, node, "algorithm: expected sbplx, crs, isres, direct or slope");
-  else
-    r->o->algorithm = (study_algorithm)i;
-}
-
 static void read_member(reading *r, const case_node *one) {
-  char hint[256];
+  static const char *const number[] = {"evaluations", "starts", "seed", "algorithm"};
+  void *const slot[] = {&r->o->evaluations, &r->o->starts, &r->o->seed, &r->o->algorithm};
+  char        path[CASE_PATH];
+  case_path(path, "optimise.%s", one->key);
+  for (int i = 0; i < 4; i++) {
+    if (strcmp(one->key, number[i]) != 0) continue;
+    study_table_read(r->issues, path, path, one, slot[i]);
+    return;
+  }
   if (strcmp(one->key, "minimise") == 0) {
     if (one->kind == CASE_SCALAR) r->o->objective = output_of(r, one, one->text);
     if (one->kind != CASE_SCALAR) fault(r, one, "minimise: expected the name of an output");
   } else if (strcmp(one->key, "at_most") == 0 || strcmp(one->key, "at_least") == 0) {
     read_limits(r, one, strcmp(one->key, "at_least") == 0);
-  } else if (strcmp(one->key, "evaluations") == 0) {
-    r->o->evaluations = whole(r, one, LEAST_A_START, MOST_EVALUATIONS);
-  } else if (strcmp(one->key, "starts") == 0) {
-    r->o->starts = whole(r, one, 1, STUDY_MOST_STARTS);
-  } else if (strcmp(one->key, "seed") == 0) {
-    r->o->seed = (unsigned long)whole(r, one, 0, 1 << 30);
-  } else if (strcmp(one->key, "algorithm") == 0) {
-    read_algorithm(r, one);
   } else {
-    case_key_suggest(all, "", one->key, hint, sizeof hint);
-    case_issue_add(r->issues, one->key_line, one->key_column, "optimise", "%s: unknown key%s",
-                   one->key, hint);
+    study_table_refuse(r->issues, "optimise", "optimise", one);
   }
 }
 
 void study_optimise_read(case_issues *issues, const case_node *node, const study_outputs *outputs,
                          study_optimise *o) {
   reading r = {issues, outputs, o};
-  *o =
-      (study_optimise){.wanted = true, .objective = -1, .evaluations = 200, .starts = 4, .seed = 1};
+  *o        = (study_optimise){.wanted = true, .objective = -1};
+  study_table_default("optimise.evaluations", &o->evaluations);
+  study_table_default("optimise.starts", &o->starts);
+  study_table_default("optimise.seed", &o->seed);
   o->free_algorithm = node->kind == CASE_MAPPING && !case_node_find(node, "algorithm");
   if (node->kind != CASE_MAPPING) {
     fault(&r, node, "expected a mapping such as {minimise: peak, evaluations: 200}");
@@ -145,10 +115,10 @@ void study_optimise_read(case_issues *issues, const case_node *node, const study
   if (o->algorithm == STUDY_DIRECT) o->starts = 1;
   if (!case_node_find(node, "minimise"))
     fault(&r, node, "minimise is missing: the output to be minimised");
-  if (o->evaluations < LEAST_A_START * o->starts)
+  if (o->evaluations < STUDY_LEAST_A_START * o->starts)
     case_issue_add(issues, node->line, node->column, "optimise",
                    "%d evaluations are too few for %d starts; each takes %d or more",
-                   o->evaluations, o->starts, LEAST_A_START);
+                   o->evaluations, o->starts, STUDY_LEAST_A_START);
 }
 
 static bool check_keys(case_issues *issues, const case_node *at, const study_keys *keys) {
@@ -204,7 +174,7 @@ void study_optimise_starts(case_issues *issues, const case_node *at, const study
     return;
   }
   double *u = calloc((size_t)rows * (size_t)d + 1, sizeof *u);
-  if (!u || plan_latin_hypercube(o->starts, d, o->seed, u + 2 * d) != SHB_OK) {
+  if (!u || plan_latin_hypercube(o->starts, d, (unsigned long)o->seed, u + 2 * d) != SHB_OK) {
     case_issues_no_memory(issues);
     free(u);
     return;

@@ -4,7 +4,9 @@
 
 #include "cases/designs/study_keys.h"
 
-enum { STUDY_MAX_LIMITS = 16, STUDY_MOST_STARTS = 64 };
+enum { STUDY_MAX_LIMITS = 16 };
+
+/* In the order of optimise.algorithm. */
 
 typedef enum {
   STUDY_SBPLX,  /* simplices in subspaces, local */
@@ -28,7 +30,7 @@ typedef struct {
   int             n_limits;
   study_limit     limit[STUDY_MAX_LIMITS];
   int             evaluations, starts; /* of all starts together; these share them equally */
-  unsigned long   seed;
+  int             seed;
   bool            free_algorithm; /* none was asked for */
   study_algorithm algorithm;
 } study_optimise;

@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "cases/designs/design_table.h"
+#include "cases/designs/study_table.h"
 #include "cases/parse/keys.h"
 #include "cases/parse/units.h"
 #include "cases/plan/sampling.h"
@@ -17,50 +18,23 @@ static void fault(case_issues *issues, const case_node *node, const char *key, c
 
 /* ---------------------------------------------------------------- plan */
 
-static bool read_count(case_issues *issues, const case_node *node, const char *key, int least,
-                       int *value) {
-  char why[CASE_WHY];
-  if (node->kind == CASE_SCALAR && case_integer(node->text, value, why) && *value >= least &&
-      *value <= STUDY_MOST_DESIGNS)
-    return true;
-  case_issue_add(issues, node->line, node->column, key,
-                 "expected a whole number from %d to %d, such as 256", least, STUDY_MOST_DESIGNS);
-  return false;
-}
-
-static void read_seed(case_issues *issues, const case_node *node, const char *key,
-                      unsigned long *seed) {
-  char why[CASE_WHY];
-  int  value;
-  if (node->kind == CASE_SCALAR && case_integer(node->text, &value, why) && value >= 0) {
-    *seed = (unsigned long)value;
-  } else {
-    fault(issues, node, key, "expected a whole number from 0");
-  }
-}
-
 /* {sobol: 256, seed: 1} and the like. */
 static void read_sampling(case_issues *issues, const case_node *node, study_plan *plan) {
-  static const case_key members[] = {
-      {.path = "table"}, {.path = "sobol"}, {.path = "latin_hypercube"}, {.path = "seed"}};
-  const case_keys all   = {4, members};
-  int             kinds = 0;
+  int kinds = 0;
   for (int i = 0; i < node->n; i++) {
     const case_node *one = &node->child[i];
-    char             hint[256];
+    char             path[CASE_PATH];
+    case_path(path, "plan.%s", one->key);
     if (strcmp(one->key, "seed") == 0) {
-      read_seed(issues, one, "plan.seed", &plan->seed);
+      study_table_read(issues, path, path, one, &plan->seed);
     } else if (strcmp(one->key, "sobol") == 0 || strcmp(one->key, "latin_hypercube") == 0) {
       plan->kind = one->key[0] == 's' ? STUDY_SOBOL : STUDY_LATIN_HYPERCUBE;
       kinds++;
-      read_count(issues, one, one->key[0] == 's' ? "plan.sobol" : "plan.latin_hypercube", 1,
-                 &plan->n_points);
+      study_table_read(issues, path, path, one, &plan->n_points);
     } else if (strcmp(one->key, "table") == 0) {
       kinds = 2; /* a table alone was read before */
     } else {
-      case_key_suggest(all, "", one->key, hint, sizeof hint);
-      case_issue_add(issues, one->key_line, one->key_column, "plan", "%s: unknown key%s", one->key,
-                     hint);
+      study_table_refuse(issues, "plan", "plan", one);
       kinds = 1;
     }
   }
@@ -73,7 +47,7 @@ static void read_sampling(case_issues *issues, const case_node *node, study_plan
 void study_plan_read(case_issues *issues, const case_node *node, const char *folder,
                      study_plan *plan) {
   const case_node *table = case_node_find(node, "table");
-  plan->seed             = 1;
+  study_table_default("plan.seed", &plan->seed);
   if (node->kind == CASE_SCALAR && strcmp(node->text, "grid") == 0) {
     plan->kind = STUDY_GRID;
   } else if (table && node->n == 1 && table->kind == CASE_SCALAR) {
@@ -93,9 +67,9 @@ void study_plan_read(case_issues *issues, const case_node *node, const char *fol
 
 void study_plan_read_samples(case_issues *issues, const case_node *samples, const case_node *seed,
                              study_plan *plan) {
-  plan->sample_seed = 1;
-  if (samples) read_count(issues, samples, "samples", STUDY_LEAST_SAMPLES, &plan->n_samples);
-  if (seed) read_seed(issues, seed, "seed", &plan->sample_seed);
+  study_table_default("seed", &plan->sample_seed);
+  if (samples) study_table_read(issues, "samples", "samples", samples, &plan->n_samples);
+  if (seed) study_table_read(issues, "seed", "seed", seed, &plan->sample_seed);
 }
 
 bool study_plan_has_blocks(const study_plan *plan, const study_keys *keys) {
@@ -161,9 +135,10 @@ static void map(const study_keys *keys, int first, int n_keys, int n, double *u)
 static void make_sample(case_issues *issues, const case_node *at, const study_plan *plan,
                         const study_keys *keys, int n_keys, int *n_designs, double **design) {
   if (!take(issues, at, plan->n_points, n_keys, design)) return;
-  shb_status status = plan->kind == STUDY_SOBOL
-                          ? plan_sobol(plan->n_points, n_keys, plan->seed, *design)
-                          : plan_latin_hypercube(plan->n_points, n_keys, plan->seed, *design);
+  shb_status status =
+      plan->kind == STUDY_SOBOL
+          ? plan_sobol(plan->n_points, n_keys, (unsigned long)plan->seed, *design)
+          : plan_latin_hypercube(plan->n_points, n_keys, (unsigned long)plan->seed, *design);
   if (status != SHB_OK) fault(issues, at, "plan", shb_message());
   if (status != SHB_OK) return;
   map(keys, 0, n_keys, plan->n_points, *design);
@@ -182,8 +157,9 @@ static double *make_group(case_issues *issues, const case_node *at, const study_
     case_issues_no_memory(issues);
     return NULL;
   }
-  status = study_plan_has_blocks(plan, keys) ? plan_saltelli(blocks(plan), d, plan->sample_seed, u)
-                                             : plan_sobol(n, d, plan->sample_seed, u);
+  status = study_plan_has_blocks(plan, keys)
+               ? plan_saltelli(blocks(plan), d, (unsigned long)plan->sample_seed, u)
+               : plan_sobol(n, d, (unsigned long)plan->sample_seed, u);
   if (status != SHB_OK) {
     fault(issues, at, "uncertain", shb_message());
     free(u);

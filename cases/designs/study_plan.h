@@ -4,9 +4,6 @@
 
 #include "cases/designs/study_keys.h"
 
-/* 95 % of confidence in an upper bound of the 95 % percentile takes 72 samples. */
-enum { STUDY_LEAST_SAMPLES = 8 };
-
 typedef enum { STUDY_GRID, STUDY_TABLE, STUDY_SOBOL, STUDY_LATIN_HYPERCUBE } study_plan_kind;
 
 typedef struct {
@@ -14,9 +11,9 @@ typedef struct {
   char           *table;     /* resolved path of the CSV file of STUDY_TABLE, else NULL */
   const char     *columns;   /* its keys, one a line, where the file is not read again; else NULL */
   int             n_points;  /* of STUDY_SOBOL and STUDY_LATIN_HYPERCUBE */
-  unsigned long   seed;      /* of these */
+  int             seed;      /* of these */
   int             n_samples; /* of the uncertain keys; 0: there are none */
-  unsigned long   sample_seed;
+  int             sample_seed;
 } study_plan;
 
 /* Read the value of `plan`; folder: where a table is. Faults are recorded, here and below. */

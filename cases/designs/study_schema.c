@@ -31,7 +31,7 @@ static void print_paths(bool patterns, const char *form, FILE *out) {
   bool            first = true;
   for (int i = 0; i < keys.n; i++) {
     const case_key *key = &keys.key[i];
-    if (!study_key_is_number(key) || (!patterns && strchr(key->path, '['))) continue;
+    if (!case_types[key->type].number || (!patterns && strchr(key->path, '['))) continue;
     fputs(first ? "\n    " : ",\n    ", out);
     first = false;
     if (patterns)

@@ -6,6 +6,7 @@
 
 #include "cases/designs/digest.h"
 #include "cases/designs/refusals.h"
+#include "cases/designs/study_table.h"
 #include "cases/designs/uncertain_keys.h"
 #include "cases/parse/diagnostics.h"
 #include "cases/parse/keys.h"
@@ -15,19 +16,11 @@
 
 enum { STAGES = CASE_MESH | CASE_MODAL | CASE_MHB };
 
-/* The keys of a study file. Only their names are used, for suggestions. */
-static const case_key rows[] = {
-    {"name", CASE_WORD, .help = ""},        {"case", CASE_FILE_NAME, .help = ""},
-    {"vary", CASE_NUMBER, .help = ""},      {"plan", CASE_WORD, .help = ""},
-    {"uncertain", CASE_NUMBER, .help = ""}, {"samples", CASE_NUMBER, .help = ""},
-    {"seed", CASE_NUMBER, .help = ""},      {"outputs", CASE_WORD, .help = ""},
-    {"optimise", CASE_WORD, .help = ""}};
-static const case_keys known = {sizeof rows / sizeof *rows, rows};
-
 typedef struct {
   case_issues        issues;
   study_spec        *spec;
   const study_texts *texts; /* NULL: the files are read */
+  case_overrides     overrides;
 } reading;
 
 static void fault(reading *r, const case_node *node, const char *key, const char *text) {
@@ -115,8 +108,9 @@ shb_status study_spec_design(const study_spec *s, const double *value, const cha
   for (; 2 * sets < n; sets++) text[sets] = words[2 * sets + 1];
   snprintf(named, sizeof named, "name=%s", name ? name : "");
   if (name) text[sets++] = named;
-  const case_overrides overrides = {sets, text, into, s->base.text};
-  *file                          = (case_file){.no_memory = status != SHB_OK};
+  const case_overrides overrides = {
+      .n = sets, .text = text, .into = into, .document = s->base.text};
+  *file = (case_file){.no_memory = status != SHB_OK};
   if (status == SHB_OK) status = case_read_with(s->case_path, &overrides, STAGES, errors, file);
   for (int i = 0; i < 2 * STUDY_MAX_KEYS; i++) free(words[i]);
   return status;
@@ -291,17 +285,17 @@ static bool read_case(reading *r, const case_node *root, FILE *errors) {
 }
 
 static void refuse_unknown(reading *r, const case_node *root) {
+  const case_keys keys = study_key_table();
   for (int i = 0; i < root->n; i++) {
-    char hint[512];
-    if (case_key_find(known, root->child[i].key)) continue;
-    case_key_suggest(known, "", root->child[i].key, hint, sizeof hint);
-    case_issue_add(&r->issues, root->child[i].key_line, root->child[i].key_column,
-                   root->child[i].key, "unknown key%s", hint);
+    const case_node *one = &root->child[i];
+    if (!case_key_find(keys, one->key) && !case_key_is_block(keys, one->key))
+      study_table_refuse(&r->issues, "", one->key, one);
   }
 }
 
 static void read_document(reading *r, bool check, FILE *errors) {
   case_node *root = case_document_parse(&r->issues);
+  if (root || r->issues.n == 0) case_overrides_apply(&r->issues, &r->overrides, &root);
   if (!root || root->kind != CASE_MAPPING) {
     if (r->issues.n == 0)
       case_issue_add(&r->issues, 1, 1, NULL, "the file holds no mapping of keys");
@@ -319,31 +313,64 @@ static void read_document(reading *r, bool check, FILE *errors) {
   case_document_free(root);
 }
 
+/* The overrides as lines, and below the text; the folder of the results. */
+static shb_status keep_overrides(study_spec *s, const case_overrides *o) {
+  size_t size = 0;
+  FILE  *out  = open_memstream(&s->sets, &size);
+  char  *text = case_overrides_text(o, s->text);
+  for (int i = 0; out && i < o->n; i++) fprintf(out, "%s\n", o->text[i]);
+  if (out) fclose(out);
+  s->into = o->into && o->into[0] ? strdup(o->into) : NULL;
+  SHB_CHECK(out && s->sets && text, SHB_ERR_IO, "%s: out of memory", s->path);
+  free(s->text);
+  s->text = text;
+  if (!s->into) return SHB_OK;
+  free(s->folder);
+  s->folder = strdup(s->into);
+  SHB_CHECK(s->folder, SHB_ERR_IO, "%s: out of memory", s->path);
+  return SHB_OK;
+}
+
 static shb_status read_study(reading *r, const char *path, bool check, FILE *errors) {
   study_spec *s     = r->spec;
   const char *slash = strrchr(path, '/');
   s->path           = strdup(path);
   s->folder = slash ? strndup(path, slash == path ? 1 : (size_t)(slash - path)) : strdup(".");
   SHB_CHECK(s->path && s->folder && s->text, SHB_ERR_IO, "%s: out of memory", path);
-  r->issues = case_issues_start(path, s->text, strlen(s->text));
+  r->issues         = case_issues_start(path, s->text, strlen(s->text));
+  r->overrides.keys = study_key_table();
   read_document(r, check, errors);
   s->plan.columns = NULL; /* of the reader */
-  return case_issues_finish(&r->issues, errors);
+  SHB_TRY(case_issues_finish(&r->issues, errors));
+  return keep_overrides(s, &r->overrides);
 }
 
-shb_status study_spec_read(const char *path, bool check, FILE *errors, study_spec *s) {
+shb_status study_spec_read_with(const char *path, const case_overrides *overrides, bool check,
+                                FILE *errors, study_spec *s) {
   size_t  length = 0;
-  reading r      = {.spec = s};
+  reading r      = {.spec = s, .overrides = *overrides};
   *s             = (study_spec){0};
   SHB_TRY(case_text_read(path, &s->text, &length));
   return read_study(&r, path, check, errors);
 }
 
+shb_status study_spec_read(const char *path, bool check, FILE *errors, study_spec *s) {
+  return study_spec_read_with(path, &(case_overrides){0}, check, errors, s);
+}
+
+enum { MOST_SETS = 64 };
+
 shb_status study_spec_read_texts(const char *path, const study_texts *texts, FILE *errors,
                                  study_spec *s) {
-  reading r = {.spec = s, .texts = texts};
-  *s        = (study_spec){.text = strdup(texts->study)};
-  return read_study(&r, path, false, errors);
+  const char *set[MOST_SETS];
+  char       *lines = strdup(texts->sets), *rest = lines;
+  reading     r = {.spec = s, .texts = texts, .overrides = {.text = set, .into = texts->into}};
+  *s            = (study_spec){.text = lines ? strdup(texts->study) : NULL};
+  for (char *line; (line = strsep(&rest, "\n")) != NULL && r.overrides.n < MOST_SETS;)
+    if (line[0]) set[r.overrides.n++] = line;
+  const shb_status status = read_study(&r, path, false, errors);
+  free(lines);
+  return status;
 }
 
 shb_status study_spec_check_inputs(const study_spec *s, const case_file *inputs_of) {
@@ -360,6 +387,8 @@ shb_status study_spec_check_inputs(const study_spec *s, const case_file *inputs_
 void study_spec_free(study_spec *s) {
   free(s->path);
   free(s->text);
+  free(s->sets);
+  free(s->into);
   free(s->folder);
   free(s->name);
   free(s->case_path);

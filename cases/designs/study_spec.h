@@ -11,12 +11,16 @@
 #include "cases/designs/study_optimise.h"
 #include "cases/designs/study_plan.h"
 #include "cases/parse/case_file.h"
+#include "cases/schema/overrides.h"
 #include "mesh/base/status.h"
 
 typedef struct {
-  char          *path, *text, *folder; /* of the study file */
-  char          *name;                 /* of the output files */
-  char          *case_path;            /* resolved */
+  char          *path, *text; /* of the study file; the overrides are comments below the text */
+  char          *sets;        /* they, one a line */
+  char          *folder;      /* of the results */
+  char          *into;        /* it, if it was given; else NULL */
+  char          *name;        /* of the output files */
+  char          *case_path;   /* resolved */
   study_plan     plan;
   study_optimise optimise;
   study_keys     keys;
@@ -36,6 +40,8 @@ typedef struct {
   const char *study, *base; /* texts of the study file and of its case */
   const char *columns;      /* keys of the table, one a line; "" without one */
   const char *inputs;       /* fingerprints of the files that the case reads, as digest_inputs */
+  const char *sets;         /* overrides of the study file, one a line */
+  const char *into;         /* folder of the results; "": that of the study file */
 } study_texts;
 
 /* Read and check a study file, its case and its table. All errors are printed to errors with line,
@@ -50,6 +56,9 @@ shb_status study_spec_read(const char *path, bool check, FILE *errors, study_spe
  * not made. */
 shb_status study_spec_read_texts(const char *path, const study_texts *texts, FILE *errors,
                                  study_spec *spec);
+/* study_spec_read with keys of the study file overridden, and another folder for the results. */
+shb_status study_spec_read_with(const char *path, const case_overrides *overrides, bool check,
+                                FILE *errors, study_spec *spec);
 void       study_spec_free(study_spec *spec);
 
 /* Whether the files that the case reads are still those of the study; inputs_of is the case or a

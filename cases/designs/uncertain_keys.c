@@ -4,6 +4,7 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "cases/designs/study_table.h"
 #include "cases/parse/keys.h"
 #include "cases/parse/units.h"
 
@@ -25,12 +26,8 @@ static plan_kind kind_of(const char *name) {
 }
 
 static void refuse_name(case_issues *issues, const case_node *node, const study_key *key) {
-  case_key  names[PLAN_N_DISTRIBUTIONS + 1] = {{.path = NULL}};
-  case_keys all                             = {PLAN_N_DISTRIBUTIONS + 1, names};
-  char      hint[512];
-  for (int i = 0; i < PLAN_N_DISTRIBUTIONS; i++) names[i].path = plan_distribution_name(i);
-  names[PLAN_N_DISTRIBUTIONS].path = "relative";
-  case_key_suggest(all, "", node->key, hint, sizeof hint);
+  char hint[512];
+  case_key_suggest(study_key_table(), "uncertain{}", node->key, hint, sizeof hint);
   case_issue_add(issues, node->key_line, node->key_column, key->path, "%s: unknown distribution%s",
                  node->key, hint);
 }

@@ -133,11 +133,12 @@ static void describe_source(const case_file *file, FILE *out) {
 /* The physical input in engineers' units, so that a number in the wrong unit is seen. */
 static void describe_body(const case_file *file, FILE *out) {
   if (file->modal_file) return;
-  if (!file->has_materials) {
-    const fem_material *m = &file->material;
+  for (int i = 0; i < file->n_materials; i++) {
+    const fem_material *m = &file->materials[i].material;
     fprintf(out, "  material  E %.4g GPa, ", m->E / 1e9);
     if (!m->anisotropic) fprintf(out, "nu %.4g, ", m->nu);
-    fprintf(out, "%.5g kg/m3\n", m->rho);
+    fprintf(out, "%.5g kg/m3", m->rho);
+    fprintf(out, file->has_materials ? ", of %s\n" : "\n", file->materials[i].group);
   }
   const double rpm = 30 / M_PI, *speed = file->speed;
   if (file->n_speeds == 1) fprintf(out, "  rotor     %.5g rpm\n", speed[0] * rpm);
@@ -163,6 +164,15 @@ static void describe_preloads(int n, const double *n0, FILE *out) {
   }
 }
 
+static void describe_interface(const mhb_interface *own, FILE *out) {
+  if (own->name[0]) fprintf(out, "  %s", own->name);
+  describe_angle("psi", own->has_psi, own->psi, out);
+  describe_angle("phi", own->has_phi, own->phi, out);
+  fprintf(out, ", mu %g\n", own->mu);
+  fprintf(out, "  stiffness ku %.4g kN/m, kv %.4g kN/m\n", own->ku[0] / 1e3, own->kv / 1e3);
+  describe_preloads(own->n_preloads, own->n0, out);
+}
+
 void run_describe(const case_file *file, FILE *out) {
   const mhb_settings *mhb = &file->mhb;
   fprintf(out, "%s: ok\n", file->path);
@@ -178,20 +188,9 @@ void run_describe(const case_file *file, FILE *out) {
     fprintf(out, "  contact   to the neighbour, %d blades, engine order %d", mhb->blades,
             mhb->engine_order);
   }
-  if (mhb->n_interfaces > 1) {
-    fprintf(out, ", %d interfaces\n", mhb->n_interfaces);
-    for (int i = 0; i < mhb->n_interfaces; i++) {
-      const mhb_interface *own = &mhb->interface[i];
-      fprintf(out, "  %s: mu %g\n", own->name, own->mu);
-      describe_preloads(own->n_preloads, own->n0, out);
-    }
-  } else {
-    describe_angle("psi", mhb->has_psi, mhb->psi, out);
-    describe_angle("phi", mhb->has_phi, mhb->phi, out);
-    fprintf(out, ", mu %g\n", mhb->mu);
-    fprintf(out, "  stiffness ku %.4g kN/m, kv %.4g kN/m\n", mhb->ku[0] / 1e3, mhb->kv / 1e3);
-    describe_preloads(mhb->n_preloads, mhb->n0, out);
-  }
+  if (file->has_interfaces)
+    fprintf(out, ", %d interface%s\n", mhb->n_interfaces, mhb->n_interfaces > 1 ? "s" : "");
+  for (int i = 0; i < mhb->n_interfaces; i++) describe_interface(&mhb->interface[i], out);
   fprintf(out, "  sweep     %g to %g Hz, ", mhb->frequency[0], mhb->frequency[1]);
   if (file->run_up)
     fprintf(out, "a run-up of %g to %g rpm, ", 60 * mhb->frequency[0] / mhb->engine_order,

@@ -8,6 +8,7 @@
 #include "cases/commands/command.h"
 #include "cases/commands/subprocess.h"
 #include "cases/designs/study_schema.h"
+#include "cases/designs/study_table.h"
 #include "cases/front/json_command.h"
 #include "cases/front/run.h"
 #include "cases/parse/key_listing.h"
@@ -16,6 +17,7 @@
 #include "cases/schema/case.h"
 #include "cases/schema/case_paths.h"
 #include "cases/schema/key_schema.h"
+#include "cases/schema/motion.h"
 
 static const char usage[] =
     "usage: shroudhb COMMAND [OPTION]... [FILE]\n"
@@ -33,7 +35,8 @@ static const char usage[] =
     "  study STUDY.yaml   many designs of a case on all cores; `shroudhb study --help`\n"
     "  eval CASE.yaml --params IN --results OUT  one design for Dakota and other drivers\n"
     "  check FILE.yaml    check a case file or a study file, run nothing\n"
-    "  keys               every key of a case file: unit, range, default, meaning; --markdown\n"
+    "  keys [study]       every key of a case or a study: unit, range, default, meaning; "
+    "--markdown\n"
     "                     prints the page docs/user/case_reference.md, --schema a JSON Schema,\n"
     "                     --schema=motion that of a file for contact, --schema=study of a study\n"
     "  inspect FILE.h5    what a modal or response file holds; of two modal files: A.h5 B.h5;\n"
@@ -124,16 +127,25 @@ static int keys_main(const char *name, int argc, char **argv, run_words end) {
     fputs(usage, stdout);
     return command_finish(SHB_OK);
   }
-  void (*print)(FILE *) = case_print_keys;
-  if (argc > 1 && strcmp(argv[1], "--markdown") == 0) print = case_print_reference;
-  if (argc > 1 && (strcmp(argv[1], "--schema") == 0 || strcmp(argv[1], "--schema=case") == 0))
-    print = case_print_schema;
-  if (argc > 1 && strcmp(argv[1], "--schema=motion") == 0) print = case_print_motion_schema;
-  if (argc > 1 && strcmp(argv[1], "--schema=study") == 0) print = study_print_schema;
-  int taken = print == case_print_keys ? 1 : 2;
-  if (argc > taken) {
-    fprintf(stderr, "shroudhb: error: keys takes --markdown or --schema; unexpected '%s'\n",
-            argv[taken]);
+  static const struct {
+    const char *word;
+    void (*print)(FILE *);
+  } forms[]             = {{"case", case_print_keys},
+                           {"study", study_print_keys},
+                           {"motion", case_print_motion_keys},
+                           {"--markdown", case_print_reference},
+                           {"--schema", case_print_schema},
+                           {"--schema=case", case_print_schema},
+                           {"--schema=motion", case_print_motion_schema},
+                           {"--schema=study", study_print_schema}};
+  void (*print)(FILE *) = argc > 1 ? NULL : case_print_keys;
+  for (size_t i = 0; argc == 2 && i < sizeof forms / sizeof *forms; i++)
+    if (strcmp(argv[1], forms[i].word) == 0) print = forms[i].print;
+  if (!print) {
+    fprintf(stderr,
+            "shroudhb: error: keys takes case, study, motion, --markdown or --schema; unexpected "
+            "'%s'\n",
+            argv[argc - 1]);
     return SHB_ERR_INPUT;
   }
   print(stdout);

@@ -1,6 +1,7 @@
 # Makes a manual page from what a program prints itself, so the two cannot differ.
 #   cmake -DPROGRAM=path -DARGUMENT=--help -DNAME=shroudhb -DSECTION=1 -DBRIEF=text -DVERSION=0.2.0
 #         -DOUT=page.1 -P man_page.cmake
+separate_arguments(ARGUMENT)
 execute_process(COMMAND ${PROGRAM} ${ARGUMENT} OUTPUT_VARIABLE text RESULT_VARIABLE code)
 if(code)
   message(FATAL_ERROR "${PROGRAM} ${ARGUMENT}: ended with ${code}")
@@ -19,5 +20,6 @@ ${NAME} \\- ${brief}
 ${text}.fi
 .SH SEE ALSO
 .BR shroudhb (1),
-.BR shroudhb\\-case (5)
+.BR shroudhb\\-case (5),
+.BR shroudhb\\-study (5)
 ")

@@ -44,23 +44,22 @@ typedef struct {
   int                 n, list[CASE_MOST_DIAMETERS]; /* with LISTED, ascending */
 } case_diameters;
 
-/* One of several contact interfaces. */
+/* A contact interface. */
 typedef struct {
-  mhb_interface mhb;
+  mhb_interface mhb;                               /* name "": the only one */
   char          right[MESH_WORD], left[MESH_WORD]; /* groups of faces */
-  int           points;                            /* contact patches; 0 = all */
+  int           points;                            /* contact patches; 0 = all, -1 = auto */
 } case_interface;
 
-/* One of several loads. */
 typedef struct {
   fem_load load;
-  char    *field; /* resolved path, or NULL */
-  char     group[MESH_WORD];
+  char    *field;            /* resolved path, or NULL */
+  char     group[MESH_WORD]; /* "": the usual one */
 } case_load;
 
 /* A volume of the mesh and what it is made of. */
 typedef struct {
-  char            group[MESH_WORD];
+  char            group[MESH_WORD];    /* "": the whole mesh */
   fem_orthotropic constants;           /* as given: E, nu, G, axes */
   fem_material    material;            /* stiffness and density in mesh axes */
   double          endurance, ultimate; /* Pa; 0: not given */
@@ -100,20 +99,18 @@ typedef struct {
   mesh_blade  blade;
   bool        has_disc; /* mesh.blade.disc is given */
 
-  fem_orthotropic constants;           /* material.E, nu, G, axes */
-  double          endurance, ultimate; /* material.fatigue, Pa; 0: not given */
-  fem_material    material;            /* stiffness and density in mesh axes */
-  bool            has_materials;
-  int             n_materials; /* with materials, instead of material */
-  case_material   materials[MESH_MAX_VOLUMES];
-  int             blades;
-  case_mistuning  mistuning; /* rotor.mistuning */
-  int             n_speeds;
-  double          speed[MHB_MAX_PRELOADS]; /* [n_speeds] rad/s, the last that of the response */
-  bool            run_up;                  /* the speed follows the frequency */
-  fem_turning     coriolis;                /* of the rotor; unsaid: without Coriolis terms */
-  double          pressure;                /* Pa, steady */
-  mesh_axis       axis;
+  /* One or several: the block of the only one stands for a list of one. */
+  bool           has_materials; /* the list is given */
+  int            n_materials;   /* 1 at least */
+  case_material  materials[MESH_MAX_VOLUMES];
+  int            blades;
+  case_mistuning mistuning; /* rotor.mistuning */
+  int            n_speeds;
+  double         speed[MHB_MAX_PRELOADS]; /* [n_speeds] rad/s, the last that of the response */
+  bool           run_up;                  /* the speed follows the frequency */
+  fem_turning    coriolis;                /* of the rotor; unsaid: without Coriolis terms */
+  double         pressure;                /* Pa, steady */
+  mesh_axis      axis;
 
   int              modes;           /* 0: auto */
   double           tolerance, band; /* with modes: auto; Hz */
@@ -124,11 +121,9 @@ typedef struct {
   char            *modal_file;       /* resolved path of modal.file, or NULL */
 
   int        engine_order;
-  fem_load   load;
-  char      *field_file; /* resolved path of excitation.field, or NULL */
-  bool       has_load;   /* any load is given */
-  bool       has_loads;
-  int        n_loads; /* with excitation.loads, instead of load */
+  bool       has_load;  /* any load is given */
+  bool       has_loads; /* as a list */
+  int        n_loads;   /* 1 at least */
   case_load  loads[CASE_MAX_LOADS];
   int        n_probes;
   case_probe probe[CASE_MAX_PROBES];
@@ -136,10 +131,9 @@ typedef struct {
   case_gauge gauge[CASE_MAX_PROBES];
 
   bool           has_contact;      /* block contact present */
-  int            points;           /* contact patches; 0 = all, -1 = auto */
-  double         points_tolerance; /* of auto, relative to the motion */
-  bool           has_interfaces;
-  int            n_interfaces; /* with contact.interfaces */
+  double         points_tolerance; /* of contact.points: auto, relative to the motion */
+  bool           has_interfaces;   /* the list is given */
+  int            n_interfaces;     /* 1 at least */
   case_interface interfaces[MHB_MAX_INTERFACES];
   char           vary_interface[MHB_NAME]; /* mhb.vary.interface */
   mhb_settings   mhb;
@@ -154,5 +148,10 @@ typedef struct {
 
   bool no_memory; /* while it was read; of a case that was refused too */
 } case_file;
+
+/* Whether the contact patches are as many as a tolerance needs. */
+static inline bool case_points_are_auto(const case_file *file) {
+  return file->interfaces[0].points < 0;
+}
 
 #endif

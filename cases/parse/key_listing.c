@@ -4,39 +4,6 @@
 
 #include "cases/parse/key_table.h"
 
-static const char *type_name(const case_key *key) {
-  static const char *const names[CASE_N_TYPES] = {[CASE_NUMBER]    = "number",
-                                                  [CASE_INTEGER]   = "integer",
-                                                  [CASE_COUNT]     = "integer or all",
-                                                  [CASE_AUTO]      = "integer or auto",
-                                                  [CASE_CHOICE]    = "word",
-                                                  [CASE_SWITCH]    = "word",
-                                                  [CASE_ACCURACY]  = "word or number",
-                                                  [CASE_WORD]      = "word",
-                                                  [CASE_LABEL]     = "word",
-                                                  [CASE_FILE_NAME] = "file",
-                                                  [CASE_VECTOR]    = "[x, y, z]",
-                                                  [CASE_TRIPLE]    = "number or list",
-                                                  [CASE_INTERVAL]  = "[from, to]",
-                                                  [CASE_SWEEP]     = "[from, to] or number",
-                                                  [CASE_STIFFNESS] = "number or list",
-                                                  [CASE_PRELOADS]  = "number(s)",
-                                                  [CASE_PLACES]    = "list",
-                                                  [CASE_ORDERS]    = "list",
-                                                  [CASE_POINTS]    = "integer or list",
-                                                  [CASE_SAVED]     = "word or list",
-                                                  [CASE_DIAMETERS] = "word or list",
-                                                  [CASE_FACTORS]   = "mapping",
-                                                  [CASE_PROBES]    = "mapping",
-                                                  [CASE_GAUGES]    = "mapping",
-                                                  [CASE_MISTUNING] = "number(s), mapping",
-                                                  [CASE_DAMPING]   = "number(s), mapping",
-                                                  [CASE_GROUPS]    = "mapping",
-                                                  [CASE_LIST]      = "list",
-                                                  [CASE_SIGNAL]    = "list"};
-  return names[key->type];
-}
-
 static void print_key(const case_key *key, FILE *out) {
   char range[128];
   case_key_range(key, range, sizeof range);
@@ -44,19 +11,23 @@ static void print_key(const case_key *key, FILE *out) {
   for (char *c = range; key->words && *c; c++)
     if (*c == ' ') *c = '|';
   const char *fallback = key->fallback ? key->fallback : key->required ? "required" : "-";
-  fprintf(out, "%-31s %-14s %-6s %-30s %-16s %s\n", key->path, type_name(key),
+  fprintf(out, "%-31s %-14s %-6s %-30s %-16s %s\n", key->path, case_types[key->type].name,
           key->unit[0] ? key->unit : "-", range[0] ? range : "-", fallback, key->help);
 }
 
-void case_print_keys(FILE *out) {
-  case_keys keys = case_key_table();
+void case_print_key_table(case_keys keys, FILE *out) {
   fprintf(out, "%-31s %-14s %-6s %-30s %-16s %s\n", "key", "value", "unit", "range (in SI)",
           "default", "meaning");
   for (int i = 0; i < keys.n; i++) {
-    size_t n = strcspn(keys.key[i].path, ".");
-    if (i == 0 || strncmp(keys.key[i].path, keys.key[i - 1].path, n + 1) != 0) fputc('\n', out);
+    const char  *path = keys.key[i].path, *last = i > 0 ? keys.key[i - 1].path : "";
+    const size_t n = strcspn(path, ".{");
+    if (strncmp(path, last, n) != 0 || !strchr(".{", last[n])) fputc('\n', out);
     print_key(&keys.key[i], out);
   }
+}
+
+void case_print_keys(FILE *out) {
+  case_print_key_table(case_key_table(), out);
   fputs(
       "\nNumbers may carry a unit (6000 rpm, 35 deg, 2 MN/m, 7.85 g/cm3, 0.2 %); bare numbers are "
       "SI.\n",
@@ -67,45 +38,11 @@ void case_print_keys(FILE *out) {
 
 /* The condition of a key in words. NULL if there is none, or if the key decides it itself. */
 static const char *applies_text(const case_key *key) {
-  static const char *const text[] = {
-      [CASE_IF_BLADE]      = "parametric blade",
-      [CASE_IF_DISC]       = "with `mesh.blade.disc`",
-      [CASE_IF_MESH_FILE]  = "with `mesh.file`",
-      [CASE_IF_SIZE]       = "`mesh.file` is a solid",
-      [CASE_IF_OWN_MODES]  = "without `modal.file`",
-      [CASE_IF_MODAL_FILE] = "instead of `mesh`",
-      [CASE_IF_MATERIAL]   = "one material",
-      [CASE_IF_MATERIALS]  = "several materials",
-      [CASE_IF_AUTO_MODES] = "`modal.modes: auto`",
-      [CASE_IF_CRYSTAL]    = "with `material.G`",
-      [CASE_IF_INTERFACE]  = "one interface",
-      [CASE_IF_POINTS]     = "one interface, without `modal.file`",
-      [CASE_IF_PATCHES]    = "`contact.points: auto`",
-      [CASE_IF_INTERFACES] = "several interfaces",
-      [CASE_IF_VARIED]     = "several interfaces, with `mhb.vary`",
-      [CASE_IF_ORDER]      = "contact to the neighbour, or a run-up",
-      [CASE_IF_RUN_UP]     = NULL,
-      [CASE_IF_SECTOR]     = "contact to the neighbour, or parametric blade",
-      [CASE_IF_PRESSURE]   = "one of four loads",
-      [CASE_IF_TRACTION]   = "one of four loads",
-      [CASE_IF_FORCE]      = "one of four loads",
-      [CASE_IF_FIELD]      = "one of four loads",
-      [CASE_IF_LOADS]      = "several loads",
-      [CASE_IF_FACTORS]    = "not with `field` or `loads`",
-      [CASE_IF_FORCE_AT]   = "with `force`",
-      [CASE_IF_AUTO]       = "`mhb.harmonics: auto`",
-      [CASE_IF_FOLLOWED]   = "one of five",
-      [CASE_IF_TRACKED]    = "`mhb.track` not `nothing`",
-      [CASE_IF_MISTUNED]   = "blades that differ",
-      [CASE_IF_STABILITY]  = "`mhb.stability` not `never`",
-      [CASE_IF_SEARCH]     = "`mhb.search.starts` above 0",
-      [CASE_IF_SEARCH_AT]  = "`mhb.search.starts` above 0",
-      [CASE_IF_SWEEP]      = "`integrate.start: state`",
-      [CASE_IF_NOT_SCALED] = "not with `mhb.vary.scale`"};
-  const char *when = (size_t)key->when < sizeof text / sizeof *text ? text[key->when] : NULL;
-  char        own[96];
+  const char *when = case_condition_words(key->only ? key->only : key->when);
+  char        own[96], leaf[96];
   snprintf(own, sizeof own, "with `%s`", key->path);
-  return when && strcmp(when, own) == 0 ? NULL : when;
+  snprintf(leaf, sizeof leaf, "with `%s`", case_key_leaf(key->path));
+  return when && (strcmp(when, own) == 0 || strcmp(when, leaf) == 0) ? NULL : when;
 }
 
 /* Prints a cell of a Markdown table, in which | must be escaped. */
@@ -121,7 +58,7 @@ static void print_row(const case_key *key, const char *block, FILE *out) {
   const char *path = case_key_below(key->path, block), *applies = applies_text(key);
   case_key_range(key, range, sizeof range);
   fprintf(out, "| `%s` | ", path ? path : key->path);
-  print_cell(type_name(key), out);
+  print_cell(case_types[key->type].name, out);
   fprintf(out, " | %s | ", key->unit);
   for (const char *c = key->words; c && *c; c++) fputs(*c == ' ' ? ", " : (char[2]){*c, 0}, out);
   if (key->words && range[0]) fputs(", ", out);

@@ -4,8 +4,13 @@
 
 #include <stdio.h>
 
+#include "cases/parse/keys.h"
+
 /* Every key with unit, range, default and help; one line a key. */
 void case_print_keys(FILE *out);
+
+/* Print any table of keys so. */
+void case_print_key_table(case_keys keys, FILE *out);
 
 /* The page docs/user/case_reference.md: Markdown, one table a block. */
 void case_print_reference(FILE *out);

@@ -1,14 +1,21 @@
 /* The rows of the key table. */
 #include "cases/parse/key_table.h"
 
-#include "mesh/core/file_format.h"
-
 #define AT(member) .at = offsetof(case_file, member)
 #define LIST(member, count) \
   AT(member), .count_at = offsetof(case_file, count), .each = sizeof(*((case_file *)0)->member)
+#define LISTED(member, count, most) AT(member), .count_at = offsetof(case_file, count), .room = most
+/* Where a member of the only, or of the first, element of a list is; of any element. */
+#define FIRST(list, member) AT(list[0].member), .element = offsetof(case_file, list)
+#define FIRST_MATERIAL(member) FIRST(materials, member)
+#define FIRST_LOAD(member) FIRST(loads, member)
+#define FIRST_INTERFACE(member) FIRST(interfaces, member)
 #define MATERIAL(member) .at = offsetof(case_material, member)
 #define LOAD(member) .at = offsetof(case_load, member)
 #define INTERFACE(member) .at = offsetof(case_interface, member)
+#define FIRST_COUNT(member) .count_at = offsetof(case_file, interfaces[0].member)
+#define INTERFACE_COUNT(member) .count_at = offsetof(case_interface, member)
+#define VARIED(member) AT(member), .element = offsetof(case_file, member)
 #define SECTION(member) .at = offsetof(mesh_section, member)
 #define COUNT(array) ((int)(sizeof(array) / sizeof *(array)))
 
@@ -18,6 +25,90 @@ enum { MOST_HARMONICS = 200 };
 #define RIGHT_ANGLE 1.5707963267948966
 
 /* clang-format off */
+
+/* Keys of a material: material.KEY of the only one, materials[].KEY of one of several. */
+#define MATERIAL_KEYS(PATH, IN, WHEN)                                                              \
+  {PATH "E", CASE_TRIPLE, "Pa", 1e6, 1e14, .required = true, IN(constants.E),                      \
+   .stages = CASE_MODAL, .when = WHEN,                                                             \
+   .help = "Young's modulus; with G of a single crystal, along its axes: a number or [E1, E2, "    \
+           "E3]"},                                                                                 \
+  {PATH "nu", CASE_TRIPLE, "", -1, 0.5, true, true, .required = true, IN(constants.nu),            \
+   .stages = CASE_MODAL, .when = WHEN,                                                             \
+   .help = "Poisson's ratio, or [nu12, nu13, nu23]: contraction along the second under tension "   \
+           "along the first"},                                                                     \
+  {PATH "G", CASE_TRIPLE, "Pa", 1e6, 1e14, IN(constants.G), .stages = CASE_MODAL,                  \
+   .when = WHEN, .only = CASE_IF_CRYSTAL,                                                          \
+   .help = "shear modulus of a cubic material, or [G12, G13, G23] of an orthotropic one; "         \
+           "default: isotropic"},                                                                  \
+  {PATH "axis_1", CASE_VECTOR, "", -1e6, 1e6, .fallback = "[1, 0, 0]", IN(constants.axis),         \
+   .stages = CASE_MODAL, .when = WHEN, .only = CASE_IF_CRYSTAL,                                    \
+   .help = "direction of the material's axis 1, mesh axes"},                                       \
+  {PATH "axis_2", CASE_VECTOR, "", -1e6, 1e6, .fallback = "[0, 1, 0]", IN(constants.in_plane),     \
+   .stages = CASE_MODAL, .when = WHEN, .only = CASE_IF_CRYSTAL,                                    \
+   .help = "a direction in the plane of axes 1 and 2, on the side of 2"},                          \
+  {PATH "rho", CASE_NUMBER, "kg/m3", 10, 1e5, .required = true, IN(material.rho),                  \
+   .stages = CASE_MODAL, .when = WHEN,                                                             \
+   .help = "density"},                                                                             \
+  {PATH "fatigue.endurance", CASE_NUMBER, "Pa", 0, 1e12, true, IN(endurance),                      \
+   .stages = CASE_POST, .when = WHEN,                                                              \
+   .help = "stress amplitude borne without mean stress, for the safety at every peak"},            \
+  {PATH "fatigue.ultimate", CASE_NUMBER, "Pa", 0, 1e12, true, IN(ultimate),                        \
+   .stages = CASE_POST, .when = WHEN,                                                              \
+   .help = "tensile strength, the mean stress borne without vibration (Goodman's line)"},
+
+/* Keys of a load: excitation.KEY of the only one, excitation.loads[].KEY of one of several. */
+#define LOAD_KEYS(PATH, IN, WHEN, REQUIRED)                                                        \
+  {PATH "pressure", CASE_NUMBER, "Pa", -1e12, 1e12, .required = REQUIRED, .spare = true,           \
+   .instead = "traction, force, field or loads", IN(load.pressure), .stages = CASE_MODAL,          \
+   .when = WHEN, .only = CASE_IF_PRESSURE,                                                         \
+   .help = "on the loaded faces, into the surface; one of pressure, traction, force, field"},      \
+  {PATH "traction", CASE_VECTOR, "Pa", -1e12, 1e12, .required = true, IN(load.traction),           \
+   .stages = CASE_MODAL, .when = WHEN, .only = CASE_IF_TRACTION,                                   \
+   .help = "on the loaded faces, along a direction in mesh axes"},                                 \
+  {PATH "force.at", CASE_VECTOR, "m", -1e3, 1e3, IN(load.at), .stages = CASE_MODAL,                \
+   .when = WHEN, .only = CASE_IF_FORCE_AT,                                                         \
+   .help = "where the force acts: the node nearest to it; default: the first probe"},              \
+  {PATH "force.vector", CASE_VECTOR, "N", -1e12, 1e12, .required = true, IN(load.force),           \
+   .stages = CASE_MODAL, .when = WHEN, .only = CASE_IF_FORCE,                                      \
+   .help = "force in mesh axes"},                                                                  \
+  {PATH "field", CASE_FILE_NAME, "", .required = true, IN(field), .stages = CASE_MODAL,            \
+   .when = WHEN, .only = CASE_IF_FIELD,                                                            \
+   .help = "HDF5 file of forces at nodes or of pressure at loaded nodes, amplitude and "           \
+           "phase a harmonic"},                                                                    \
+  {PATH "harmonics", CASE_FACTORS, "", .fallback = "{1: [1, 0 deg]}", IN(load),                    \
+   .stages = CASE_MODAL, .when = WHEN, .only = CASE_IF_FACTORS,                                    \
+   .help = "factor and phase of the load a harmonic: {k: [factor, phase]}, k from 0 to 64"},
+
+/* Keys of an interface: contact.KEY of the only one, contact.interfaces[].KEY of one of several. */
+#define FACE_KEYS(PATH, IN, WHEN, OWN)                                                             \
+  {PATH "psi", CASE_NUMBER, "rad", -RIGHT_ANGLE, RIGHT_ANGLE, true, true, IN(mhb.psi),             \
+   .stages = CASE_MESH | CASE_MODAL | CASE_MHB, .when = WHEN, .only = CASE_IF_PSI,                 \
+   .help = "shroud angle: turns the normal v of the right face from tangential towards axial; "    \
+           "default: from the faces (parametric blade: 0)"},                                       \
+  {PATH "phi", CASE_NUMBER, "rad", -RIGHT_ANGLE, RIGHT_ANGLE, true, true, IN(mhb.phi),             \
+   .stages = CASE_MESH | CASE_MODAL | CASE_MHB, .when = WHEN, .only = CASE_IF_PHI,                 \
+   .help = "inclination: turns that normal towards the engine axis; default: from the faces "      \
+           "(parametric blade: 0)"},                                                               \
+  {PATH "points", CASE_COUNT, "", 1, 100000, .words = "auto", .fallback = "1", IN(points),         \
+   .stages = CASE_MODAL, .when = OWN,                                                              \
+   .help = "patches of the contact face, or all: one a node; auto: as few as contact.tolerance "   \
+           "allows"},
+
+#define LAW_KEYS(PATH, IN, COUNT_AT, WHEN)                                                         \
+  {PATH "mu", CASE_NUMBER, "", 0, 1e6, .required = true, IN(mhb.mu), .stages = CASE_MHB,           \
+   .when = WHEN,                                                                                   \
+   .help = "friction coefficient"},                                                                \
+  {PATH "ku", CASE_STIFFNESS, "N/m", 0, 1e15, true, .required = true, IN(mhb.ku),                  \
+   .stages = CASE_MHB, .when = WHEN,                                                               \
+   .help = "tangential stiffness of the interface: a number or [kuu, kuw, kww]"},                  \
+  {PATH "kv", CASE_NUMBER, "N/m", 0, 1e15, .required = true, IN(mhb.kv), .stages = CASE_MHB,       \
+   .when = WHEN,                                                                                   \
+   .help = "normal stiffness of the interface"},                                                   \
+  {PATH "n0", CASE_PRELOADS, "N", -1e12, 1e12, .required = true, IN(mhb.n0),                       \
+   COUNT_AT(mhb.n_preloads), .stages = CASE_MHB, .when = WHEN,                                     \
+   .help = "normal preload, negative for a gap of -n0/kv: a number, a list, or {from, to, "        \
+           "points}; lists of several interfaces have one length"},
+
 static const case_key table[] = {
     {"name", CASE_WORD, "", AT(name), .stages = CASE_POST,
      .help = "name of the output files; default: the file's name, or its folder's for case.yaml"},
@@ -102,34 +193,7 @@ static const case_key table[] = {
      AT(blade.elements), .stages = CASE_MESH, .when = CASE_IF_BLADE,
      .help = "hexahedra of twenty nodes swept along the blade, or tetrahedra of ten"},
 
-    {"material.E", CASE_TRIPLE, "Pa", 1e6, 1e14, .required = true, AT(constants.E),
-     .stages = CASE_MODAL, .when = CASE_IF_MATERIAL,
-     .help = "Young's modulus; with G of a single crystal, along its axes: a number or [E1, E2, "
-             "E3]"},
-    {"material.nu", CASE_TRIPLE, "", -1, 0.5, true, true, .required = true, AT(constants.nu),
-     .stages = CASE_MODAL, .when = CASE_IF_MATERIAL,
-     .help = "Poisson's ratio, or [nu12, nu13, nu23]: contraction along the second under tension "
-             "along the first"},
-    {"material.G", CASE_TRIPLE, "Pa", 1e6, 1e14, AT(constants.G), .stages = CASE_MODAL,
-     .when = CASE_IF_CRYSTAL,
-     .help = "shear modulus of a cubic material, or [G12, G13, G23] of an orthotropic one; "
-             "default: isotropic"},
-    {"material.axis_1", CASE_VECTOR, "", -1e6, 1e6, .fallback = "[1, 0, 0]", AT(constants.axis),
-     .stages = CASE_MODAL, .when = CASE_IF_CRYSTAL,
-     .help = "direction of the material's axis 1, mesh axes"},
-    {"material.axis_2", CASE_VECTOR, "", -1e6, 1e6, .fallback = "[0, 1, 0]", AT(constants.in_plane),
-     .stages = CASE_MODAL, .when = CASE_IF_CRYSTAL,
-     .help = "a direction in the plane of axes 1 and 2, on the side of 2"},
-    {"material.rho", CASE_NUMBER, "kg/m3", 10, 1e5, .required = true, AT(material.rho),
-     .stages = CASE_MODAL, .when = CASE_IF_MATERIAL,
-     .help = "density"},
-
-    {"material.fatigue.endurance", CASE_NUMBER, "Pa", 0, 1e12, true, AT(endurance),
-     .stages = CASE_POST, .when = CASE_IF_MATERIAL,
-     .help = "stress amplitude borne without mean stress, for the safety at every peak"},
-    {"material.fatigue.ultimate", CASE_NUMBER, "Pa", 0, 1e12, true, AT(ultimate),
-     .stages = CASE_POST, .when = CASE_IF_MATERIAL,
-     .help = "tensile strength, the mean stress borne without vibration (Goodman's line)"},
+    MATERIAL_KEYS("material.", FIRST_MATERIAL, CASE_IF_MATERIAL)
 
     {"materials", CASE_LIST, "", 1, MESH_MAX_VOLUMES, LIST(materials, n_materials),
      .stages = CASE_MESH | CASE_MODAL, .when = CASE_IF_MATERIALS,
@@ -139,32 +203,7 @@ static const case_key table[] = {
      .stages = CASE_MESH | CASE_MODAL,
      .help = "physical volume of the mesh or solid, element set of an .inp file, or a group that "
              "mesh.groups finds by name or nearest point"},
-    {"materials[].E", CASE_TRIPLE, "Pa", 1e6, 1e14, .required = true, MATERIAL(constants.E),
-     .stages = CASE_MODAL,
-     .help = "Young's modulus; with G of a single crystal, along its axes: a number or [E1, E2, "
-             "E3]"},
-    {"materials[].nu", CASE_TRIPLE, "", -1, 0.5, true, true, .required = true,
-     MATERIAL(constants.nu), .stages = CASE_MODAL,
-     .help = "Poisson's ratio, or [nu12, nu13, nu23]: contraction along the second under tension "
-             "along the first"},
-    {"materials[].G", CASE_TRIPLE, "Pa", 1e6, 1e14, MATERIAL(constants.G), .stages = CASE_MODAL,
-     .help = "shear modulus of a cubic material, or [G12, G13, G23] of an orthotropic one; "
-             "default: isotropic"},
-    {"materials[].axis_1", CASE_VECTOR, "", -1e6, 1e6, .fallback = "[1, 0, 0]",
-     MATERIAL(constants.axis), .stages = CASE_MODAL,
-     .help = "direction of the material's axis 1, mesh axes"},
-    {"materials[].axis_2", CASE_VECTOR, "", -1e6, 1e6, .fallback = "[0, 1, 0]",
-     MATERIAL(constants.in_plane), .stages = CASE_MODAL,
-     .help = "a direction in the plane of axes 1 and 2, on the side of 2"},
-    {"materials[].rho", CASE_NUMBER, "kg/m3", 10, 1e5, .required = true, MATERIAL(material.rho),
-     .stages = CASE_MODAL,
-     .help = "density"},
-    {"materials[].fatigue.endurance", CASE_NUMBER, "Pa", 0, 1e12, true, MATERIAL(endurance),
-     .stages = CASE_POST,
-     .help = "as material.fatigue.endurance, of this material"},
-    {"materials[].fatigue.ultimate", CASE_NUMBER, "Pa", 0, 1e12, true, MATERIAL(ultimate),
-     .stages = CASE_POST,
-     .help = "as material.fatigue.ultimate, of this material"},
+    MATERIAL_KEYS("materials[].", MATERIAL, CASE_ALWAYS)
 
     {"rotor.blades", CASE_INTEGER, "", 2, 1000, .required = true, .spare = true, AT(blades),
      .stages = CASE_MESH | CASE_MODAL | CASE_MHB, .when = CASE_IF_SECTOR,
@@ -211,8 +250,10 @@ static const case_key table[] = {
      .stages = CASE_MODAL, .when = CASE_IF_OWN_MODES,
      .help = "that no mode is missing: by a search of what the modes leave out (auto), or by "
              "counting with a second factorisation"},
-    {"modal.nodal_diameters", CASE_DIAMETERS, "", 0, 500, .words = "auto all", .fallback = "auto",
-     AT(diameters), .stages = CASE_MODAL, .when = CASE_IF_OWN_MODES,
+    {"modal.nodal_diameters", CASE_WORD_OR_INTEGERS, "", 0, 500, .words = "auto all",
+     .fallback = "auto", LISTED(diameters.list, diameters.n, CASE_MOST_DIAMETERS),
+     .what_at = offsetof(case_file, diameters.what), .stages = CASE_MODAL,
+     .when = CASE_IF_OWN_MODES, .only = CASE_IF_DIAMETERS,
      .help = "of a sector with a disc (groups cyclic_right, cyclic_left): those that the harmonics "
              "need, 0 to N/2 (stability needs all), or a list"},
     {"modal.integration", CASE_SWITCH, "", .words = "reduced full", .fallback = "reduced",
@@ -226,26 +267,7 @@ static const case_key table[] = {
      .stages = CASE_MHB, .when = CASE_IF_ORDER,
      .help = "engine order E; the right neighbour lags by 2 pi E / blades (rotor turning towards "
              "+tangential: give blades - E)"},
-    {"excitation.pressure", CASE_NUMBER, "Pa", -1e12, 1e12, .required = true, .spare = true,
-     .instead = "traction, force, field or loads", AT(load.pressure), .stages = CASE_MODAL,
-     .when = CASE_IF_PRESSURE,
-     .help = "on the group load, into the surface; one of pressure, traction, force, field"},
-    {"excitation.traction", CASE_VECTOR, "Pa", -1e12, 1e12, .required = true, AT(load.traction),
-     .stages = CASE_MODAL, .when = CASE_IF_TRACTION,
-     .help = "on the group load, along a direction in mesh axes"},
-    {"excitation.force.at", CASE_VECTOR, "m", -1e3, 1e3, AT(load.at), .stages = CASE_MODAL,
-     .when = CASE_IF_FORCE_AT,
-     .help = "where the force acts: the node nearest to it; default: the first probe"},
-    {"excitation.force.vector", CASE_VECTOR, "N", -1e12, 1e12, .required = true, AT(load.force),
-     .stages = CASE_MODAL, .when = CASE_IF_FORCE,
-     .help = "force in mesh axes"},
-    {"excitation.field", CASE_FILE_NAME, "", .required = true, AT(field_file), .stages = CASE_MODAL,
-     .when = CASE_IF_FIELD,
-     .help = "HDF5 file of forces at nodes or of pressure at the nodes of group load, amplitude "
-             "and phase a harmonic"},
-    {"excitation.harmonics", CASE_FACTORS, "", .fallback = "{1: [1, 0 deg]}", AT(load),
-     .stages = CASE_MODAL, .when = CASE_IF_FACTORS,
-     .help = "factor and phase of the load a harmonic: {k: [factor, phase]}, k from 0 to 64"},
+    LOAD_KEYS("excitation.", FIRST_LOAD, CASE_IF_LOAD, true)
     {"excitation.loads", CASE_LIST, "", 1, CASE_MAX_LOADS, LIST(loads, n_loads),
      .stages = CASE_MESH | CASE_MODAL, .when = CASE_IF_LOADS,
      .help = "instead of one load: a list of loads that act together, each one of pressure, "
@@ -253,23 +275,7 @@ static const case_key table[] = {
     {"excitation.loads[].group", CASE_LABEL, "", .fallback = "load", LOAD(group),
      .stages = CASE_MESH | CASE_MODAL,
      .help = "group of faces that the pressure or traction acts on"},
-    {"excitation.loads[].pressure", CASE_NUMBER, "Pa", -1e12, 1e12, LOAD(load.pressure),
-     .stages = CASE_MODAL,
-     .help = "into the surface"},
-    {"excitation.loads[].traction", CASE_VECTOR, "Pa", -1e12, 1e12, LOAD(load.traction),
-     .stages = CASE_MODAL,
-     .help = "along a direction in mesh axes"},
-    {"excitation.loads[].force.at", CASE_VECTOR, "m", -1e3, 1e3, LOAD(load.at),
-     .stages = CASE_MODAL,
-     .help = "where the force acts: the node nearest to it; default: the first probe"},
-    {"excitation.loads[].force.vector", CASE_VECTOR, "N", -1e12, 1e12, LOAD(load.force),
-     .stages = CASE_MODAL,
-     .help = "force in mesh axes"},
-    {"excitation.loads[].field", CASE_FILE_NAME, "", LOAD(field), .stages = CASE_MODAL,
-     .help = "file of forces or pressure at nodes, as excitation.field"},
-    {"excitation.loads[].harmonics", CASE_FACTORS, "", .fallback = "{1: [1, 0 deg]}", LOAD(load),
-     .stages = CASE_MODAL,
-     .help = "factor and phase of this load a harmonic"},
+    LOAD_KEYS("excitation.loads[].", LOAD, CASE_ALWAYS, false)
 
     {"probe", CASE_PROBES, "m", -1e3, 1e3, .fallback = "{}", AT(probe), .stages = CASE_MODAL,
      .when = CASE_IF_OWN_MODES,
@@ -283,34 +289,11 @@ static const case_key table[] = {
     {"contact.to", CASE_SWITCH, "", .words = "neighbour ground", .fallback = "neighbour",
      AT(mhb.to_ground), .stages = CASE_MODAL | CASE_MHB,
      .help = "what the right contact face meets"},
-    {"contact.psi", CASE_NUMBER, "rad", -RIGHT_ANGLE, RIGHT_ANGLE, true, true, AT(mhb.psi),
-     .stages = CASE_MESH | CASE_MODAL | CASE_MHB, .when = CASE_IF_PSI,
-     .help = "shroud angle: turns the normal v of the right face from tangential towards axial; "
-             "default: from the faces (parametric blade: 0)"},
-    {"contact.phi", CASE_NUMBER, "rad", -RIGHT_ANGLE, RIGHT_ANGLE, true, true, AT(mhb.phi),
-     .stages = CASE_MESH | CASE_MODAL | CASE_MHB, .when = CASE_IF_PHI,
-     .help = "inclination: turns that normal towards the engine axis; default: from the faces "
-             "(parametric blade: 0)"},
-    {"contact.points", CASE_COUNT, "", 1, 100000, .words = "auto", .fallback = "1", AT(points),
-     .stages = CASE_MODAL, .when = CASE_IF_POINTS,
-     .help = "patches of the contact face, or all: one a node; auto: as few as contact.tolerance "
-             "allows"},
+    FACE_KEYS("contact.", FIRST_INTERFACE, CASE_IF_INTERFACE, CASE_IF_POINTS)
     {"contact.tolerance", CASE_NUMBER, "", 1e-6, 0.5, .fallback = "1e-3", AT(points_tolerance),
      .stages = CASE_MHB | CASE_INTEGRATE, .when = CASE_IF_PATCHES,
      .help = "spatial error that contact.points: auto allows, relative to the motion"},
-    {"contact.mu", CASE_NUMBER, "", 0, 1e6, .required = true, AT(mhb.mu), .stages = CASE_MHB,
-     .when = CASE_IF_INTERFACE,
-     .help = "friction coefficient"},
-    {"contact.ku", CASE_STIFFNESS, "N/m", 0, 1e15, true, .required = true, AT(mhb.ku),
-     .stages = CASE_MHB, .when = CASE_IF_INTERFACE,
-     .help = "tangential stiffness of the interface: a number or [kuu, kuw, kww]"},
-    {"contact.kv", CASE_NUMBER, "N/m", 0, 1e15, .required = true, AT(mhb.kv), .stages = CASE_MHB,
-     .when = CASE_IF_INTERFACE,
-     .help = "normal stiffness of the interface"},
-    {"contact.n0", CASE_PRELOADS, "N", -1e12, 1e12, .required = true, AT(mhb.n0),
-     .count_at = offsetof(case_file, mhb.n_preloads), .stages = CASE_MHB, .when = CASE_IF_INTERFACE,
-     .help = "normal preload, negative for a gap of -n0/kv: a number, a list, or {from, to, "
-             "points}"},
+    LAW_KEYS("contact.", FIRST_INTERFACE, FIRST_COUNT, CASE_IF_INTERFACE)
     {"contact.preload", CASE_CHOICE, "", .words = "equilibrium interference",
      .fallback = "equilibrium", AT(mhb.preload), .stages = CASE_MHB,
      .help = "n0 is the load at rest, or an interference that also deflects the blade"},
@@ -332,25 +315,11 @@ static const case_key table[] = {
     {"contact.interfaces[].left", CASE_LABEL, "", .fallback = "contact_left", INTERFACE(left),
      .stages = CASE_MESH | CASE_MODAL,
      .help = "group of its left face; not to ground"},
-    {"contact.interfaces[].psi", CASE_NUMBER, "rad", -RIGHT_ANGLE, RIGHT_ANGLE, true, true,
-     INTERFACE(mhb.psi), .stages = CASE_MODAL | CASE_MHB,
-     .help = "angle; default: from the faces"},
-    {"contact.interfaces[].phi", CASE_NUMBER, "rad", -RIGHT_ANGLE, RIGHT_ANGLE, true, true,
-     INTERFACE(mhb.phi), .stages = CASE_MODAL | CASE_MHB,
-     .help = "inclination; default: from the faces"},
-    {"contact.interfaces[].points", CASE_COUNT, "", 1, 100000, .fallback = "1", INTERFACE(points),
-     .stages = CASE_MODAL,
-     .help = "patches of its face, or all"},
-    {"contact.interfaces[].mu", CASE_NUMBER, "", 0, 1e6, INTERFACE(mhb.mu), .stages = CASE_MHB,
-     .help = "friction coefficient"},
-    {"contact.interfaces[].ku", CASE_STIFFNESS, "N/m", 0, 1e15, true, INTERFACE(mhb.ku),
-     .stages = CASE_MHB,
-     .help = "its tangential stiffness: a number or [kuu, kuw, kww]"},
-    {"contact.interfaces[].kv", CASE_NUMBER, "N/m", 0, 1e15, INTERFACE(mhb.kv), .stages = CASE_MHB,
-     .help = "its normal stiffness"},
-    {"contact.interfaces[].n0", CASE_PRELOADS, "N", -1e12, 1e12, INTERFACE(mhb.n0),
-     .count_at = offsetof(case_interface, mhb.n_preloads), .stages = CASE_MHB,
-     .help = "its preload, negative for a gap: a number, or a list as long as the others' lists"},
+    {"contact.interfaces[].to", CASE_SWITCH, "", .words = "neighbour ground",
+     INTERFACE(mhb.to_ground), .stages = CASE_MODAL | CASE_MHB,
+     .help = "what its right face meets; default: contact.to"},
+    FACE_KEYS("contact.interfaces[].", INTERFACE, CASE_ALWAYS, CASE_IF_OWN_MODES)
+    LAW_KEYS("contact.interfaces[].", INTERFACE, INTERFACE_COUNT, CASE_IF_INTERFACES)
 
     {"mhb.frequency", CASE_SWEEP, "Hz", 0, 1e9, true, .required = true, AT(mhb.frequency),
      .stages = CASE_MHB,
@@ -359,19 +328,19 @@ static const case_key table[] = {
      .stages = CASE_MHB, .when = CASE_IF_RUN_UP,
      .help = "the rotor's speed is the excitation frequency / engine order: modes of the speeds in "
              "rotor.speed (or in a modal file of several speeds), interpolated"},
-    {"mhb.vary.n0", CASE_INTERVAL, "N", -1e12, 1e12, AT(vary[MHB_IN_N0]), .stages = CASE_MHB,
+    {"mhb.vary.n0", CASE_INTERVAL, "N", -1e12, 1e12, VARIED(vary[MHB_IN_N0]), .stages = CASE_MHB,
      .when = CASE_IF_FOLLOWED,
      .help = "curves follow this instead of the frequency: the preload"},
-    {"mhb.vary.scale", CASE_INTERVAL, "", 0, 1e12, AT(vary[MHB_IN_SCALE]), .stages = CASE_MHB,
+    {"mhb.vary.scale", CASE_INTERVAL, "", 0, 1e12, VARIED(vary[MHB_IN_SCALE]), .stages = CASE_MHB,
      .when = CASE_IF_FOLLOWED,
      .help = "or the level of the excitation, in place of mhb.scale"},
-    {"mhb.vary.mu", CASE_INTERVAL, "", 0, 1e6, AT(vary[MHB_IN_MU]), .stages = CASE_MHB,
+    {"mhb.vary.mu", CASE_INTERVAL, "", 0, 1e6, VARIED(vary[MHB_IN_MU]), .stages = CASE_MHB,
      .when = CASE_IF_FOLLOWED,
      .help = "or the friction coefficient, in place of contact.mu"},
-    {"mhb.vary.ku", CASE_INTERVAL, "N/m", 0, 1e15, true, AT(vary[MHB_IN_KU]), .stages = CASE_MHB,
-     .when = CASE_IF_FOLLOWED,
+    {"mhb.vary.ku", CASE_INTERVAL, "N/m", 0, 1e15, true, VARIED(vary[MHB_IN_KU]),
+     .stages = CASE_MHB, .when = CASE_IF_FOLLOWED,
      .help = "or kuu; kuw and kww stay in the proportion that contact.ku gives"},
-    {"mhb.vary.kv", CASE_INTERVAL, "N/m", 0, 1e15, AT(vary[MHB_IN_KV]), .stages = CASE_MHB,
+    {"mhb.vary.kv", CASE_INTERVAL, "N/m", 0, 1e15, VARIED(vary[MHB_IN_KV]), .stages = CASE_MHB,
      .when = CASE_IF_FOLLOWED,
      .help = "or the normal stiffness, in place of contact.kv"},
     {"mhb.vary.interface", CASE_LABEL, "", AT(vary_interface), .stages = CASE_MHB,
@@ -421,8 +390,9 @@ static const case_key table[] = {
      AT(mhb.lasting), .stages = CASE_MHB, .when = CASE_IF_STABILITY,
      .help = "the motion that takes over where the wave is modulated, by integration of the whole "
              "ring: a sweep and few points a curve; every modulated point; nothing"},
-    {"mhb.save", CASE_SAVED, "Hz", 0, 1e9, true, .words = "peaks all", .fallback = "peaks",
-     AT(mhb.save), .stages = CASE_MHB,
+    {"mhb.save", CASE_WORD_OR_NUMBERS, "Hz", 0, 1e9, true, .words = "peaks all",
+     .fallback = "peaks", LISTED(mhb.save.frequency, mhb.save.n, MHB_MAX_SAVED),
+     .what_at = offsetof(case_file, mhb.save.what), .stages = CASE_MHB,
      .help = "points of which the amplitude of every mode is kept, for stress and pictures of the "
              "whole blade: the peaks, all, or those at these frequencies, at most 64"},
     {"mhb.flips", CASE_SWITCH, "", .words = "mark follow", .fallback = "follow", AT(mhb.flips),
@@ -434,11 +404,13 @@ static const case_key table[] = {
      .help = "random starts at each frequency and order, to find curves that nothing leads to; "
              "auto: one or more of order 1 at the lowest and the highest peak of all preloads, 0: "
              "no search, 40: a good first look"},
-    {"mhb.search.at", CASE_PLACES, "Hz", 0, 1e9, true, AT(mhb.search.at), .stages = CASE_MHB,
+    {"mhb.search.at", CASE_NUMBERS, "Hz", 0, 1e9, true,
+     LISTED(mhb.search.at, mhb.search.n_at, MHB_MAX_SEARCH_AT), .stages = CASE_MHB,
      .when = CASE_IF_SEARCH_AT,
      .help = "frequencies at which to search, at most 64; default: six, evenly over the range"},
-    {"mhb.search.orders", CASE_ORDERS, "", 1, 16, .fallback = "[1, 2, 3]", AT(mhb.search.order),
-     .stages = CASE_MHB, .when = CASE_IF_SEARCH,
+    {"mhb.search.orders", CASE_INTEGERS, "", 1, 16, .fallback = "[1, 2, 3]",
+     LISTED(mhb.search.order, mhb.search.n_orders, MHB_MAX_SEARCH_ORDERS), .stages = CASE_MHB,
+     .when = CASE_IF_SEARCH,
      .help = "orders searched for, at most 8: 1 repeats like the main curve, nu after nu times as "
              "long"},
 
@@ -485,101 +457,4 @@ static const case_key table[] = {
 
 case_keys case_key_table(void) {
   return (case_keys){COUNT(table), table};
-}
-
-/* Whether the one load is of the kind of a condition. */
-static bool load_applies(case_condition when, const fem_load *load) {
-  switch (when) {
-    case CASE_IF_PRESSURE:
-      return load->kind == FEM_LOAD_PRESSURE;
-    case CASE_IF_TRACTION:
-      return load->kind == FEM_LOAD_TRACTION;
-    case CASE_IF_FIELD:
-      return load->kind == FEM_LOAD_FIELD;
-    case CASE_IF_FACTORS:
-      return load->kind != FEM_LOAD_FIELD;
-    case CASE_IF_FORCE_AT:
-      return load->kind == FEM_LOAD_FORCE && load->has_at;
-    default:
-      return load->kind == FEM_LOAD_FORCE;
-  }
-}
-
-bool case_key_applies(const case_key *key, const case_file *file) {
-  bool own = !file->modal_file, blade = own && !file->mesh_file;
-  switch (key->when) {
-    case CASE_IF_BLADE:
-      return blade;
-    case CASE_IF_DISC:
-      return blade && file->has_disc;
-    case CASE_IF_MESH_FILE:
-      return own && file->mesh_file;
-    case CASE_IF_SIZE:
-      return own && file->mesh_file && MESH_FORMAT_IS_SOLID(mesh_format_of(file->mesh_file));
-    case CASE_IF_OWN_MODES:
-      return own;
-    case CASE_IF_MODAL_FILE:
-      return !own;
-    case CASE_IF_MATERIAL:
-      return own && !file->has_materials;
-    case CASE_IF_MATERIALS:
-      return own && file->has_materials;
-    case CASE_IF_LOADS:
-      return own && file->has_loads;
-    case CASE_IF_AUTO_MODES:
-      return !file->modal_file && file->modes == 0;
-    case CASE_IF_POINTS:
-      return own && !file->has_interfaces;
-    case CASE_IF_PATCHES:
-      return own && !file->has_interfaces && file->points < 0;
-    case CASE_IF_INTERFACE:
-      return !file->has_interfaces;
-    case CASE_IF_INTERFACES:
-      return file->has_interfaces;
-    case CASE_IF_VARIED:
-      return file->n_interfaces > 1 && file->mhb.parameter != MHB_IN_FREQUENCY &&
-             file->mhb.parameter != MHB_IN_SCALE;
-    case CASE_IF_CRYSTAL:
-      return own && !file->has_materials && file->constants.G[0] != 0;
-    case CASE_IF_ORDER:
-      return !file->mhb.to_ground || file->run_up;
-    case CASE_IF_RUN_UP:
-      return file->run_up;
-    case CASE_IF_SECTOR:
-      return blade || !file->mhb.to_ground;
-    case CASE_IF_MISTUNED:
-      return file->mistuning.kind != CASE_TUNED;
-    case CASE_IF_PSI:
-      return file->mhb.has_psi && !file->has_interfaces;
-    case CASE_IF_PHI:
-      return file->mhb.has_phi && !file->has_interfaces;
-    case CASE_IF_PRESSURE:
-    case CASE_IF_TRACTION:
-    case CASE_IF_FORCE:
-    case CASE_IF_FACTORS:
-    case CASE_IF_FIELD:
-    case CASE_IF_FORCE_AT:
-      return own && !file->has_loads && load_applies(key->when, &file->load);
-    case CASE_IF_OUTPUT:
-      return file->converge_output != NULL;
-    case CASE_IF_AUTO:
-      return file->mhb.harmonics == 0;
-    case CASE_IF_FOLLOWED:
-      return (const char *)file + key->at == (const char *)file->vary[file->mhb.parameter];
-    case CASE_IF_TRACKED:
-      return file->mhb.track != MHB_TRACK_NOTHING;
-    case CASE_IF_STABILITY:
-      return file->mhb.stability != MHB_STABILITY_NEVER;
-    case CASE_IF_SEARCH:
-      return file->mhb.search.starts > 0;
-    case CASE_IF_SEARCH_AT:
-      return file->mhb.search.starts > 0 && file->mhb.search.n_at > 0;
-    case CASE_IF_SWEEP:
-      return file->integrate.start == MHB_START_FROM_STATE;
-    case CASE_IF_NOT_SCALED:
-      return file->mhb.parameter != MHB_IN_SCALE;
-    case CASE_ALWAYS:
-      return true;
-  }
-  return true;
 }

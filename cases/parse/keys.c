@@ -19,6 +19,17 @@ const char *case_key_below(const char *path, const char *block) {
   return strncmp(path, block, n) == 0 && path[n] == '.' ? path + n + 1 : NULL;
 }
 
+const char *case_key_in_list(const char *path, const char *list) {
+  const size_t n = strlen(list);
+  return strncmp(path, list, n) == 0 && strncmp(path + n, "[].", 3) == 0 ? path + n + 3 : NULL;
+}
+
+bool case_key_applies(const case_key *key, const case_file *file, const void *base) {
+  const void *element = (const char *)base + key->element;
+  return case_condition_holds(key->when, file, element) &&
+         case_condition_holds(key->only, file, element);
+}
+
 bool case_key_is_block(case_keys keys, const char *path) {
   for (int i = 0; i < keys.n; i++)
     if (case_key_below(keys.key[i].path, path)) return true;
@@ -67,7 +78,7 @@ int case_edit_distance(const char *a, const char *b) {
 bool case_key_part(const char *path, const char *block, char part[CASE_LONGEST_WORD]) {
   const char *rest = case_key_below(path, block);
   if (!rest) return false;
-  size_t n = strcspn(rest, ".[");
+  size_t n = strcspn(rest, ".[{");
   if (n >= CASE_LONGEST_WORD) n = CASE_LONGEST_WORD - 1;
   memcpy(part, rest, n);
   part[n] = '\0';

@@ -5,10 +5,12 @@
 
 #include <stdbool.h>
 #include <stddef.h>
+#include <stdio.h>
 
-#include "cases/parse/case_file.h"
+#include "cases/parse/conditions.h"
 
-/* Type of a key: the value in the file, and after the colon the type of its slot. */
+/* Type of a key: the value in the file, and after the colon the type of its slot. A row of
+ * case_types (cases/parse/value.c) says the rest. */
 typedef enum {
   CASE_NUMBER,    /* number with a unit: double */
   CASE_INTEGER,   /* int */
@@ -26,68 +28,28 @@ typedef enum {
   CASE_SWEEP,     /* the same, or a number for both: double[2] */
   CASE_STIFFNESS, /* number or [kuu, kuw, kww], positive definite: double[3] */
   CASE_PRELOADS,  /* number, list, or {from, to, points}: double[], their number at count_at */
-  CASE_PLACES,    /* list of frequencies: the case_file's mhb.search */
-  CASE_ORDERS,    /* list of whole numbers, ascending: the case_file's mhb.search */
-  CASE_POINTS,    /* number of points, or list: the case_file's integrate.frequency */
-  CASE_SAVED,     /* one of words, or list of frequencies: the case_file's mhb.save */
-  CASE_DIAMETERS, /* one of words, or list of whole numbers, ascending: the case_file's diameters */
-  CASE_FACTORS,   /* {k: [factor, phase]}: fem_load, its factors */
-  CASE_PROBES,    /* {name: [x, y, z]}: the case_file's probe */
-  CASE_GAUGES,    /* {name: {at: [x, y, z], direction: [x, y, z]}}: the case_file's gauge */
-  CASE_DAMPING,   /* ratio, list of ratios, {loss_factor: } or {rayleigh: }: damping */
-  CASE_GROUPS,    /* {group: rule}: the case_file's source.rules */
+  CASE_NUMBERS,   /* list: double[], their number at count_at, at most room */
+  CASE_INTEGERS,  /* list of whole numbers, ascending: int[], likewise */
+  CASE_WORD_OR_NUMBERS,  /* one of words, its place at what_at, or a list, the place after them */
+  CASE_WORD_OR_INTEGERS, /* likewise */
+  CASE_POINTS,           /* number of points, or list: the case_file's integrate.frequency */
+  CASE_FACTORS,          /* {k: [factor, phase]}: fem_load, its factors */
+  CASE_PROBES,           /* {name: [x, y, z]}: the case_file's probe */
+  CASE_GAUGES,           /* {name: {at: [x, y, z], direction: [x, y, z]}}: the case_file's gauge */
+  CASE_DAMPING,          /* ratio, list of ratios, {loss_factor: } or {rayleigh: }: damping */
+  CASE_GROUPS,           /* {group: rule}: the case_file's source.rules */
   /* list of mappings, whose keys are rows "LIST[].KEY"; elements of size each, counted at
    * count_at */
   CASE_LIST,
   /* list of deviations, {file: }, or {deviation: , seed: , samples: }: the case_file's mistuning */
   CASE_MISTUNING,
+  CASE_KEYS,   /* {name of the user's choice: value}; read by cases/designs, as the next */
+  CASE_NAMES,  /* list of names */
   CASE_SIGNAL, /* [[amplitude, phase], ...] from harmonic 0; read by schema/motion.c */
   CASE_N_TYPES
 } case_type;
 
-/* Condition under which a key is read. */
-typedef enum {
-  CASE_ALWAYS,
-  CASE_IF_BLADE,      /* parametric blade: neither mesh.file nor modal.file */
-  CASE_IF_DISC,       /* the same, with mesh.blade.disc */
-  CASE_IF_MESH_FILE,  /* mesh.file, and no modal.file */
-  CASE_IF_SIZE,       /* mesh.file is a solid */
-  CASE_IF_OWN_MODES,  /* no modal.file */
-  CASE_IF_MODAL_FILE, /* modal.file */
-  CASE_IF_MATERIAL,   /* no modal.file, and one material */
-  CASE_IF_MATERIALS,  /* several, by volumes */
-  CASE_IF_AUTO_MODES, /* modal.modes: auto */
-  CASE_IF_CRYSTAL,    /* material.G given */
-  CASE_IF_INTERFACE,  /* one contact interface */
-  CASE_IF_POINTS,     /* the same, and no modal.file */
-  CASE_IF_PATCHES,    /* contact.points: auto */
-  CASE_IF_INTERFACES, /* several by name */
-  CASE_IF_VARIED,     /* several, and mhb.vary follows a parameter of one of them */
-  CASE_IF_ORDER,      /* contact.to: neighbour, or mhb.run_up: yes */
-  CASE_IF_RUN_UP,     /* mhb.run_up: yes */
-  CASE_IF_SECTOR,     /* neighbour or parametric blade */
-  CASE_IF_MISTUNED,   /* rotor.mistuning given */
-  CASE_IF_PSI,        /* psi given */
-  CASE_IF_PHI,        /* phi given */
-  CASE_IF_PRESSURE,   /* excitation by pressure, without modal.file; the next ones likewise */
-  CASE_IF_TRACTION,
-  CASE_IF_FORCE,
-  CASE_IF_FIELD,
-  CASE_IF_LOADS,     /* several loads */
-  CASE_IF_FACTORS,   /* any other load */
-  CASE_IF_FORCE_AT,  /* excitation by force with a point of application of its own */
-  CASE_IF_OUTPUT,    /* converge.output given */
-  CASE_IF_AUTO,      /* harmonics: auto */
-  CASE_IF_FOLLOWED,  /* the parameter of this row is followed */
-  CASE_IF_TRACKED,   /* peaks or folds are followed */
-  CASE_IF_STABILITY, /* multipliers are computed */
-  CASE_IF_SEARCH,    /* there are random starts */
-  CASE_IF_SEARCH_AT, /* at frequencies that are given */
-  CASE_IF_SWEEP,     /* time integration that starts from the state at the previous frequency */
-  CASE_IF_NOT_SCALED /* mhb.vary does not follow the scale of the excitation */
-} case_condition;
-
-typedef struct {
+typedef struct case_key {
   const char    *path; /* "contact.mu"; "[]" stands for any index */
   case_type      type;
   const char    *unit;         /* SI; "" without a dimension */
@@ -98,14 +60,42 @@ typedef struct {
   bool           required;     /* whether its stages require it when the condition holds */
   bool           spare;        /* the modes alone do not require it */
   int            stages;       /* mask of the stages whose result depends on the key */
-  case_condition when;
-  size_t         at;       /* offset in case_file, or in the element for "[]" rows */
-  size_t         count_at; /* offset of the number of values or elements */
-  size_t         each;     /* CASE_LIST: size of an element; least and most bound their number */
-  const char    *help;     /* one line */
+  case_condition when, only;   /* both must hold: of the file, of the element */
+  size_t         at;           /* offset in case_file, or in the element for "[]" rows */
+  size_t         element;      /* likewise, of what the conditions are about */
+  size_t         count_at;     /* offset of the number of values or elements */
+  size_t         each;    /* CASE_LIST: size of an element; least and most bound their number */
+  size_t         what_at; /* of a word or a list: offset of an enum of int size */
+  int            room;    /* most numbers of a list */
+  const char    *help;    /* one line */
   /* the keys that may be given in place of a required one, for messages; NULL if none */
   const char *instead;
 } case_key;
+
+struct case_value_context;
+struct case_node;
+
+/* A value to be printed as it stands in the settings of a stage. */
+typedef struct {
+  FILE            *out;
+  const case_key  *key;
+  const char      *path; /* of the line */
+  const case_file *file;
+  const void      *slot;
+} case_printed;
+
+/* What all keys of a type have in common. */
+typedef struct {
+  const char *name;     /* in `shroudhb keys` */
+  const char *expected; /* in messages; the words and the unit of a key follow */
+  const char *forms;    /* in the JSON Schema (cases/schema/key_schema.c) */
+  bool (*read)(const struct case_value_context *c, const struct case_node *node, void *slot);
+  void (*print)(const case_printed *p);
+  bool own_lines;     /* print makes whole lines, one or more or none; else the value alone */
+  bool number, whole; /* a study can vary it; in whole numbers */
+} case_type_row;
+
+extern const case_type_row case_types[CASE_N_TYPES];
 
 typedef struct {
   int n;
@@ -115,6 +105,12 @@ typedef struct {
 
 /* Row of path (with "[]" for indices), or NULL. */
 const case_key *case_key_find(case_keys keys, const char *path);
+
+/* The rest of path in the elements of a list, "radius" of "LIST[].radius"; NULL: it is none. */
+const char *case_key_in_list(const char *path, const char *list);
+
+/* Whether the conditions of a row hold. base: the file, or the element of a "[]" row. */
+bool case_key_applies(const case_key *key, const case_file *file, const void *base);
 
 /* Whether path is a block of keys: a proper prefix of some row. */
 bool case_key_is_block(case_keys keys, const char *path);

@@ -95,21 +95,6 @@ static bool list_room(const case_value_context *c, const case_node *node, int mo
   return false;
 }
 
-bool case_list_places(const case_value_context *c, const case_node *node, void *slot) {
-  mhb_search_settings *search = &c->file->mhb.search;
-  if (!list_room(c, node, MHB_MAX_SEARCH_AT)) return false;
-  search->n_at = node->n;
-  return case_value_numbers(c, c->path, node, node->n, slot);
-}
-
-bool case_list_saved(const case_value_context *c, const case_node *node, void *slot) {
-  mhb_save_settings *save = slot;
-  if (!list_room(c, node, MHB_MAX_SAVED)) return false;
-  save->what = MHB_SAVE_LISTED;
-  save->n    = node->n;
-  return case_value_numbers(c, c->path, node, node->n, save->frequency);
-}
-
 /* Reads whole numbers that increase. */
 static bool read_ascending(const case_value_context *c, const case_node *node, int *value) {
   bool good = true;
@@ -129,18 +114,14 @@ static bool read_ascending(const case_value_context *c, const case_node *node, i
   return good;
 }
 
-bool case_list_orders(const case_value_context *c, const case_node *node, void *slot) {
-  if (!list_room(c, node, MHB_MAX_SEARCH_ORDERS)) return false;
-  c->file->mhb.search.n_orders = node->n;
-  return read_ascending(c, node, slot);
-}
-
-bool case_list_diameters(const case_value_context *c, const case_node *node, void *slot) {
-  case_diameters *diameters = slot;
-  if (!list_room(c, node, CASE_MOST_DIAMETERS)) return false;
-  diameters->what = CASE_DIAMETERS_LISTED;
-  diameters->n    = node->n;
-  return read_ascending(c, node, diameters->list);
+bool case_list_numbers(const case_value_context *c, const case_node *node, void *slot) {
+  const case_key *key  = c->key;
+  char           *base = (char *)slot - key->at;
+  if (!list_room(c, node, key->room)) return false;
+  *(int *)(base + key->count_at) = node->n;
+  if (key->type == CASE_INTEGERS || key->type == CASE_WORD_OR_INTEGERS)
+    return read_ascending(c, node, slot);
+  return case_value_numbers(c, c->path, node, node->n, slot);
 }
 
 /* Reads the number of points over the range of the sweep, or the list of frequencies. */
@@ -182,6 +163,7 @@ bool case_list_factors(const case_value_context *c, const case_node *node, void 
   if (node->kind != CASE_MAPPING) return case_value_refuse(c, node);
   bool good = true, given[FEM_MAX_LOAD_HARMONICS + 1] = {false};
   load->n_harmonics = 0;
+  memset(load->factor, 0, sizeof load->factor); /* the default */
   for (int i = 0; i < node->n; i++) {
     const case_node *child = &node->child[i];
     char             path[CASE_PATH], why[CASE_WHY];

@@ -4,14 +4,11 @@
 
 #include "cases/parse/value_context.h"
 
-/* The types CASE_PRELOADS, CASE_PLACES, CASE_ORDERS, CASE_POINTS, CASE_FACTORS, CASE_PROBES and
- * CASE_GAUGES of keys.h, and the lists of CASE_SAVED and CASE_DIAMETERS. */
+/* The types CASE_PRELOADS, CASE_NUMBERS and CASE_INTEGERS, CASE_POINTS, CASE_FACTORS, CASE_PROBES
+ * and CASE_GAUGES of keys.h, and the lists beside words. */
 bool case_list_preloads(const case_value_context *c, const case_node *node, void *slot);
-bool case_list_places(const case_value_context *c, const case_node *node, void *slot);
-bool case_list_orders(const case_value_context *c, const case_node *node, void *slot);
+bool case_list_numbers(const case_value_context *c, const case_node *node, void *slot);
 bool case_list_frequencies(const case_value_context *c, const case_node *node, void *slot);
-bool case_list_saved(const case_value_context *c, const case_node *node, void *slot);
-bool case_list_diameters(const case_value_context *c, const case_node *node, void *slot);
 bool case_list_factors(const case_value_context *c, const case_node *node, void *slot);
 bool case_list_probes(const case_value_context *c, const case_node *node, void *slot);
 /* rotor.mistuning but for {file: }. */

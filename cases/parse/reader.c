@@ -27,20 +27,28 @@ static int index_of(const case_reader *r, const char *path) {
   return r->slot[slot_of(r, path)] - 1;
 }
 
-const case_node *case_reader_given(const case_reader *r, const char *path) {
-  int i = index_of(r, path);
-  return i >= 0 ? r->given[i] : NULL;
-}
-
-bool case_reader_good(const case_reader *r, const char *path) {
-  int i = index_of(r, path);
-  return i >= 0 && r->good[i];
+/* The row of a path; of one with indices that of its list. */
+static int list_of(const case_reader *r, const char *path) {
+  char list[CASE_PATH];
+  case_path(list, "%.*s", (int)strcspn(path, "["), path);
+  return index_of(r, list);
 }
 
 static const case_block *find_block(const case_reader *r, const char *path) {
   for (int i = 0; i < r->n_blocks; i++)
     if (strcmp(r->block[i].path, path) == 0) return &r->block[i];
   return NULL;
+}
+
+const case_node *case_reader_given(const case_reader *r, const char *path) {
+  const int i = list_of(r, path);
+  if (i >= 0) return case_node_at(r->given[i], path + strcspn(path, "["));
+  return NULL;
+}
+
+bool case_reader_good(const case_reader *r, const char *path) {
+  const int i = list_of(r, path);
+  return i >= 0 && r->good[i];
 }
 
 bool case_reader_has_block(const case_reader *r, const char *path) {
@@ -61,14 +69,15 @@ void case_reader_issue(const case_reader *r, const char *path, const char *forma
   va_start(args, format);
   vsnprintf(text, sizeof text, format, args);
   va_end(args);
-  const case_node *node = case_reader_given(r, path);
-  int              line = 0, column = 0;
-  if (node) {
-    line   = node->line;
-    column = node->column;
-  }
+  int line = 0, column = 0;
   case_path(around, "%s", path);
   while (line == 0 && around[0]) {
+    const case_node *node = case_reader_given(r, around);
+    if (node && (strchr(around, '[') || strcmp(around, path) == 0)) {
+      line   = node->line;
+      column = node->column;
+      break;
+    }
     const case_block *block = find_block(r, around);
     if (block && block->node->key_line != 0) {
       line   = block->node->key_line;
@@ -110,23 +119,6 @@ static void refuse_key(case_reader *r, const char *block, const char *path, cons
   case_issue_add(r->issues, node->key_line, node->key_column, path, "unknown key%s", hint);
 }
 
-/* Does the element have the key of a row, perhaps misspelt? A misspelt key has its own message. */
-static bool element_has(const case_reader *r, const case_node *node, const case_key *key) {
-  char        block[CASE_PATH], meant[CASE_LONGEST_WORD];
-  const char *leaf = case_key_leaf(key->path);
-  case_path(block, "%.*s", (int)(leaf - key->path - 1), key->path);
-  for (int i = 0; i < node->n; i++) {
-    const char *word = node->child[i].key;
-    if (strcmp(word, leaf) == 0) return true;
-    bool known = false;
-    for (int k = 0; k < r->keys.n; k++)
-      known = known || strcmp(case_key_leaf(r->keys.key[k].path), word) == 0;
-    if (!known && case_key_nearest(r->keys, block, word, meant) && strcmp(meant, leaf) == 0)
-      return true;
-  }
-  return false;
-}
-
 /* Reads the keys of an element, or of a block in it, whose rows begin with prefix. */
 static void read_members(case_reader *r, const char *prefix, const case_node *node,
                          const char *path, char *base) {
@@ -156,29 +148,19 @@ static void read_element(case_reader *r, const case_key *list, const case_node *
                          const char *path, char *base) {
   char prefix[CASE_PATH];
   case_path(prefix, "%s[]", list->path);
+  for (int i = 0; i < r->keys.n; i++)
+    if (case_key_in_list(r->keys.key[i].path, list->path) && r->keys.key[i].fallback)
+      read_default(r, &r->keys.key[i], base);
   read_members(r, prefix, node, path, base);
-  for (int i = 0; i < r->keys.n; i++) {
-    const case_key *key = &r->keys.key[i];
-    if (strncmp(key->path, prefix, strlen(prefix)) != 0) continue;
-    if (element_has(r, node, key)) continue;
-    char full[CASE_PATH], expected[256];
-    case_path(full, "%s.%s", path, case_key_leaf(key->path));
-    case_value_expected(key, expected, sizeof expected);
-    if (key->required)
-      case_issue_add(r->issues, node->line, node->column, full, "missing; expected %s", expected);
-    if (key->fallback) read_default(r, key, base);
-  }
 }
 
 /* The shape of an element for messages, e.g. "{radius, chord}". */
 static void list_shape(const case_reader *r, const case_key *list, char *text, size_t size) {
-  char   last[CASE_PATH] = "";
-  size_t n               = strlen(list->path);
+  char last[CASE_PATH] = "", part[CASE_PATH];
   for (int i = 0; i < r->keys.n; i++) {
-    const char *path = r->keys.key[i].path;
-    if (strncmp(path, list->path, n) != 0 || strncmp(path + n, "[].", 3) != 0) continue;
-    char part[CASE_PATH];
-    case_path(part, "%.*s", (int)strcspn(path + n + 3, "."), path + n + 3);
+    const char *rest = case_key_in_list(r->keys.key[i].path, list->path);
+    if (!rest) continue;
+    case_path(part, "%.*s", (int)strcspn(rest, "."), rest);
     if (strcmp(part, last) == 0) continue;
     case_append(text, size, "%s%s", last[0] ? ", " : "{", part);
     strcpy(last, part);
@@ -314,7 +296,7 @@ static bool is_missing(const case_reader *r, int index, int stages) {
   /* case_check_alternatives reports that both mesh.blade and mesh.file are missing */
   bool told = key->when == CASE_IF_BLADE && !find_block(r, "mesh.blade");
   return key->required && (key->stages & stages) && !r->given[index] && !is_section_row(key) &&
-         !told && !is_spared(r, key, stages) && case_key_applies(key, r->file);
+         !told && !is_spared(r, key, stages) && case_key_applies(key, r->file, r->file);
 }
 
 /* The outermost block around key that is not in the file. False if the block of the key is there.
@@ -351,22 +333,107 @@ static void require_block(case_reader *r, const char *block, int stages) {
   case_reader_issue(r, block, "missing; expected a mapping with %s", text);
 }
 
+/* Is there, in a mapping, a key that was probably meant to be leaf? It has its own message. */
+static bool has_misspelt(const case_reader *r, const char *block, const case_node *map,
+                         const char *leaf) {
+  char meant[CASE_LONGEST_WORD];
+  for (int i = 0; map && i < map->n; i++) {
+    const char *word  = map->child[i].key;
+    bool        known = false;
+    for (int k = 0; k < r->keys.n; k++)
+      known = known || strcmp(case_key_leaf(r->keys.key[k].path), word) == 0;
+    if (!known && case_key_nearest(r->keys, block, word, meant) && strcmp(meant, leaf) == 0)
+      return true;
+  }
+  return false;
+}
+
+static void missing(case_reader *r, const case_key *key, const char *path) {
+  char expected[256];
+  case_value_expected(key, expected, sizeof expected);
+  case_reader_issue(r, path, "missing; expected %s%s%s", expected, key->instead ? ", or " : "",
+                    key->instead ? key->instead : "");
+}
+
+/* The required keys of every element of a list. */
+static void require_elements(case_reader *r, int index, int stages) {
+  const case_key  *list = &r->keys.key[index];
+  const case_node *node = r->given[index];
+  if (!node || node->kind != CASE_SEQUENCE || node->n > (int)list->most ||
+      !case_key_applies(list, r->file, r->file))
+    return;
+  const int   n    = node->n;
+  const char *base = (const char *)r->file + list->at;
+  for (int i = 0; i < n * r->keys.n; i++) {
+    const case_key  *key     = &r->keys.key[i % r->keys.n];
+    const case_node *element = &node->child[i / r->keys.n];
+    const char      *rest    = case_key_in_list(key->path, list->path);
+    char             path[CASE_PATH], block[CASE_PATH];
+    if (!rest || !key->required || !(key->stages & stages) || element->kind != CASE_MAPPING ||
+        !case_key_applies(key, r->file, base + (size_t)(i / r->keys.n) * list->each))
+      continue;
+    case_path(block, "%.*s", (int)(case_key_leaf(key->path) - key->path - 1), key->path);
+    if (case_node_at(element, rest) || has_misspelt(r, block, element, rest)) continue;
+    case_path(path, "%s[%d].%s", list->path, i / r->keys.n, rest);
+    missing(r, key, path);
+    r->good[index] = false;
+  }
+}
+
 void case_reader_require(case_reader *r, int stages) {
   char last[CASE_PATH] = "";
   for (int i = 0; i < r->keys.n; i++) {
     const case_key *key = &r->keys.key[i];
-    char            block[CASE_PATH], expected[256];
+    char            block[CASE_PATH];
     bool            broken;
+    if (key->type == CASE_LIST) require_elements(r, i, stages);
     if (!is_missing(r, i, stages)) continue;
     bool whole = missing_block(r, key, block, &broken);
     if (broken) continue;
     if (!whole) {
-      case_value_expected(key, expected, sizeof expected);
-      case_reader_issue(r, key->path, "missing; expected %s%s%s", expected,
-                        key->instead ? ", or " : "", key->instead ? key->instead : "");
+      missing(r, key, key->path);
     } else if (strcmp(block, last) != 0) {
       require_block(r, block, stages);
       strcpy(last, block);
     }
   }
+}
+
+/* ---------------------------------------------------------------- one or many */
+
+case_place case_reader_place(case_reader *r, const char *list, const char *block, int index) {
+  case_place p = {.reader = r};
+  if (case_reader_given(r, list))
+    case_path(p.path, "%s[%d]", list, index);
+  else
+    case_path(p.path, "%s", block);
+  return p;
+}
+
+static void below(const case_place *p, const char *leaf, char path[CASE_PATH]) {
+  case_path(path, "%s%s%s", p->path, leaf[0] ? "." : "", leaf);
+}
+
+const case_node *case_place_given(const case_place *p, const char *leaf) {
+  char path[CASE_PATH];
+  below(p, leaf, path);
+  const case_node  *node  = case_reader_given(p->reader, path);
+  const case_block *block = node ? NULL : find_block(p->reader, path);
+  return block ? block->node : node;
+}
+
+bool case_place_good(const case_place *p, const char *leaf) {
+  char path[CASE_PATH];
+  below(p, leaf, path);
+  return case_reader_good(p->reader, path);
+}
+
+void case_place_issue(const case_place *p, const char *leaf, const char *format, ...) {
+  char    path[CASE_PATH], text[1024];
+  va_list args;
+  va_start(args, format);
+  vsnprintf(text, sizeof text, format, args);
+  va_end(args);
+  below(p, leaf, path);
+  case_reader_issue(p->reader, path, "%s", text);
 }

@@ -35,7 +35,8 @@ void case_reader_walk(case_reader *reader, const case_node *root);
  * issue. */
 void case_reader_require(case_reader *reader, int stages);
 
-/* Node of a key; NULL if the file does not have it. */
+/* Node of a key; NULL if the file does not have it. Here and below an element of a list is named as
+ * in messages, "contact.interfaces[1].n0"; it is good if its whole list is. */
 const case_node *case_reader_given(const case_reader *reader, const char *path);
 
 /* Is a block of keys in the file? */
@@ -46,6 +47,21 @@ bool case_reader_good(const case_reader *reader, const char *path);
 
 /* Record an issue at a key or block: at its value, or else at the nearest block around it. */
 void case_reader_issue(const case_reader *reader, const char *path, const char *format, ...)
+    __attribute__((format(printf, 3, 4)));
+
+/* The place of one of several elements: an element of a list. Where the list is not given, the
+ * block that stands for a list of one. */
+typedef struct {
+  case_reader *reader;
+  char         path[CASE_PATH]; /* "materials[1]" or "material" */
+} case_place;
+
+case_place case_reader_place(case_reader *reader, const char *list, const char *block, int index);
+
+/* As case_reader_given, of a key or a block of keys below a place; "": of the place itself. */
+const case_node *case_place_given(const case_place *place, const char *leaf);
+bool             case_place_good(const case_place *place, const char *leaf);
+void case_place_issue(const case_place *place, const char *leaf, const char *format, ...)
     __attribute__((format(printf, 3, 4)));
 
 #endif

@@ -12,6 +12,7 @@
 #include "cases/parse/units.h"
 #include "cases/parse/value_context.h"
 #include "mesh/base/publish.h"
+#include "mesh/base/shortest.h"
 
 /* Of the tangential stiffness. The contact law needs the more steps the larger it is: at 2e7 twice
  * as many as at 1. */
@@ -82,12 +83,21 @@ static bool read_accuracy(const case_value_context *c, const case_node *node, vo
   return index >= 0;
 }
 
-/* Reads a list of frequencies, or one of the words; they are in the order of mhb_save_when. */
-static bool read_saved(const case_value_context *c, const case_node *node, void *slot) {
-  mhb_save_settings *save = slot;
-  if (node->kind == CASE_SEQUENCE) return case_list_saved(c, node, slot);
-  int index = choose(c, node);
-  if (index >= 0) save->what = (mhb_save_when)index;
+static int n_words(const char *words) {
+  int n = 1;
+  for (const char *c = words; *c; c++) n += *c == ' ';
+  return n;
+}
+
+/* Reads a list, or one of the words. */
+static bool read_word_or_list(const case_value_context *c, const case_node *node, void *slot) {
+  int *what = (int *)((char *)slot - c->key->at + c->key->what_at);
+  if (node->kind == CASE_SEQUENCE) {
+    *what = n_words(c->key->words);
+    return case_list_numbers(c, node, slot);
+  }
+  const int index = choose(c, node);
+  if (index >= 0) *what = index;
   return index >= 0;
 }
 
@@ -266,14 +276,6 @@ static bool read_stiffness(const case_value_context *c, const case_node *node, v
   return false;
 }
 
-static bool read_diameters(const case_value_context *c, const case_node *node, void *slot) {
-  case_diameters *diameters = slot;
-  if (node->kind == CASE_SEQUENCE) return case_list_diameters(c, node, slot);
-  int index = choose(c, node);
-  if (index >= 0) diameters->what = (case_diameters_kind)index;
-  return index >= 0;
-}
-
 static bool read_damping(const case_value_context *c, const case_node *node, void *slot) {
   return case_damping_read(c->issues, c->path, node, slot);
 }
@@ -287,37 +289,219 @@ static bool read_signal(const case_value_context *c, const case_node *node, void
   return node->kind == CASE_SEQUENCE || case_value_refuse(c, node);
 }
 
+/* ---------------------------------------------------------------- values as text */
+
+/* The path as in the case file, so that settings do not depend on the working folder. */
+static const char *inside(const case_file *file, const char *path) {
+  const size_t n = strlen(file->folder);
+  return strncmp(path, file->folder, n) == 0 && path[n] == '/' ? path + n + 1 : path;
+}
+
+static void print_number(const case_printed *p) {
+  shb_print_shortest(p->out, 1, p->slot);
+}
+
+static void print_two(const case_printed *p) {
+  shb_print_shortest(p->out, 2, p->slot);
+}
+
+static void print_three(const case_printed *p) {
+  shb_print_shortest(p->out, 3, p->slot);
+}
+
+/* One number if the three are equal. */
+static void print_triple(const case_printed *p) {
+  const double *v = p->slot;
+  shb_print_shortest(p->out, v[0] == v[1] && v[1] == v[2] ? 1 : 3, v);
+}
+
+static void print_integer(const case_printed *p) {
+  fprintf(p->out, "%d", *(const int *)p->slot);
+}
+
+static void print_auto(const case_printed *p) {
+  if (*(const int *)p->slot < p->key->least)
+    fputs("auto", p->out);
+  else
+    print_integer(p);
+}
+
+static void print_word(const case_printed *p, int index) {
+  const char *words = p->key->words;
+  for (; index > 0; index--) words = strchr(words, ' ') + 1;
+  fprintf(p->out, "%.*s", (int)strcspn(words, " "), words);
+}
+
+static void print_choice(const case_printed *p) {
+  print_word(p, *(const int *)p->slot);
+}
+
+static void print_switch(const case_printed *p) {
+  print_word(p, *(const bool *)p->slot);
+}
+
+static void print_label(const case_printed *p) {
+  fputs(p->slot, p->out);
+}
+
+static void print_text(const case_printed *p) {
+  fputs(*(char *const *)p->slot, p->out);
+}
+
+static void print_file_name(const case_printed *p) {
+  const char *path = *(char *const *)p->slot;
+  fputs(path ? inside(p->file, path) : "-", p->out);
+}
+
+static void print_numbers(const case_printed *p) {
+  const char *base = (const char *)p->slot - p->key->at;
+  shb_print_shortest(p->out, *(const int *)(base + p->key->count_at), p->slot);
+}
+
+static void print_integers(const case_printed *p) {
+  const char *base = (const char *)p->slot - p->key->at;
+  const int  *v    = p->slot;
+  for (int i = 0; i < *(const int *)(base + p->key->count_at); i++)
+    fprintf(p->out, "%s%d", i ? " " : "", v[i]);
+}
+
+static void print_word_or_list(const case_printed *p) {
+  const char *base = (const char *)p->slot - p->key->at;
+  const int   what = *(const int *)(base + p->key->what_at);
+  if (what < n_words(p->key->words))
+    print_word(p, what);
+  else if (p->key->type == CASE_WORD_OR_INTEGERS)
+    print_integers(p);
+  else
+    print_numbers(p);
+}
+
+static void print_points(const case_printed *p) {
+  const mhb_integration_settings *asked = &p->file->integrate;
+  if (asked->listed)
+    shb_print_shortest(p->out, asked->n_frequencies, p->slot);
+  else
+    fprintf(p->out, "%d points", asked->n_frequencies);
+}
+
+/* Of a file its content counts, not its name. */
+static void print_mistuning(const case_printed *p) {
+  const case_mistuning *m = p->slot;
+  char                  fingerprint[17], deviation[SHB_SHORTEST];
+  if (m->kind == CASE_MISTUNED_LIST) shb_print_shortest(p->out, m->n, m->each);
+  if (m->kind == CASE_MISTUNED_RANDOM)
+    fprintf(p->out, "deviation %s seed %d samples %d", shb_shortest(m->deviation, deviation),
+            m->seed, m->samples);
+  if (m->kind != CASE_MISTUNED_FILE) return;
+  if (shb_fingerprint(m->file, fingerprint) != SHB_OK) strcpy(fingerprint, "-");
+  fprintf(p->out, "file %s %s", inside(p->file, m->file), fingerprint);
+  if (m->hz) fprintf(p->out, " Hz mean %s", shb_shortest(m->mean, deviation));
+}
+
+static void print_damping(const case_printed *p) {
+  case_damping_print(p->out, p->slot);
+}
+
+static void print_factors(const case_printed *p) {
+  const fem_load *load = p->slot;
+  for (int k = 0; k <= load->n_harmonics; k++) {
+    const double parts[2] = {creal(load->factor[k]), cimag(load->factor[k])};
+    if (load->factor[k] == 0) continue;
+    fprintf(p->out, "%s.%d = ", p->path, k);
+    shb_print_shortest(p->out, 2, parts);
+    fputc('\n', p->out);
+  }
+}
+
+static void print_probes(const case_printed *p) {
+  for (int i = 0; i < p->file->n_probes; i++) {
+    fprintf(p->out, "%s.%s = ", p->path, p->file->probe[i].name);
+    shb_print_shortest(p->out, 3, p->file->probe[i].at);
+    fputc('\n', p->out);
+  }
+}
+
+static void print_gauges(const case_printed *p) {
+  for (int i = 0; i < p->file->n_gauges; i++) {
+    fprintf(p->out, "%s.%s = ", p->path, p->file->gauge[i].name);
+    shb_print_shortest(p->out, 3, p->file->gauge[i].at);
+    fputs("; ", p->out);
+    shb_print_shortest(p->out, 3, p->file->gauge[i].direction);
+    fputc('\n', p->out);
+  }
+}
+
+static void print_groups(const case_printed *p) {
+  case_groups_print(p->out, p->path, p->slot);
+}
+
+/* ---------------------------------------------------------------- the table of types */
+
+/* clang-format off */
+const case_type_row case_types[CASE_N_TYPES] = {
+  [CASE_NUMBER]    = {"number", "a number", "N", read_number, print_number, .number = true},
+  [CASE_INTEGER]   = {"integer", "a whole number", "I", case_value_integer, print_integer,
+                      .number = true, .whole = true},
+  [CASE_COUNT]     = {"integer or all", "a whole number or all", "I =all w", read_count,
+                      print_integer, .number = true, .whole = true},
+  [CASE_AUTO]      = {"integer or auto", "a whole number or auto", "I =auto", read_count,
+                      print_auto, .number = true, .whole = true},
+  [CASE_CHOICE]    = {"word", "one of", "W", read_choice, print_choice},
+  [CASE_SWITCH]    = {"word", "one of", "W", read_switch, print_switch},
+  [CASE_ACCURACY]  = {"word or number", "a number or one of", "W N", read_accuracy, print_number,
+                      .number = true},
+  [CASE_WORD]      = {"word", "a name", "S", read_word, print_text},
+  [CASE_LABEL]     = {"word", "the name of a group", "S", read_label, print_label},
+  [CASE_FILE_NAME] = {"file", "a file name", "S", read_file_name, print_file_name},
+  [CASE_VECTOR]    = {"[x, y, z]", "[x, y, z]", "3", read_vector, print_three, .number = true},
+  [CASE_TRIPLE]    = {"number or list", "a number or three, for the axes", "N 3", read_triple,
+                      print_triple, .number = true},
+  [CASE_INTERVAL]  = {"[from, to]", "[from, to]", "2", read_interval, print_two, .number = true},
+  [CASE_SWEEP]     = {"[from, to] or number", "[from, to] or a number", "N 2", read_sweep,
+                      print_two, .number = true},
+  [CASE_STIFFNESS] = {"number or list", "a number or [kuu, kuw, kww]", "N 3", read_stiffness,
+                      print_three, .number = true},
+  [CASE_PRELOADS]  = {"number(s)", "a number, a list or {from, to, points}",
+                      "N * {^(from|to|points)$}", case_list_preloads, print_numbers,
+                      .number = true},
+  [CASE_NUMBERS]   = {"list", "a list of numbers", "*", case_list_numbers, print_numbers},
+  [CASE_INTEGERS]  = {"list", "a list of whole numbers", "J", case_list_numbers, print_integers},
+  [CASE_WORD_OR_NUMBERS]  = {"word or list", "a list of numbers or one of", "W *",
+                             read_word_or_list, print_word_or_list},
+  [CASE_WORD_OR_INTEGERS] = {"word or list", "a list of whole numbers or one of", "W J",
+                             read_word_or_list, print_word_or_list},
+  [CASE_POINTS]    = {"integer or list", "a whole number of points or a list", "I *",
+                      case_list_frequencies, print_points},
+  [CASE_FACTORS]   = {"mapping", "a mapping {harmonic: [factor, phase]}", "{^[0-9]+$}",
+                      case_list_factors, print_factors, .own_lines = true},
+  [CASE_PROBES]    = {"mapping", "a mapping {name: [x, y, z]}", "{}", case_list_probes,
+                      print_probes, .own_lines = true},
+  [CASE_GAUGES]    = {"mapping", "a mapping {name: {at: [x, y, z], direction: [x, y, z]}}", "{}",
+                      case_list_gauges, print_gauges, .own_lines = true},
+  [CASE_MISTUNING] = {"number(s), mapping", "a list, {file: NAME} or {deviation: 1 %, seed: 7}",
+                      "* {^(file|unit|mean|deviation|seed|samples)$}", read_mistuning,
+                      print_mistuning},
+  [CASE_DAMPING]   = {"number(s), mapping",
+                      "a number, a list, {loss_factor: ...} or {rayleigh: [alpha, beta]}",
+                      "N * {^(loss_factor|rayleigh)$}", read_damping, print_damping,
+                      .number = true},
+  [CASE_GROUPS]    = {"mapping", "a mapping {group: rule}", "{}", read_groups, print_groups,
+                      .own_lines = true},
+  [CASE_LIST]      = {"list", "a list of mappings", "", NULL, NULL}, /* by the reader */
+  [CASE_KEYS]      = {"mapping", "a mapping", "{}", NULL, NULL},
+  [CASE_NAMES]     = {"list", "a list of names", "A", NULL, NULL},
+  [CASE_SIGNAL]    = {"list", "a list of [amplitude, phase]", "A", read_signal, NULL}};
+/* clang-format on */
+
 bool case_value_read(case_issues *issues, const case_key *key, const char *path,
                      const case_node *node, case_file *file, void *slot) {
-  static bool (*const readers[CASE_N_TYPES])(const case_value_context *, const case_node *,
-                                             void *) = {[CASE_NUMBER]    = read_number,
-                                                        [CASE_INTEGER]   = case_value_integer,
-                                                        [CASE_COUNT]     = read_count,
-                                                        [CASE_CHOICE]    = read_choice,
-                                                        [CASE_SWITCH]    = read_switch,
-                                                        [CASE_ACCURACY]  = read_accuracy,
-                                                        [CASE_WORD]      = read_word,
-                                                        [CASE_LABEL]     = read_label,
-                                                        [CASE_FILE_NAME] = read_file_name,
-                                                        [CASE_VECTOR]    = read_vector,
-                                                        [CASE_TRIPLE]    = read_triple,
-                                                        [CASE_INTERVAL]  = read_interval,
-                                                        [CASE_SWEEP]     = read_sweep,
-                                                        [CASE_STIFFNESS] = read_stiffness,
-                                                        [CASE_PRELOADS]  = case_list_preloads,
-                                                        [CASE_FACTORS]   = case_list_factors,
-                                                        [CASE_PROBES]    = case_list_probes,
-                                                        [CASE_GAUGES]    = case_list_gauges,
-                                                        [CASE_MISTUNING] = read_mistuning,
-                                                        [CASE_DAMPING]   = read_damping,
-                                                        [CASE_GROUPS]    = read_groups,
-                                                        [CASE_SIGNAL]    = read_signal,
-                                                        [CASE_AUTO]      = read_count,
-                                                        [CASE_PLACES]    = case_list_places,
-                                                        [CASE_ORDERS]    = case_list_orders,
-                                                        [CASE_POINTS]    = case_list_frequencies,
-                                                        [CASE_SAVED]     = read_saved,
-                                                        [CASE_DIAMETERS] = read_diameters};
   const case_value_context c = {.issues = issues, .key = key, .path = path, .file = file};
-  return readers[key->type](&c, node, slot);
+  return case_types[key->type].read(&c, node, slot);
+}
+
+void case_value_print(const case_printed *p) {
+  const case_type_row *type = &case_types[p->key->type];
+  if (!type->own_lines) fprintf(p->out, "%s = ", p->path);
+  type->print(p);
+  if (!type->own_lines) fputc('\n', p->out);
 }

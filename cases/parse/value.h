@@ -19,4 +19,7 @@ bool case_value_read(case_issues *issues, const case_key *key, const char *path,
  * fault is recorded under path. */
 bool case_value_is_name(case_issues *issues, const char *path, const case_node *node);
 
+/* Print a value as the settings of a stage have it: "PATH = VALUE", or lines of its own. */
+void case_value_print(const case_printed *p);
+
 #endif

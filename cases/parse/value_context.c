@@ -6,38 +6,8 @@
 #include "cases/parse/units.h"
 
 void case_value_expected(const case_key *key, char *text, size_t size) {
-  static const char *const shapes[CASE_N_TYPES] = {
-      [CASE_NUMBER]    = "a number",
-      [CASE_INTEGER]   = "a whole number",
-      [CASE_COUNT]     = "a whole number or all",
-      [CASE_AUTO]      = "a whole number or auto",
-      [CASE_CHOICE]    = "one of",
-      [CASE_SWITCH]    = "one of",
-      [CASE_ACCURACY]  = "a number or one of",
-      [CASE_WORD]      = "a name",
-      [CASE_LABEL]     = "the name of a group",
-      [CASE_FILE_NAME] = "a file name",
-      [CASE_VECTOR]    = "[x, y, z]",
-      [CASE_TRIPLE]    = "a number or three, for the axes",
-      [CASE_INTERVAL]  = "[from, to]",
-      [CASE_SWEEP]     = "[from, to] or a number",
-      [CASE_STIFFNESS] = "a number or [kuu, kuw, kww]",
-      [CASE_PRELOADS]  = "a number, a list or {from, to, points}",
-      [CASE_PLACES]    = "a list of numbers",
-      [CASE_ORDERS]    = "a list of whole numbers",
-      [CASE_POINTS]    = "a whole number of points or a list",
-      [CASE_SAVED]     = "a list of frequencies or one of",
-      [CASE_DIAMETERS] = "a list of whole numbers or one of",
-      [CASE_FACTORS]   = "a mapping {harmonic: [factor, phase]}",
-      [CASE_PROBES]    = "a mapping {name: [x, y, z]}",
-      [CASE_GAUGES]    = "a mapping {name: {at: [x, y, z], direction: [x, y, z]}}",
-      [CASE_MISTUNING] = "a list, {file: NAME} or {deviation: 1 %, seed: 7}",
-      [CASE_DAMPING]   = "a number, a list, {loss_factor: ...} or {rayleigh: [alpha, beta]}",
-      [CASE_GROUPS]    = "a mapping {group: rule}",
-      [CASE_LIST]      = "a list of mappings",
-      [CASE_SIGNAL]    = "a list of [amplitude, phase]"};
   text[0] = '\0';
-  case_append(text, size, "%s", shapes[key->type]);
+  case_append(text, size, "%s", case_types[key->type].expected);
   for (const char *word = key->words; word && *word;) {
     size_t n = strcspn(word, " ");
     case_append(text, size, "%s%.*s",

@@ -8,7 +8,7 @@
 #include "cases/parse/keys.h"
 #include "cases/parse/yaml.h"
 
-typedef struct {
+typedef struct case_value_context {
   case_issues    *issues;
   const case_key *key;
   const char     *path;

@@ -431,3 +431,23 @@ const case_node *case_node_find(const case_node *mapping, const char *key) {
     if (strcmp(mapping->child[i].key, key) == 0) return &mapping->child[i];
   return NULL;
 }
+
+const case_node *case_node_at(const case_node *root, const char *path) {
+  const case_node *node = root;
+  for (const char *at = path; node && *at;) {
+    at += *at == '.';
+    if (*at == '[') {
+      char      *end;
+      const long i  = strtol(at + 1, &end, 10);
+      const bool is = *end == ']' && node->kind == CASE_SEQUENCE && i >= 0 && i < node->n;
+      node          = is ? &node->child[i] : NULL;
+      at            = *end ? end + 1 : end;
+    } else {
+      char key[CASE_PATH];
+      case_path(key, "%.*s", (int)strcspn(at, ".["), at);
+      node = case_node_find(node, key);
+      at += strlen(key);
+    }
+  }
+  return node;
+}

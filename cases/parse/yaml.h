@@ -64,4 +64,7 @@ void case_path(char path[CASE_PATH], const char *format, ...) __attribute__((for
 /* Entry of a mapping, or NULL. */
 const case_node *case_node_find(const case_node *mapping, const char *key);
 
+/* The node of a path below root, "force.vector" or "[2].n0"; NULL: there is none. */
+const case_node *case_node_at(const case_node *root, const char *path);
+
 #endif

@@ -35,9 +35,11 @@ static mhb_settings first_sweep(const case_file *file, bool ring, int sharing) {
 static mhb_sweep_size size_by_case(const case_file *file, int sharing) {
   const bool         ring  = file->mistuning.kind != CASE_TUNED;
   const mhb_settings s     = first_sweep(file, ring, sharing);
-  const modal_model  model = {.n_pairs = file->points > 0 ? file->points : 1,
-                              .n_modes = file->modes > 0 ? file->modes : 1};
-  mhb_sweep_size     size  = mhb_sweep_size_of(&model, &s);
+  int                pairs = 0;
+  for (int i = 0; i < file->n_interfaces; i++)
+    pairs += file->interfaces[i].points > 0 ? file->interfaces[i].points : 1;
+  const modal_model model = {.n_pairs = pairs, .n_modes = file->modes > 0 ? file->modes : 1};
+  mhb_sweep_size    size  = mhb_sweep_size_of(&model, &s);
   if (ring) size.blades = file->mhb.blades;
   return size;
 }

@@ -47,42 +47,54 @@ static void share_parameter(case_reader *r) {
   }
 }
 
-/* Copies values that several structs hold. */
-static void share(case_reader *r) {
-  case_file *file        = r->file;
-  file->mhb.has_psi      = case_reader_given(r, "contact.psi") != NULL;
-  file->mhb.has_phi      = case_reader_given(r, "contact.phi") != NULL;
-  file->mhb.engine_order = file->engine_order;
-  file->mhb.blades       = file->blades;
-  file->blade.blades     = file->blades;
-  file->blade.axis       = file->axis;
-  file->source.path      = file->mesh_file;
-  bool step              = file->mesh_file && mesh_format_of(file->mesh_file) == MESH_FORMAT_STEP;
-  file->source.unit      = step ? 1e-3 : (const double[]){1, 1e-2, 1e-3, 0.0254}[file->mesh_unit];
-  file->source.axis      = file->axis;
-  file->source.blades    = file->mhb.to_ground ? 0 : file->blades;
-  file->material.E       = file->constants.E[0];
-  file->material.nu      = file->constants.nu[0];
-  file->has_materials    = case_reader_given(r, "materials") != NULL;
-  /* no message asks for it then */
-  file->source.unit_given = step || case_reader_given(r, "mesh.unit");
+/* The block of the only element stands for a list of one. */
+static void count_elements(case_reader *r) {
+  case_file *file      = r->file;
+  file->has_materials  = case_reader_given(r, "materials") != NULL;
+  file->has_loads      = case_reader_given(r, "excitation.loads") != NULL;
+  file->has_interfaces = case_reader_given(r, "contact.interfaces") != NULL;
+  if (file->n_materials == 0) file->n_materials = 1;
+  if (file->n_loads == 0) file->n_loads = 1;
+  if (file->n_interfaces == 0) file->n_interfaces = 1;
   for (int i = 0; i < file->n_materials; i++) {
     case_material *one = &file->materials[i];
     one->material.E    = one->constants.E[0];
     one->material.nu   = one->constants.nu[0];
   }
-  file->has_disc    = case_reader_has_block(r, "mesh.blade.disc");
-  file->has_contact = case_reader_has_block(r, "contact");
-  file->only_modes  = !file->modal_file && !file->has_contact && !case_reader_has_block(r, "mhb");
-  file->load.field  = file->field_file;
-  file->has_loads   = case_reader_given(r, "excitation.loads") != NULL;
   for (int i = 0; i < file->n_loads; i++) {
     case_load *one  = &file->loads[i];
     one->load.field = one->field;
-    one->load.group = one->group;
+    one->load.group = one->group[0] ? one->group : NULL;
   }
-  file->blade.psi = file->mhb.has_psi ? file->mhb.psi : 0;
-  file->blade.phi = file->mhb.has_phi ? file->mhb.phi : 0;
+  if (file->has_interfaces) return;
+  strcpy(file->interfaces[0].right, mesh_set_name(MESH_CONTACT_RIGHT));
+  strcpy(file->interfaces[0].left, mesh_set_name(MESH_CONTACT_LEFT));
+}
+
+/* Copies values that several structs hold. */
+static void share(case_reader *r) {
+  case_file *file         = r->file;
+  file->mhb.engine_order  = file->engine_order;
+  file->mhb.blades        = file->blades;
+  file->blade.blades      = file->blades;
+  file->blade.axis        = file->axis;
+  file->source.path       = file->mesh_file;
+  bool step               = file->mesh_file && mesh_format_of(file->mesh_file) == MESH_FORMAT_STEP;
+  file->source.unit       = step ? 1e-3 : (const double[]){1, 1e-2, 1e-3, 0.0254}[file->mesh_unit];
+  file->source.axis       = file->axis;
+  file->source.blades     = file->mhb.to_ground ? 0 : file->blades;
+  file->source.n_contacts = file->n_interfaces;
+  for (int i = 0; i < file->n_interfaces; i++) {
+    strcpy(file->source.contact[i].right, file->interfaces[i].right);
+    strcpy(file->source.contact[i].left, file->interfaces[i].left);
+  }
+  /* no message asks for it then */
+  file->source.unit_given = step || case_reader_given(r, "mesh.unit");
+  file->has_disc          = case_reader_has_block(r, "mesh.blade.disc");
+  file->has_contact       = case_reader_has_block(r, "contact");
+  file->only_modes = !file->modal_file && !file->has_contact && !case_reader_has_block(r, "mhb");
+  file->blade.psi  = file->mhb.has_psi ? file->mhb.psi : 0;
+  file->blade.phi  = file->mhb.has_phi ? file->mhb.phi : 0;
 }
 
 /* The stages for which the file is checked. A file of modes alone has one issue if the balance is
@@ -106,9 +118,10 @@ static bool read_document(case_issues *issues, const case_overrides *overrides, 
   case_reader_walk(&reader, root);
   bool lost = false;
   if (root && root->kind == CASE_MAPPING) {
-    share(&reader);
+    count_elements(&reader);
     share_parameter(&reader);
     case_share_interfaces(&reader);
+    share(&reader);
     case_assign_groups(&reader);
     stages = stages_of(&reader, stages);
     case_check_alternatives(&reader, stages);
@@ -187,10 +200,9 @@ static void drop(char **text) {
 }
 
 void case_free(case_file *file) {
-  char **const texts[] = {&file->path,           &file->folder,     &file->output,
-                          &file->text,           &file->name,       &file->mesh_file,
-                          &file->modal_file,     &file->field_file, &file->mistuning.file,
-                          &file->converge_output};
+  char **const texts[] = {&file->path,       &file->folder,         &file->output,
+                          &file->text,       &file->name,           &file->mesh_file,
+                          &file->modal_file, &file->mistuning.file, &file->converge_output};
   for (size_t i = 0; i < sizeof texts / sizeof *texts; i++) drop(texts[i]);
   for (int i = 0; i < CASE_MAX_LOADS; i++) drop(&file->loads[i].field);
 }

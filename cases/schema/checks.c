@@ -8,11 +8,11 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-#include "cases/parse/unused_keys.h"
 #include "cases/schema/case_paths.h"
 #include "cases/schema/interfaces.h"
 #include "cases/schema/loads.h"
 #include "cases/schema/materials.h"
+#include "cases/schema/unused_keys.h"
 #include "mesh/base/constants.h"
 #include "mesh/core/file_format.h"
 #include "mesh/table/text_file.h"
@@ -36,12 +36,13 @@ static void check_blade(case_reader *r, int stages) {
   double            degree = 180 / SHB_PI;
   if (r->file->modal_file || !(stages & CASE_MESH) || !case_reader_has_block(r, "mesh.blade"))
     return;
-  if (case_reader_good(r, "contact.psi") && fabs(blade->psi) * degree > MESH_MAX_PSI)
-    case_reader_issue(r, "contact.psi", "a parametric blade needs -%d to %d deg", MESH_MAX_PSI,
-                      MESH_MAX_PSI);
-  if (case_reader_good(r, "contact.phi") && fabs(blade->phi) * degree > MESH_MAX_PHI)
-    case_reader_issue(r, "contact.phi", "a parametric blade needs -%d to %d deg", MESH_MAX_PHI,
-                      MESH_MAX_PHI);
+  const case_place contact = case_reader_place(r, "contact.interfaces", "contact", 0);
+  if (case_place_good(&contact, "psi") && fabs(blade->psi) * degree > MESH_MAX_PSI)
+    case_place_issue(&contact, "psi", "a parametric blade needs -%d to %d deg", MESH_MAX_PSI,
+                     MESH_MAX_PSI);
+  if (case_place_good(&contact, "phi") && fabs(blade->phi) * degree > MESH_MAX_PHI)
+    case_place_issue(&contact, "phi", "a parametric blade needs -%d to %d deg", MESH_MAX_PHI,
+                     MESH_MAX_PHI);
   if (case_reader_good(r, "rotor.blades") && blade->blades == 2)
     case_reader_issue(r, "rotor.blades", "a parametric blade needs 3 or more");
 }
@@ -57,28 +58,25 @@ static void check_sections(case_reader *r) {
   const mesh_blade   *blade  = &r->file->blade;
   const case_node    *node   = case_reader_given(r, path);
   for (int i = 0; node && case_reader_good(r, path) && i < blade->n_sections; i++) {
-    const mesh_section *s     = &blade->section[i];
-    const case_node    *place = &node->child[i];
+    const mesh_section *s = &blade->section[i];
     char                full[CASE_PATH];
     case_path(full, "%s[%d]", path, i);
     if (i > 0 && s->radius <= s[-1].radius)
-      case_issue_add(r->issues, place->line, place->column, full,
-                     "radius is %g m, must be above that of the section before, %g m", s->radius,
-                     s[-1].radius);
+      case_reader_issue(r, full, "radius is %g m, must be above that of the section before, %g m",
+                        s->radius, s[-1].radius);
     const double least = .01 * MESH_MIN_THICKNESS * s->chord;
     const double most  = .01 * MESH_MAX_THICKNESS * s->chord;
     const double bend  = .01 * MESH_MAX_CAMBER * s->chord;
     if (s->thickness <= least || s->thickness >= most)
-      case_issue_add(r->issues, place->line, place->column, full,
-                     "thickness is %g m, must be between 1 %% and 50 %% of the chord, %g to %g m",
-                     s->thickness, least, most);
+      case_reader_issue(
+          r, full, "thickness is %g m, must be between 1 %% and 50 %% of the chord, %g to %g m",
+          s->thickness, least, most);
     if (fabs(s->camber) > bend)
-      case_issue_add(r->issues, place->line, place->column, full,
-                     "camber is %g m, must be at most 40 %% of the chord, %g m, either way",
-                     s->camber, bend);
+      case_reader_issue(r, full,
+                        "camber is %g m, must be at most 40 %% of the chord, %g m, either way",
+                        s->camber, bend);
     if (fabs(s->twist) > MESH_MAX_TWIST / degree)
-      case_issue_add(r->issues, place->line, place->column, full,
-                     "twist is %g deg, must be -80 to 80 deg", s->twist * degree);
+      case_reader_issue(r, full, "twist is %g deg, must be -80 to 80 deg", s->twist * degree);
   }
   double height = blade->root_height;
   if (node && case_reader_good(r, path) && case_reader_good(r, "mesh.blade.root.height") &&
@@ -167,7 +165,7 @@ static void check_followed(case_reader *r) {
         "give always",
         mhb_track_word(mhb->track));
   if (tracked && r->file->run_up) case_reader_issue(r, "mhb.track", "does not go with mhb.run_up");
-  if (tracked && r->file->points < 0)
+  if (tracked && case_points_are_auto(r->file))
     case_reader_issue(r, "mhb.track",
                       "does not go with contact.points: auto; give the number of points");
   if (given > 0 && !single && !tracked)
@@ -253,7 +251,7 @@ static void check_run_up_speeds(case_reader *r) {
 static void check_run_up(case_reader *r) {
   const case_file *file = r->file;
   if (!file->run_up) return;
-  if (file->points < 0)
+  if (case_points_are_auto(file))
     case_reader_issue(r, "contact.points",
                       "is auto, which does not go with mhb.run_up; give the number of points");
   if (case_reader_good(r, "excitation.engine_order") && file->engine_order < 1) {
@@ -282,9 +280,8 @@ static void check_places(case_reader *r, const char *key, int n, const double *f
     char path[CASE_PATH];
     case_path(path, "%s[%d]", key, i);
     if (frequency[i] < mhb->frequency[0] || frequency[i] > mhb->frequency[1])
-      case_issue_add(r->issues, node->child[i].line, node->child[i].column, path,
-                     "is %g Hz, must be within mhb.frequency, %g to %g Hz", frequency[i],
-                     mhb->frequency[0], mhb->frequency[1]);
+      case_reader_issue(r, path, "is %g Hz, must be within mhb.frequency, %g to %g Hz",
+                        frequency[i], mhb->frequency[0], mhb->frequency[1]);
   }
 }
 
@@ -302,10 +299,10 @@ static void check_integrate(case_reader *r) {
     char full[CASE_PATH];
     case_path(full, "%s[%d]", path, i);
     if (asked->frequency[i] < mhb->frequency[0] || asked->frequency[i] > mhb->frequency[1])
-      case_issue_add(r->issues, node->child[i].line, node->child[i].column, full,
-                     "is %g Hz, must be within mhb.frequency, %g to %g Hz, where there are "
-                     "solutions to start on; or set integrate.start to rest or state",
-                     asked->frequency[i], mhb->frequency[0], mhb->frequency[1]);
+      case_reader_issue(r, full,
+                        "is %g Hz, must be within mhb.frequency, %g to %g Hz, where there are "
+                        "solutions to start on; or set integrate.start to rest or state",
+                        asked->frequency[i], mhb->frequency[0], mhb->frequency[1]);
   }
 }
 
@@ -369,7 +366,7 @@ static void check_mistuning(case_reader *r, int stages) {
   if (file->run_up) case_reader_issue(r, path, "does not go with mhb.run_up");
   if (file->mhb.track != MHB_TRACK_NOTHING)
     case_reader_issue(r, path, "does not go with mhb.track");
-  if (file->points < 0)
+  if (case_points_are_auto(file))
     case_reader_issue(r, path, "does not go with contact.points: auto; give the number of points");
 }
 
@@ -430,10 +427,13 @@ bool case_check_values(case_reader *r, int stages) {
   if (stages & CASE_MHB) check_integrate(r);
   if (own) check_extension(r);
   if (own && stages & (CASE_MESH | CASE_MODAL)) lost = check_file(r, "mesh.file", file->mesh_file);
-  if (own && stages & CASE_MODAL && file->load.kind == FEM_LOAD_FIELD && !lost)
-    lost = check_file(r, "excitation.field", file->field_file);
-  for (int i = 0; i < file->n_loads && own && stages & CASE_MODAL && !lost; i++)
-    lost = check_file(r, "excitation.loads", file->loads[i].field);
+  for (int i = 0; i < file->n_loads && own && stages & CASE_MODAL && !lost; i++) {
+    const case_place p = case_reader_place(r, "excitation.loads", "excitation", i);
+    char             path[CASE_PATH];
+    case_path(path, "%s.field", p.path);
+    if (file->loads[i].load.kind == FEM_LOAD_FIELD)
+      lost = check_file(r, path, file->loads[i].field);
+  }
   if (!own && stages & CASE_MHB) lost = check_file(r, "modal.file", file->modal_file);
   if (stages & CASE_MHB && !lost && file->mistuning.file)
     lost = check_file(r, "rotor.mistuning", file->mistuning.file);

@@ -1,26 +1,14 @@
 #include "cases/schema/interfaces.h"
 
-#include <math.h>
-#include <stdio.h>
 #include <string.h>
 
-#include "cases/parse/value.h"
-#include "cases/parse/value_context.h"
+#include "mesh/core/fe_mesh.h"
 #include "mhb/problem/parameter.h"
 
 static const char list_path[] = "contact.interfaces", vary_path[] = "mhb.vary.interface";
 
-/* Keys of a single interface, which the list replaces. */
-static const char *const single[] = {"psi", "phi", "points", "mu", "ku", "kv", "n0"};
-enum { N_SINGLE = sizeof single / sizeof *single };
-
-static const case_node *element(const case_reader *r, int i) {
-  const case_node *list = case_reader_given(r, list_path);
-  return list && list->kind == CASE_SEQUENCE && i < list->n ? &list->child[i] : NULL;
-}
-
-static bool has(const case_node *node, const char *leaf) {
-  return node && node->kind == CASE_MAPPING && case_node_find(node, leaf);
+static case_place place_of(case_reader *r, int i) {
+  return case_reader_place(r, list_path, "contact", i);
 }
 
 /* Index of the leading interface: the one of mhb.vary.interface, else the first with a list of
@@ -33,10 +21,12 @@ static int leading(const case_file *file) {
   return 0;
 }
 
-static void take_parameters(mhb_settings *mhb, const mhb_interface *own) {
-  mhb->mu         = own->mu;
-  mhb->kv         = own->kv;
-  mhb->n_preloads = own->n_preloads;
+void case_lead(mhb_settings *mhb, int lead) {
+  const mhb_interface *own = &mhb->interface[lead];
+  mhb->lead                = lead;
+  mhb->mu                  = own->mu;
+  mhb->kv                  = own->kv;
+  mhb->n_preloads          = own->n_preloads;
   memcpy(mhb->ku, own->ku, sizeof mhb->ku);
   memcpy(mhb->n0, own->n0, sizeof mhb->n0);
   mhb->has_psi = own->has_psi;
@@ -46,92 +36,84 @@ static void take_parameters(mhb_settings *mhb, const mhb_interface *own) {
 }
 
 void case_share_interfaces(case_reader *r) {
-  case_file    *file   = r->file;
-  mhb_settings *mhb    = &file->mhb;
-  mesh_source  *source = &file->source;
-  file->has_interfaces = case_reader_given(r, list_path) != NULL;
-  if (file->n_interfaces == 0) return;
+  case_file    *file = r->file;
+  mhb_settings *mhb  = &file->mhb;
   for (int i = 0; i < file->n_interfaces; i++) {
-    case_interface *own = &file->interfaces[i];
-    own->mhb.has_psi    = has(element(r, i), "psi");
-    own->mhb.has_phi    = has(element(r, i), "phi");
-    mhb->interface[i]   = own->mhb;
-    strcpy(source->contact[i].right, own->right);
-    strcpy(source->contact[i].left, own->left);
+    const case_place p   = place_of(r, i);
+    mhb_interface   *own = &file->interfaces[i].mhb;
+    own->has_psi         = case_place_given(&p, "psi") != NULL;
+    own->has_phi         = case_place_given(&p, "phi") != NULL;
+    if (!file->has_interfaces || !case_place_given(&p, "to")) own->to_ground = mhb->to_ground;
+    mhb->interface[i] = *own;
   }
-  source->n_contacts = file->n_interfaces;
-  mhb->n_interfaces  = file->n_interfaces;
-  mhb->lead          = leading(file);
-  mhb->together      = strcmp(file->vary_interface, "all") == 0;
-  take_parameters(mhb, &mhb->interface[mhb->lead]);
+  mhb->n_interfaces = file->n_interfaces;
+  mhb->to_ground    = mhb->interface[0].to_ground;
+  mhb->together     = strcmp(file->vary_interface, "all") == 0;
+  case_lead(mhb, leading(file));
 }
 
-static void tell(const case_reader *r, int i, const char *leaf, const char *text) {
-  const case_node *node = element(r, i), *at = case_node_find(node, leaf);
-  char             path[CASE_PATH];
-  if (!at) at = node;
-  case_path(path, "%s[%d].%s", list_path, i, leaf);
-  case_issue_add(r->issues, at->line, at->column, path, "%s", text);
-}
-
-/* Reports keys of interface i that the balance requires. */
-static void check_missing(const case_reader *r, int i) {
-  for (int k = 0; k < N_SINGLE; k++) {
-    char path[CASE_PATH], expected[256], text[300];
-    case_path(path, "contact.%s", single[k]);
-    const case_key *key = case_key_find(r->keys, path);
-    if (!key->required || has(element(r, i), single[k])) continue;
-    case_value_expected(key, expected, sizeof expected);
-    snprintf(text, sizeof text, "missing; expected %s", expected);
-    tell(r, i, single[k], text);
-  }
-}
-
-static void check_names(const case_reader *r, int i) {
-  const case_interface *own  = &r->file->interfaces[i];
-  bool                  left = !r->file->mhb.to_ground;
-  if (strcmp(own->mhb.name, "all") == 0) tell(r, i, "name", "'all' stands for all interfaces");
+static void check_names(case_reader *r, int i) {
+  static const char           taken[] = "its group is one of another interface; give each its own";
+  const case_interface *const all = r->file->interfaces, *own = &all[i];
+  const bool                  left = !own->mhb.to_ground;
+  const case_place            p    = place_of(r, i);
+  if (strcmp(own->mhb.name, "all") == 0)
+    case_place_issue(&p, "name", "'all' stands for all interfaces");
   if (left && strcmp(own->right, own->left) == 0)
-    tell(r, i, "left", "is the group of its right face");
-  for (int j = 0; j < i; j++) {
-    const case_interface *other = &r->file->interfaces[j];
+    case_place_issue(&p, "left", "is the group of its right face");
+  for (const case_interface *other = all; other < own; other++) {
+    const bool both = !other->mhb.to_ground;
     if (strcmp(own->mhb.name, other->mhb.name) == 0)
-      tell(r, i, "name", "there is another one of that name");
+      case_place_issue(&p, "name", "there is another one of that name");
     if (r->file->modal_file) continue;
-    if (strcmp(own->right, other->right) == 0 || (left && strcmp(own->right, other->left) == 0))
-      tell(r, i, "right", "its group is one of another interface; give each its own");
-    if (left && (strcmp(own->left, other->left) == 0 || strcmp(own->left, other->right) == 0))
-      tell(r, i, "left", "its group is one of another interface; give each its own");
+    if (strcmp(own->right, other->right) == 0 || (both && strcmp(own->right, other->left) == 0))
+      case_place_issue(&p, "right", "%s", taken);
+    if (left &&
+        ((both && strcmp(own->left, other->left) == 0) || strcmp(own->left, other->right) == 0))
+      case_place_issue(&p, "left", "%s", taken);
   }
+}
+
+/* What all interfaces of a case must have in common. */
+static void check_alike(case_reader *r, int i) {
+  const case_interface *first = &r->file->interfaces[0], *own = &r->file->interfaces[i];
+  const case_place      p = place_of(r, i);
+  if (own->mhb.to_ground != first->mhb.to_ground)
+    case_place_issue(&p, "to",
+                     "is %s, that of %s is %s; interfaces of both kinds do not go "
+                     "together",
+                     own->mhb.to_ground ? "ground" : "neighbour", first->mhb.name,
+                     own->mhb.to_ground ? "neighbour" : "ground");
+  if (!r->file->modal_file && (own->points < 0) != (first->points < 0))
+    case_place_issue(&p, "points", "is %s, that of %s is %s; auto chooses those of all interfaces",
+                     own->points < 0 ? "auto" : "a number", first->mhb.name,
+                     own->points < 0 ? "a number" : "auto");
 }
 
 /* The lists of preloads go together: entry k of one with entry k of the others. */
-static void check_preloads(const case_reader *r, int i) {
+static void check_preloads(case_reader *r, int i) {
   const mhb_settings  *mhb = &r->file->mhb;
-  const mhb_interface *own = &r->file->interfaces[i].mhb;
-  char                 text[256];
-  if (own->n_preloads > 1 && own->n_preloads != mhb->n_preloads) {
-    snprintf(text, sizeof text, "has %d preloads, %s has %d; lists must be of one length",
-             own->n_preloads, mhb->interface[mhb->lead].name, mhb->n_preloads);
-    tell(r, i, "n0", text);
-  }
+  const mhb_interface *own = &mhb->interface[i];
+  const case_place     p   = place_of(r, i);
+  if (own->n_preloads > 1 && own->n_preloads != mhb->n_preloads)
+    case_place_issue(&p, "n0", "has %d preloads, %s has %d; lists must be of one length",
+                     own->n_preloads, mhb->interface[mhb->lead].name, mhb->n_preloads);
   if (own->n_preloads > 1 && mhb->parameter == MHB_IN_N0)
-    tell(r, i, "n0", "must be one number, because curves follow mhb.vary.n0");
+    case_place_issue(&p, "n0", "must be one number, because curves follow mhb.vary.n0");
   for (int a = 1; i == mhb->lead && a < mhb->n_preloads; a++)
-    for (int b = 0; b < a; b++) {
-      if (mhb->n0[a] != mhb->n0[b]) continue;
-      snprintf(text, sizeof text,
-               "has %g N twice; the preloads of the interface that leads tell the curves apart",
-               mhb->n0[a]);
-      tell(r, i, "n0", text);
-    }
+    for (int b = 0; b < a; b++)
+      if (mhb->n0[a] == mhb->n0[b])
+        case_place_issue(
+            &p, "n0",
+            "has %g N twice; the preloads of the interface that leads tell the curves apart",
+            mhb->n0[a]);
 }
 
 /* Checks mhb.vary.interface. A parameter that is 0 at the leading interface has no proportions. */
 static void check_varied(case_reader *r) {
   const mhb_settings *mhb = &r->file->mhb;
   if (!case_reader_given(r, vary_path) || !case_reader_good(r, vary_path)) return;
-  if (r->file->n_interfaces < 2) {
+  if (mhb->n_interfaces < 2) {
     case_reader_issue(r, vary_path, "leave it out: there is one contact interface");
     return;
   }
@@ -149,22 +131,31 @@ static void check_varied(case_reader *r) {
                       mhb_parameter_name(mhb->parameter), mhb->interface[mhb->lead].name);
 }
 
+/* Refuses the keys of the only interface beside the list: those that an element has too. */
+static void check_single_keys(case_reader *r) {
+  for (int i = 0; i < r->keys.n; i++) {
+    const char *leaf = case_key_in_list(r->keys.key[i].path, list_path);
+    char        path[CASE_PATH];
+    case_path(path, "contact.%s", leaf ? leaf : "");
+    if (leaf && strcmp(leaf, "to") != 0 && case_reader_given(r, path))
+      case_reader_issue(r, path, "put it into contact.interfaces, which stands for all interfaces");
+  }
+}
+
 void case_check_interfaces(case_reader *r, int stages) {
   const case_file *file = r->file;
   check_varied(r);
-  if (!case_reader_given(r, list_path)) return;
-  for (int k = 0; k < N_SINGLE; k++) {
-    char path[CASE_PATH];
-    case_path(path, "contact.%s", single[k]);
-    if (case_reader_given(r, path))
-      case_reader_issue(r, path, "put it into contact.interfaces, which stands for all interfaces");
-  }
+  if (!file->has_interfaces) return;
+  check_single_keys(r);
   if (!case_reader_good(r, list_path)) return;
-  if (!file->modal_file && !file->mesh_file && file->n_interfaces > 0)
+  const case_interface *first = &file->interfaces[0];
+  const bool            usual = strcmp(first->right, mesh_set_name(MESH_CONTACT_RIGHT)) == 0 &&
+                     strcmp(first->left, mesh_set_name(MESH_CONTACT_LEFT)) == 0;
+  if (!file->modal_file && !file->mesh_file && (file->n_interfaces > 1 || !usual))
     case_reader_issue(r, list_path, "mesh.blade has one interface: give a mesh.file for several");
   for (int i = 0; i < file->n_interfaces; i++) {
-    if (stages & CASE_MHB) check_missing(r, i);
     check_names(r, i);
+    check_alike(r, i);
     if (stages & CASE_MHB) check_preloads(r, i);
   }
 }

@@ -17,6 +17,11 @@ void case_print_json_string(const char *text, FILE *out) {
   fputc('"', out);
 }
 
+/* ---------------------------------------------------------------- values */
+
+/* A list of numbers or whole numbers. most = 0: as many as one likes. */
+static void print_array(const case_key *key, char item, int least, int most, FILE *out);
+
 /* The words of a key as the items of a JSON list. */
 static void print_words(const char *words, FILE *out) {
   for (const char *c = words; *c;) {
@@ -24,9 +29,9 @@ static void print_words(const char *words, FILE *out) {
     fprintf(out, "%s\"%.*s\"", c == words ? "" : ", ", (int)n, c);
     c += n + (c[n] == ' ');
   }
+  /* YAML 1.1 reads yes and no as true and false */
+  if (strcmp(words, "no yes") == 0) fputs(", true, false", out);
 }
-
-/* ---------------------------------------------------------------- values */
 
 /* The bounds of a bare number, in SI. */
 static void print_bounds(const case_key *key, FILE *out) {
@@ -35,165 +40,73 @@ static void print_bounds(const case_key *key, FILE *out) {
           key->least, key->below ? "exclusiveMaximum" : "maximum", key->most);
 }
 
-/* A bare number, or a number with its unit. */
-static void print_number(const case_key *key, FILE *out) {
-  fputs("{\"anyOf\": [{\"type\": \"number\"", out);
-  print_bounds(key, out);
-  fputs("}, {\"$ref\": \"#/definitions/quantity\"}]}", out);
+/* One of the forms of a type, as case_types names them:
+ *
+ *   N, I       a bare number or one with its unit; a whole number
+ *   2, 3, *    a list of so many numbers, of any number of them; J of whole numbers
+ *   W, w       one of the words of the key; the same where the key has any
+ *   =WORD      this word
+ *   S, A       a text; any list
+ *   {PATTERN}  a mapping whose keys are of this pattern */
+static void print_form(const case_key *key, const char *form, int length, FILE *out) {
+  switch (form[0]) {
+    case 'N':
+      fputs("{\"anyOf\": [{\"type\": \"number\"", out);
+      print_bounds(key, out);
+      fputs("}, {\"$ref\": \"#/definitions/quantity\"}]}", out);
+      break;
+    case 'I':
+      fputs("{\"type\": \"integer\"", out);
+      print_bounds(key, out);
+      fputc('}', out);
+      break;
+    case '2':
+    case '3':
+      print_array(key, 'N', form[0] - '0', form[0] - '0', out);
+      break;
+    case '*':
+    case 'J':
+      print_array(key, form[0] == 'J' ? 'I' : 'N', 1, 0, out);
+      break;
+    case 'W':
+      fputs("{\"enum\": [", out);
+      print_words(key->words, out);
+      fputs("]}", out);
+      break;
+    case 'w':
+      fprintf(out, "{\"const\": \"%s\"}", key->words);
+      break;
+    case '=':
+      fprintf(out, "{\"const\": \"%.*s\"}", length - 1, form + 1);
+      break;
+    case '{':
+      fprintf(out, "{\"type\": \"object\", \"propertyNames\": {\"pattern\": \"%.*s\"}}", length - 2,
+              form + 1);
+      break;
+    default:
+      fprintf(out, "{\"type\": %s}", form[0] == 'S' ? "[\"string\", \"number\"]" : "\"array\"");
+  }
 }
 
-static void print_integer(const case_key *key, FILE *out) {
-  fputs("{\"type\": \"integer\"", out);
-  print_bounds(key, out);
-  fputc('}', out);
-}
-
-/* A list of numbers. most = 0: as many as one likes. */
-static void print_numbers(const case_key *key, int least, int most, FILE *out) {
+static void print_array(const case_key *key, char item, int least, int most, FILE *out) {
   fputs("{\"type\": \"array\", \"items\": ", out);
-  print_number(key, out);
+  print_form(key, &item, 1, out);
   fprintf(out, ", \"minItems\": %d", least);
   if (most > 0) fprintf(out, ", \"maxItems\": %d", most);
   fputc('}', out);
 }
 
-static void print_number_or_numbers(const case_key *key, int least, int most, FILE *out) {
-  print_number(key, out);
-  fputs(", ", out);
-  print_numbers(key, least, most, out);
-}
-
-static void print_integers(const case_key *key, FILE *out) {
-  fputs("{\"type\": \"array\", \"minItems\": 1, \"items\": ", out);
-  print_integer(key, out);
-  fputc('}', out);
-}
-
-/* A mapping whose keys are names of the user's choice. */
-static void print_mapping(const char *keys, FILE *out) {
-  fprintf(out, "{\"type\": \"object\", \"propertyNames\": {\"pattern\": \"%s\"}}", keys);
-}
-
-static void print_words_or(const case_key *key, FILE *out) {
-  fputs("{\"enum\": [", out);
-  print_words(key->words, out);
-  /* YAML 1.1 reads yes and no as true and false */
-  if (strcmp(key->words, "no yes") == 0) fputs(", true, false", out);
-  fputs("]}", out);
-}
-
-/* Forms of the types that hold several numbers, or mappings. */
-static void print_composite(const case_key *key, FILE *out) {
-  switch (key->type) {
-    case CASE_VECTOR:
-      print_numbers(key, 3, 3, out);
-      break;
-    case CASE_INTERVAL:
-      print_numbers(key, 2, 2, out);
-      break;
-    case CASE_PLACES:
-      print_numbers(key, 1, 0, out);
-      break;
-    case CASE_ORDERS:
-      print_integers(key, out);
-      break;
-    case CASE_FACTORS:
-      print_mapping("^[0-9]+$", out);
-      break;
-    case CASE_PROBES:
-    case CASE_GAUGES:
-    case CASE_GROUPS:
-      print_mapping("", out);
-      break;
-    default:
-      fputs("{\"type\": \"array\"}", out);
-      break;
-  }
-}
-
-/* What may stand in place of the first form, after a comma; nothing for most types. */
-static void print_alternative(const case_key *key, FILE *out) {
-  switch (key->type) {
-    case CASE_COUNT:
-      fputs(", {\"const\": \"all\"}", out);
-      if (key->words) fprintf(out, ", {\"const\": \"%s\"}", key->words);
-      break;
-    case CASE_AUTO:
-      fputs(", {\"const\": \"auto\"}", out);
-      break;
-    case CASE_ACCURACY:
-      fputs(", ", out);
-      print_number(key, out);
-      break;
-    case CASE_PRELOADS:
-      fputs(", ", out);
-      print_mapping("^(from|to|points)$", out);
-      break;
-    case CASE_POINTS:
-    case CASE_SAVED:
-      fputs(", ", out);
-      print_numbers(key, 1, 0, out);
-      break;
-    case CASE_DIAMETERS:
-      fputs(", ", out);
-      print_integers(key, out);
-      break;
-    case CASE_MISTUNING:
-      fputs(", ", out);
-      print_mapping("^(file|unit|mean|deviation|seed|samples)$", out);
-      break;
-    case CASE_DAMPING:
-      fputs(", ", out);
-      print_mapping("^(loss_factor|rayleigh)$", out);
-      break;
-    default:
-      break;
-  }
-}
-
 /* The forms that a value may take, separated by commas. */
 static void print_forms(const case_key *key, FILE *out) {
-  switch (key->type) {
-    case CASE_NUMBER:
-      print_number(key, out);
-      break;
-    case CASE_INTEGER:
-    case CASE_COUNT:
-    case CASE_AUTO:
-    case CASE_POINTS:
-      print_integer(key, out);
-      break;
-    case CASE_CHOICE:
-    case CASE_SWITCH:
-    case CASE_ACCURACY:
-    case CASE_SAVED:
-    case CASE_DIAMETERS:
-      print_words_or(key, out);
-      break;
-    case CASE_WORD:
-    case CASE_LABEL:
-    case CASE_FILE_NAME:
-      fputs("{\"type\": [\"string\", \"number\"]}", out);
-      break;
-    case CASE_TRIPLE:
-    case CASE_STIFFNESS:
-      print_number_or_numbers(key, 3, 3, out);
-      break;
-    case CASE_SWEEP:
-      print_number_or_numbers(key, 2, 2, out);
-      break;
-    case CASE_MISTUNING:
-      print_numbers(key, 1, 0, out);
-      break;
-    case CASE_PRELOADS:
-    case CASE_DAMPING:
-      print_number_or_numbers(key, 1, 0, out);
-      break;
-    default:
-      print_composite(key, out);
-      break;
+  const char *forms = case_types[key->type].forms;
+  for (const char *form = forms; *form;) {
+    const int n = (int)strcspn(form, " ");
+    if (form[0] != 'w' || key->words) {
+      if (form > forms) fputs(", ", out);
+      print_form(key, form, n, out);
+    }
+    form += n + (form[n] == ' ');
   }
-  print_alternative(key, out);
 }
 
 /* ---------------------------------------------------------------- blocks */
@@ -223,7 +136,8 @@ static void print_required(case_keys keys, const char *block, FILE *out) {
   bool first = true;
   for (int i = 0; i < keys.n; i++) {
     const char *rest = case_key_below(keys.key[i].path, block);
-    if (!rest || strpbrk(rest, ".[") || !keys.key[i].required || keys.key[i].when != CASE_ALWAYS)
+    if (!rest || strpbrk(rest, ".[") || !keys.key[i].required || keys.key[i].when != CASE_ALWAYS ||
+        keys.key[i].only != CASE_ALWAYS)
       continue;
     fprintf(out, "%s\"%s\"", first ? ", \"required\": [" : ", ", rest);
     first = false;

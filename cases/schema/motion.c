@@ -4,10 +4,12 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "cases/parse/key_listing.h"
 #include "cases/parse/key_table.h"
 #include "cases/parse/reader.h"
 #include "cases/parse/value.h"
 #include "cases/parse/value_context.h"
+#include "cases/schema/interfaces.h"
 
 static const case_key signal_rows[] = {
     {"motion.v", CASE_SIGNAL, "m", .required = true, .stages = CASE_MHB,
@@ -31,6 +33,11 @@ case_keys case_motion_keys(case_key row[CASE_MAX_KEYS]) {
     if (row[i].type == CASE_ACCURACY) row[i].fallback = "1e-13";
   for (int i = 0; i < 3; i++) row[n++] = signal_rows[i];
   return (case_keys){n, row};
+}
+
+void case_print_motion_keys(FILE *out) {
+  case_key row[CASE_MAX_KEYS];
+  case_print_key_table(case_motion_keys(row), out);
 }
 
 /* m; above any motion of a blade, and far from overflow */
@@ -62,14 +69,17 @@ static int longest(const case_reader *r) {
 }
 
 /* False if memory is short. */
-static bool read_document(case_issues *issues, case_motion *out) {
+static bool read_document(case_issues *issues, const case_overrides *overrides, case_motion *out) {
   case_node *root = case_document_parse(issues);
   if (!root && issues->n > 0) return true;
+  case_overrides_apply(issues, overrides, &root);
   case_key    row[CASE_MAX_KEYS];
   case_file   file   = {.folder = "."};
   case_reader reader = {.issues = issues, .keys = case_motion_keys(row), .file = &file};
   case_reader_walk(&reader, root);
   if (root && root->kind == CASE_MAPPING) case_reader_require(&reader, CASE_MHB);
+  file.mhb.interface[0] = file.interfaces[0].mhb;
+  case_lead(&file.mhb, 0);
   if (file.mhb.n_preloads > 1 && case_reader_good(&reader, "contact.n0"))
     case_reader_issue(&reader, "contact.n0", "is a list; a prescribed motion takes one number");
   int m            = longest(&reader);
@@ -82,13 +92,15 @@ static bool read_document(case_issues *issues, case_motion *out) {
   return out->motion != NULL;
 }
 
-shb_status case_motion_read(const char *path, FILE *errors, case_motion *out) {
-  *out          = (case_motion){0};
-  char  *text   = NULL;
-  size_t length = 0;
+shb_status case_motion_read(const char *path, const case_overrides *overrides, FILE *errors,
+                            case_motion *out) {
+  static const case_overrides none = {0};
+  *out                             = (case_motion){0};
+  char  *text                      = NULL;
+  size_t length                    = 0;
   SHB_TRY(case_text_read(path, &text, &length));
   case_issues issues = case_issues_start(path, text, length);
-  bool        memory = read_document(&issues, out);
+  bool        memory = read_document(&issues, overrides ? overrides : &none, out);
   if (!memory) case_issues_no_memory(&issues);
   shb_status status = case_issues_finish(&issues, errors);
   free(text);

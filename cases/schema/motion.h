@@ -7,6 +7,7 @@
 
 #include "cases/parse/keys.h"
 #include "cases/parse/reader.h"
+#include "cases/schema/overrides.h"
 #include "mesh/base/status.h"
 #include "mhb/problem/settings.h"
 
@@ -22,8 +23,13 @@ typedef struct {
 /* The keys of a motion file: those of contact, and the three signals. */
 case_keys case_motion_keys(case_key row[CASE_MAX_KEYS]);
 
-/* Read and check a motion file. Errors as in case_read. */
-shb_status case_motion_read(const char *path, FILE *errors, case_motion *out);
+/* They as text, for `shroudhb keys motion`. */
+void case_print_motion_keys(FILE *out);
+
+/* Read and check a motion file. Errors as in case_read.
+ *   overrides  in  or NULL; only their texts count */
+shb_status case_motion_read(const char *path, const case_overrides *overrides, FILE *errors,
+                            case_motion *out);
 void       case_motion_free(case_motion *motion);
 
 #endif

@@ -33,8 +33,8 @@ static mesh_named_rule take(rules *g, const char *name) {
 
 static void assign_volumes(rules *g, mesh_rules *to) {
   const case_file *file = g->reader->file;
-  to->n_volumes         = file->n_materials;
-  for (int i = 0; i < file->n_materials; i++) {
+  to->n_volumes         = file->has_materials ? file->n_materials : 0;
+  for (int i = 0; i < to->n_volumes; i++) {
     mesh_named_rule *volume = &to->volume[i];
     *volume                 = take(g, file->materials[i].group);
     if (volume->rule.kind == MESH_RULE_PLANE || volume->rule.kind == MESH_RULE_RADIUS)
@@ -66,7 +66,7 @@ void case_assign_groups(case_reader *reader) {
   const case_file *file = reader->file;
   for (int i = 0; i < file->n_interfaces && !file->modal_file; i++) {
     assign_faces(&g, file->interfaces[i].right, to);
-    if (!file->mhb.to_ground) assign_faces(&g, file->interfaces[i].left, to);
+    if (!file->interfaces[i].mhb.to_ground) assign_faces(&g, file->interfaces[i].left, to);
   }
   bool known = is_good(reader, "contact.interfaces") && is_good(reader, "materials") &&
                is_good(reader, "excitation.loads");

@@ -79,9 +79,25 @@ static case_node *into_list(case_issues *issues, case_node *node, const char *te
   return &node->child[index];
 }
 
+/* Length of the name at which a path goes on. It is the longest entry that is there. In a block
+ * whose names are paths of another file it is the rest, else what the next dot ends. */
+static size_t name_length(const case_keys keys, const case_node *node, const char *text,
+                          const char *at, const char *stop) {
+  size_t longest = 0;
+  char   block[CASE_PATH];
+  for (int i = 0; node->kind == CASE_MAPPING && i < node->n; i++) {
+    const size_t n = strlen(node->child[i].key);
+    if (n > longest && strncmp(at, node->child[i].key, n) == 0 && strchr(".[=", at[n])) longest = n;
+  }
+  case_path(block, "%.*s", at > text ? (int)(at - text) - 1 : 0, text);
+  const case_key *row = case_key_find(keys, block);
+  if (longest > 0) return longest;
+  return row && row->type == CASE_KEYS ? (size_t)(stop - at) : strcspn(at, ".[=");
+}
+
 /* The node of a path, added if it is missing. NULL after an issue. */
-static case_node *find(case_issues *issues, case_node *node, const char *text, const char *stop,
-                       int line) {
+static case_node *find(case_issues *issues, const case_keys keys, case_node *node, const char *text,
+                       const char *stop, int line) {
   const char *at = text;
   for (bool first = true; node && at < stop; first = false) {
     if (*at == '[' && !first) {
@@ -94,7 +110,7 @@ static case_node *find(case_issues *issues, case_node *node, const char *text, c
       return NULL;
     }
     if (!first) at++;
-    size_t length = strcspn(at, ".[=");
+    size_t length = name_length(keys, node, text, at, stop);
     node          = into_mapping(issues, node, text, at, length, line);
     at += length;
   }
@@ -111,7 +127,8 @@ static void replace(case_node *node, case_node *value, int line, int column) {
   mark(node, line, column);
 }
 
-static void apply(case_issues *issues, const char *text, int line, case_node *root) {
+static void apply(case_issues *issues, const case_keys keys, const char *text, int line,
+                  case_node *root) {
   const char *equals = strchr(text, '=');
   if (!equals || equals == text) {
     case_issue_add(issues, line, 1, NULL, "expected KEY=VALUE, such as contact.mu=0.4");
@@ -126,7 +143,7 @@ static void apply(case_issues *issues, const char *text, int line, case_node *ro
     case_issue_add(issues, line, place, NULL, "%s",
                    own.n > 0 ? own.issue[0].text : "the value is empty");
   } else {
-    case_node *node = find(issues, root, text, equals, line);
+    case_node *node = find(issues, keys, root, text, equals, line);
     if (node) replace(node, value, line, place);
   }
   case_issues_free(&own);
@@ -138,7 +155,7 @@ void case_overrides_apply(case_issues *issues, const case_overrides *o, case_nod
   if (o->n > 0 && !*root) *root = calloc(1, sizeof **root);
   if (o->n > 0 && !*root) case_issues_no_memory(issues);
   if (!*root) return;
-  for (int i = 0; i < o->n; i++) apply(issues, o->text[i], -1 - i, *root);
+  for (int i = 0; i < o->n; i++) apply(issues, o->keys, o->text[i], -1 - i, *root);
 }
 
 char *case_overrides_text(const case_overrides *o, const char *text) {

@@ -6,6 +6,7 @@
 #define CASES_SCHEMA_OVERRIDES_H
 
 #include "cases/parse/diagnostics.h"
+#include "cases/parse/keys.h"
 #include "cases/parse/yaml.h"
 
 /* Texts "PATH=VALUE". PATH is the path of a key, such as mesh.blade.sections[4].thickness or
@@ -15,6 +16,7 @@ typedef struct {
   const char *const *text;     /* [n] */
   const char        *into;     /* folder of the output files; NULL: that of the case file */
   const char        *document; /* text of the case file, read before; NULL: it is read */
+  case_keys          keys;     /* rows CASE_KEYS are blocks whose names may hold dots; may be {0} */
 } case_overrides;
 
 /* Apply the overrides in their order. A missing key or block is added; an entry of a list must be

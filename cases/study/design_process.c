@@ -20,7 +20,7 @@ extern char **environ;
 
 static const size_t MOST_BYTES = 1 << 24;
 
-enum { N_TEXTS = 4 };
+enum { N_TEXTS = 6 };
 
 static bool put_all(int fd, const void *data, size_t size) {
   for (const char *at = data; size > 0;) {
@@ -274,8 +274,10 @@ shb_status design_pool_manage(void *context, const crew_work *w) {
 
 shb_status design_process_texts(char **texts, study_texts *out) {
   size_t       size;
-  const char **to[N_TEXTS] = {&out->study, &out->base, &out->columns, &out->inputs}, *end;
-  *texts                   = NULL;
+  const char **to[N_TEXTS] = {&out->study,  &out->base, &out->columns,
+                              &out->inputs, &out->sets, &out->into},
+             *end;
+  *texts    = NULL;
   bool good = get_all(STDIN_FILENO, &size, sizeof size) && size <= N_TEXTS * MOST_BYTES;
   if (good) *texts = malloc(size + 1);
   good     = good && *texts && get_all(STDIN_FILENO, *texts, size);

@@ -147,7 +147,7 @@ static void common_design(const study_spec *spec, const double *value, double *c
     if (key->is_ratio && keeps_modes(keys->key[key->nominal].path)) common[k] = 1;
     if (key->is_ratio || !keeps_modes(key->path)) continue;
     common[k] = strcmp(key->path, "modal.damping") == 0 ? spec->base.damping.ratio
-                                                        : spec->base.load.pressure;
+                                                        : spec->base.loads[0].load.pressure;
   }
 }
 
@@ -266,7 +266,7 @@ static shb_status load(modal_store *s, const double *value, const case_file *fil
   char      *path   = NULL;
   shb_status status = SHB_OK;
   clear(s, at);
-  SHB_CHECK(file->points >= 0, SHB_ERR_INPUT,
+  SHB_CHECK(!case_points_are_auto(file), SHB_ERR_INPUT,
             "contact.points: auto chooses the points of one case; a study compares designs with "
             "the same ones: give their number, or all");
   if (file->modal_file) path = case_modal_path(file);

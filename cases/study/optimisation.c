@@ -284,7 +284,7 @@ shb_status optimisation_finish(optimisation *o) {
   for (int i = 0; i < o->n; i++) out->history[i] = o->history[i].design;
   out->best = best_of(o, -1);
   optimiser_name(s->algorithm, method, sizeof method);
-  snprintf(out->method, STUDY_NAME, "%s, %d starts of %d evaluations, seed %lu", method, s->starts,
+  snprintf(out->method, STUDY_NAME, "%s, %d starts of %d evaluations, seed %d", method, s->starts,
            s->evaluations / s->starts, s->seed);
   snprintf(out->objective, STUDY_NAME, "%s", o->spec->output[s->objective].name);
   for (int k = 0; out->best >= 0 && k < o->spec->keys.n; k++) {

@@ -103,7 +103,8 @@ static void *run(void *context) {
     line_minimum(low, high, SETTLED, value_and_slope_at, s);
   } else {
     for (int i = 0; i < o->n; i++) x[i] = s->point[i];
-    nlopt_srand(o->settings.seed * 1000 + (unsigned long)s->index); /* a generator a thread */
+    nlopt_srand((unsigned long)o->settings.seed * 1000 +
+                (unsigned long)s->index); /* a generator a thread */
     search_by_values(s, x);
   }
   pthread_mutex_lock(&o->lock);

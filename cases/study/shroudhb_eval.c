@@ -13,10 +13,12 @@
 #include "cases/study/dakota_files.h"
 #include "cases/study/modal_store.h"
 #include "mesh/base/progress.h"
+#include "mesh/base/publish.h"
 #include "postproc/draw/text_buffer.h"
 
 static const char usage[] =
-    "usage: shroudhb-eval CASE.yaml --params IN --results OUT\n"
+    "usage: shroudhb-eval [--set KEY=NUMBER]... [--into FOLDER] CASE.yaml --params IN --results "
+    "OUT\n"
     "\n"
     "Computes one design of a case for another program's driver. IN and OUT are the parameters "
     "and\n"
@@ -25,11 +27,15 @@ static const char usage[] =
     "of the case (contact.n0, or contact__n0), responses by outputs of studies (peak, frequency,\n"
     "modes__1__frequency). The active set is heeded: 1 value, 2 gradient of the peak.\n"
     "If the design has no result, OUT begins with FAIL.\n"
+    "--set gives a number of the case another value; modal files go to FOLDER, else beside the "
+    "case.\n"
     "\n"
     "Exit codes: 0 done, 2 bad input, 3 no result, 4 input/output.\n";
 
 typedef struct {
-  const char       *case_path, *params, *results;
+  const char       *case_path, *params, *results, *into;
+  int               n_set;
+  const char       *set[STUDY_MAX_KEYS];
   dakota_parameters p;
   study_spec        spec;
   char              text_path[PATH_MAX]; /* the design as a study, for the messages about it */
@@ -44,6 +50,11 @@ static bool parse_words(int argc, char **argv, evaluation *e) {
       e->params = argv[++i];
     else if (strcmp(argv[i], "--results") == 0 && more)
       e->results = argv[++i];
+    else if (strcmp(argv[i], "--into") == 0 && more)
+      e->into = argv[++i];
+    else if (strcmp(argv[i], "--set") == 0 && more && strchr(argv[i + 1], '=') &&
+             e->n_set < STUDY_MAX_KEYS)
+      e->set[e->n_set++] = argv[++i];
     else if (argv[i][0] != '-' && !e->case_path)
       e->case_path = argv[i];
     else
@@ -61,6 +72,10 @@ static shb_status write_study(evaluation *e) {
   for (int i = 0; i < e->p.n_variables; i++) {
     dakota_path(e->p.variable[i], path);
     post_put(&text, "  %s: [%.17g]\n", path, e->p.value[i]);
+  }
+  for (int i = 0; i < e->n_set; i++) {
+    const int n = (int)strcspn(e->set[i], "=");
+    post_put(&text, "  %.*s: [%s]\n", n, e->set[i], e->set[i] + n + 1);
   }
   post_put(&text, "outputs:\n");
   for (int i = 0; i < e->p.n_responses; i++) {
@@ -131,7 +146,7 @@ static shb_status compute(evaluation *e, design_study *one, study_design **desig
   return status;
 }
 
-/* Modal files stay beside the case, for all evaluations. */
+/* Modal files stay beside the case, or in the folder of --into, for all evaluations. */
 static shb_status beside_case(evaluation *e) {
   char  folder[PATH_MAX], leaf[PATH_MAX];
   char *name = NULL;
@@ -141,9 +156,9 @@ static shb_status beside_case(evaluation *e) {
   free(e->spec.name);
   name           = basename(leaf);
   e->spec.name   = strndup(name, strcspn(name, "."));
-  e->spec.folder = strdup(dirname(folder));
+  e->spec.folder = strdup(e->into ? e->into : dirname(folder));
   SHB_CHECK(e->spec.name && e->spec.folder, SHB_ERR_IO, "out of memory");
-  return SHB_OK;
+  return e->into ? shb_make_folder(e->into) : SHB_OK;
 }
 
 static shb_status evaluate(evaluation *e) {
@@ -173,7 +188,10 @@ int main(int argc, char **argv) {
     return SHB_OK;
   }
   if (!parse_words(argc, argv, &e)) {
-    fputs("shroudhb: error: expected CASE.yaml --params IN --results OUT\n", stderr);
+    fputs(
+        "shroudhb: error: expected [--set KEY=NUMBER] [--into FOLDER] CASE.yaml --params IN "
+        "--results OUT\n",
+        stderr);
     return SHB_ERR_INPUT;
   }
   /* A crash leaves this behind, and the driver learns of it. */

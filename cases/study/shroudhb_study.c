@@ -23,7 +23,8 @@
 #include "postproc/summary/summary.h"
 
 static const char usage[] =
-    "usage: shroudhb-study [--quiet] [--verbose] [--force] [--json] STUDY.yaml\n"
+    "usage: shroudhb-study [--quiet] [--verbose] [--force] [--json] [--set KEY=VALUE]...\n"
+    "                      [--into FOLDER] STUDY.yaml\n"
     "       mpiexec -n N shroudhb-study STUDY.yaml\n"
     "       shroudhb-study --design=I STUDY.yaml\n"
     "       shroudhb-study --check [--json] STUDY.yaml\n"
@@ -36,6 +37,9 @@ static const char usage[] =
     "  --design=I  run design I alone, all stages, with a report of its own\n"
     "  --check     check the study and all its designs, run nothing\n"
     "  --force     compute all designs anew\n"
+    "  --set KEY=VALUE  instead of what STUDY.yaml says, such as --set samples=64 or\n"
+    "              --set vary.contact.mu=[0.2,0.3]; any number (`shroudhb keys study`)\n"
+    "  --into FOLDER  where the output files go; default: beside STUDY.yaml\n"
     "\n"
     "Exit codes: 0 done, 2 bad input, 3 some designs failed or did not converge, 4 input/output,\n"
     "130 interrupted (results so far kept).\n";
@@ -137,9 +141,15 @@ static shb_status check_outputs(const study_spec *spec) {
   return SHB_OK;
 }
 
+static shb_status read_spec(const command_options *o, bool check, study_spec *spec) {
+  const case_overrides overrides = {.n = o->n_set, .text = o->set, .into = o->into};
+  return study_spec_read_with(o->path, &overrides, check, stderr, spec);
+}
+
 /* Read and check on the manager. */
 static shb_status read_study(const command_options *options, study_spec *spec) {
-  SHB_TRY(study_spec_read(options->path, true, stderr, spec));
+  SHB_TRY(read_spec(options, true, spec));
+  if (options->into) SHB_TRY(shb_make_folder(options->into));
   return check_outputs(spec);
 }
 
@@ -151,7 +161,8 @@ static shb_status pack_texts(const study_spec *spec, char **texts, size_t *size)
   fprintf(out, "%s%c%s%c", spec->text, 0, spec->base.text, 0);
   for (int k = 0; spec->plan.kind == STUDY_TABLE && k < spec->keys.n; k++)
     if (!spec->keys.key[k].is_uncertain) fprintf(out, "%s\n", spec->keys.key[k].path);
-  fprintf(out, "%c%s%c", 0, spec->inputs, 0);
+  fprintf(out, "%c%s%c%s%c%s%c", 0, spec->inputs, 0, spec->sets, 0, spec->into ? spec->into : "",
+          0);
   SHB_CHECK(fclose(out) == 0 && *texts, SHB_ERR_IO, "out of memory");
   return SHB_OK;
 }
@@ -260,7 +271,8 @@ static bool is_launched(void) {
 /* --design=I and --check: without MPI. */
 static int work_alone(const command_options *options, int design) {
   study_spec spec;
-  shb_status status = study_spec_read(options->path, design == 0, stderr, &spec);
+  shb_status status = read_spec(options, design == 0, &spec);
+  if (status == SHB_OK && options->into && design > 0) status = shb_make_folder(options->into);
   if (status == SHB_OK)
     status = design > 0 ? own_run(&spec, design, options->quiet) : check(&spec, options);
   study_spec_free(&spec);

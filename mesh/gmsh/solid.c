@@ -253,8 +253,6 @@ shb_status mesh_solid_make_periodic(mesh_solid *solid, mesh_fe *mesh, bool *agai
   *again                    = false;
   if (source->blades == 0) return SHB_OK;
   SHB_TRY(make_periodic(solid, mesh, MESH_CYCLIC_RIGHT, MESH_CYCLIC_LEFT, again));
-  if (source->n_contacts == 0)
-    return make_periodic(solid, mesh, MESH_CONTACT_RIGHT, MESH_CONTACT_LEFT, again);
   for (int i = 0; i < source->n_contacts; i++) {
     int right = mesh_fe_set_named(mesh, source->contact[i].right);
     int left  = mesh_fe_set_named(mesh, source->contact[i].left);

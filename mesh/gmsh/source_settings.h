@@ -15,9 +15,9 @@ typedef struct {
   mesh_axis   axis;
   int         blades; /* periodic contact faces of a solid; 0: contact to ground */
   mesh_rules  rules;
-  int         n_contacts; /* number of contact interfaces; 0: contact_right and contact_left */
+  int         n_contacts; /* number of contact interfaces */
   struct {
-    char right[MESH_WORD], left[MESH_WORD];
+    char right[MESH_WORD], left[MESH_WORD]; /* groups of its faces */
   } contact[MESH_MAX_MORE / 2];
 } mesh_source;
 

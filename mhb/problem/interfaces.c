@@ -31,7 +31,7 @@ static double preload_of(const mhb_operating_point *c, const mhb_settings *s,
 
 mhb_operating_point mhb_interface_operating_point(const mhb_operating_point *c,
                                                   const mhb_settings *s, int interface) {
-  if (s->n_interfaces < 2 || interface == s->lead) return *c;
+  if (interface == s->lead) return *c;
   const mhb_interface *own   = &s->interface[interface];
   mhb_parameter        moves = s->together ? s->parameter : MHB_IN_FREQUENCY;
   mhb_operating_point  out   = *c;
@@ -45,7 +45,7 @@ mhb_operating_point mhb_interface_operating_point(const mhb_operating_point *c,
 
 double mhb_interface_rate(const mhb_operating_point *c, const mhb_settings *s, int interface,
                           mhb_parameter parameter) {
-  if (s->n_interfaces < 2 || interface == s->lead) return 1;
+  if (interface == s->lead) return 1;
   if (parameter == MHB_IN_N0 && c->preloads_tied) return 1;
   if (parameter != s->parameter || !s->together) return 0;
   const mhb_interface *own = &s->interface[interface];

@@ -47,9 +47,10 @@ enum {
   MHB_MAX_SAVED         = 64
 };
 
-/* One of several contact interfaces; totals over its pairs. */
+/* A contact interface; totals over its pairs. */
 typedef struct {
   char   name[MHB_NAME];
+  bool   to_ground;
   bool   has_psi, has_phi;
   double psi, phi, mu, kv, ku[3];
   int    n_preloads; /* as many as those of the leading one, or 1 */

@@ -56,17 +56,18 @@ static void copy_patches(const modal_patches *patches, modal_model *model) {
 static shb_status create_contact(const mesh_fe *mesh, const modal_settings *settings,
                                  const modal_contact *contact, modal_patches *out) {
   int        right = mesh_fe_set_named(mesh, contact->right);
-  int        left  = settings->to_ground ? -1 : mesh_fe_set_named(mesh, contact->left);
-  const bool exist = right >= 0 && (left >= 0 || settings->to_ground);
+  int        left  = contact->to_ground ? -1 : mesh_fe_set_named(mesh, contact->left);
+  const bool exist = right >= 0 && (left >= 0 || contact->to_ground);
   char       found[MESH_FOUND + 40];
   SHB_CHECK(exist, SHB_ERR_INPUT, "contact interface %s: the mesh has no group \"%s\"; %s",
             contact->name, right < 0 ? contact->right : contact->left, mesh_fe_found(mesh, found));
   mesh_fe    view   = mesh_fe_facing(mesh, right, left);
   shb_status status = modal_patches_create(&view, settings->axis, settings->blades,
-                                           settings->to_ground, contact->points, out);
+                                           contact->to_ground, contact->points, out);
   if (status == SHB_OK) status = modal_patches_check_angles(out, contact->psi, contact->phi);
   if (status == SHB_OK) return SHB_OK;
   modal_patches_free(out);
+  if (!contact->name[0]) return status;
   return shb_fail(status, __FILE__, __LINE__, "contact interface %s: %s", contact->name,
                   shb_message());
 }
@@ -83,11 +84,6 @@ static shb_status create_interfaces(const mesh_fe *mesh, const modal_settings *s
   modal_patches part[MODAL_MAX_INTERFACES] = {{0}};
   shb_status    status                     = SHB_OK;
   if (is_free(mesh, settings)) return SHB_OK;
-  if (n == 0) {
-    SHB_TRY(modal_patches_create(mesh, settings->axis, settings->blades, settings->to_ground,
-                                 settings->points, out));
-    return modal_patches_check_angles(out, settings->psi, settings->phi);
-  }
   for (int i = 0; i < n && status == SHB_OK; i++)
     status = create_contact(mesh, settings, &settings->contact[i], &part[i]);
   if (status == SHB_OK) modal_patches_join(n, part, out);
@@ -122,11 +118,8 @@ static shb_status prepare(const mesh_fe *mesh, const modal_settings *settings,
   to->damping  = settings->damping;
   modal_patches_dofs(patches, &to->contact);
   SHB_TRY(probe_dofs(mesh, settings, &to->probe));
-  if (settings->unloaded) return modal_load_create(mesh, 0, NULL, NULL, &to->load);
   const double *fallback = settings->n_probes > 0 ? settings->probe[0].at : NULL;
-  return modal_load_create(mesh, settings->n_loads ? settings->n_loads : 1,
-                           settings->n_loads ? settings->loads : &settings->load, fallback,
-                           &to->load);
+  return modal_load_create(mesh, settings->n_loads, settings->loads, fallback, &to->load);
 }
 
 /* Recompute the eigenvalues as Rayleigh quotients from the strains, on rank 0. The solver's
@@ -292,9 +285,8 @@ void modal_label(const modal_settings *settings, const modal_patches *patches, m
 
 shb_status modal_body_create(const mesh_fe *mesh, const modal_settings *settings,
                              modal_body **out) {
-  modal_body *b  = shb_alloc_zeroed(1, sizeof *b);
-  *out           = b;
-  b->material[0] = settings->material;
+  modal_body *b = shb_alloc_zeroed(1, sizeof *b);
+  *out          = b;
   for (int i = 0; i < settings->n_regions; i++) b->material[i] = settings->region[i].material;
   b->body = (fem_body){
       mesh, b->material, &b->element, {settings->axis, settings->speed}, settings->pressure};

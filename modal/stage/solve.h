@@ -20,22 +20,23 @@ typedef struct {
   double      at[3]; /* m, mesh axes */
 } modal_probe;
 
-/* One of several contact interfaces, given by the groups of its faces. */
+/* A contact interface, given by the groups of its faces. */
 typedef struct {
-  const char   *name, *right, *left; /* left: NULL if to ground */
-  int           points;              /* patches; 0: one for each node */
-  const double *psi, *phi;           /* rad, checked against the faces; NULL: not given */
+  const char   *name; /* "": the only one */
+  const char   *right, *left;
+  bool          to_ground; /* the left face does not matter */
+  int           points;    /* patches; 0: one for each node */
+  const double *psi, *phi; /* rad, checked against the faces; NULL: not given */
 } modal_contact;
 
 /* A volume of the mesh and its material. */
 typedef struct {
-  const char  *name;
+  const char  *name; /* NULL: the whole mesh */
   fem_material material;
 } modal_region;
 
 typedef struct {
-  fem_material         material;
-  int                  n_regions; /* 0: material everywhere */
+  int                  n_regions; /* 1 at least */
   const modal_region  *region;
   mesh_axis            axis;
   int                  blades;
@@ -50,21 +51,16 @@ typedef struct {
   modal_check_kind     check;            /* that no mode is missing */
   bool                 spares_stiffness; /* the system of a blade at rest has no K afterwards */
   bool                 full_integration; /* stiffness with FEM_FULL, not FEM_STANDARD */
-  fem_load             load;
-  bool                 unloaded; /* no load at all */
-  int                  n_loads;  /* 0: load only */
-  const fem_load      *loads;    /* loads that act together */
-  int                  n_groups; /* further face groups that loads name */
+  int                  n_loads;          /* 0: no load at all */
+  const fem_load      *loads;            /* loads that act together */
+  int                  n_groups;         /* further face groups that loads name */
   const char          *group[MESH_MAX_MORE];
   int                  n_probes;
   const modal_probe   *probe;
   bool                 may_be_free; /* without the groups of contact there is no contact */
-  bool                 to_ground;
-  int                  points;      /* contact patches; 0: one for each node */
-  const double        *psi, *phi;   /* rad, checked against the faces; NULL: not given */
   int                  n_diameters; /* of a sector with a disc, besides 0; -1: all to N/2 */
   const int           *diameter;    /* [n_diameters] from 0 */
-  int                  n_contacts;  /* 0: one, of contact_right and contact_left */
+  int                  n_contacts;  /* 1 at least */
   const modal_contact *contact;
 } modal_settings;
 

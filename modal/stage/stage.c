@@ -118,27 +118,31 @@ static shb_status pair_sides(const modal_settings *settings, mesh_fe *mesh,
   return SHB_OK;
 }
 
+/* Makes the right face of an interface the right one. The usual groups name the sides of a blade,
+ * which may meet the ground as well. */
+static shb_status orient(const modal_settings *settings, const modal_contact *contact,
+                         mesh_fe *mesh) {
+  const int right = mesh_fe_set_named(mesh, contact->right),
+            left  = mesh_fe_set_named(mesh, contact->left);
+  const bool free = settings->may_be_free && settings->blades < 2;
+  if (free || (contact->to_ground && contact->name[0]) || right < 0 || left < 0 ||
+      mesh->set[right].n == 0 || mesh->set[left].n == 0)
+    return SHB_OK;
+  return mesh_fe_orient_groups(mesh, settings->axis, right, left);
+}
+
 static shb_status read_mesh(const char *path, const modal_settings *settings,
                             shb_progress *progress, mesh_fe *mesh) {
-  mesh_names names = {.n_more = settings->n_groups, .n_volumes = settings->n_regions};
+  mesh_names names = {.n_more = settings->n_groups};
   for (int i = 0; i < settings->n_groups; i++)
     names.more[i].label = names.more[i].name = settings->group[i];
-  for (int i = 0; i < settings->n_regions; i++)
+  for (int i = 0; i < settings->n_regions && settings->region[i].name; i++, names.n_volumes++)
     names.volume[i].label = names.volume[i].name = settings->region[i].name;
   SHB_TRY(mesh_fe_read(path, &names, mesh));
   SHB_TRY(mesh_fe_check_groups(mesh, path));
-  for (int i = 0; i < settings->n_contacts && !settings->to_ground; i++) {
-    int right = mesh_fe_set_named(mesh, settings->contact[i].right);
-    int left  = mesh_fe_set_named(mesh, settings->contact[i].left);
-    if (right < 0 || left < 0 || !mesh->set[right].n || !mesh->set[left].n) continue;
-    SHB_TRY(mesh_fe_orient_groups(mesh, settings->axis, right, left));
-  }
-  SHB_TRY(pair_sides(settings, mesh, progress));
-  bool free = settings->may_be_free && settings->blades < 2;
-  if (free || settings->n_contacts || mesh->set[MESH_CONTACT_RIGHT].n == 0 ||
-      mesh->set[MESH_CONTACT_LEFT].n == 0)
-    return SHB_OK;
-  return mesh_fe_orient(mesh, settings->axis);
+  for (int i = 0; i < settings->n_contacts; i++)
+    SHB_TRY(orient(settings, &settings->contact[i], mesh));
+  return pair_sides(settings, mesh, progress);
 }
 
 /* What the modes left out would change with Coriolis terms: docs/theory/coriolis.md. */

@@ -6,6 +6,9 @@ shb_test(cases/schema UNIT case faults stage_settings motion nodal_diameters LIB
 shb_python_test(cases.schema.key_schema UNIT cases/schema/test_key_schema.py
   $<TARGET_FILE:shroudhb> ${CASES})
 
+shb_test(cases/front UNIT pinned LIBRARIES shb_cases_front
+  DEFINITIONS TESTS_SOURCE="${CMAKE_CURRENT_SOURCE_DIR}")
+
 shb_test(cases/contact UNIT hysteresis_picture LIBRARIES shb_cases_contact)
 shb_test(cases/commands UNIT up_to_date modal_changes balance_run INTEGRATION contact_points
   LIBRARIES shb_cases_commands tests_models)
@@ -35,7 +38,7 @@ shb_test(cases/plan UNIT sampling statistics sobol_indices design_statistics
   LIBRARIES shb_cases_plan PkgConfig::GSL m)
 shb_test(cases/peaks INTEGRATION design_run LIBRARIES shb_cases_peaks tests_models)
 shb_test(cases/designs UNIT design_table digest output_names refusals study_keys study_optimise
-  study_plan study_schema study_spec uncertain_keys LIBRARIES shb_cases_designs)
+  study_plan study_schema study_spec study_table uncertain_keys LIBRARIES shb_cases_designs)
 shb_test(cases/study UNIT line_minimum optimiser optimisation dakota_files design_message
   nearest_design crew study_summary study_run LIBRARIES shb_cases_study tests_studies MPI::MPI_C
   SOURCES ../cases/study/crew.c ../cases/study/study_run.c ../cases/study/study_summary.c)

@@ -8,7 +8,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size) {
   case_motion motion;
   if (size > FUZZ_MOST) return 0;
   const char *path   = fuzz_text("motion.yaml", data, size);
-  shb_status  status = case_motion_read(path, fuzz_messages(), &motion);
+  shb_status  status = case_motion_read(path, NULL, fuzz_messages(), &motion);
   fuzz_messages_end(status != SHB_OK);
   if (status == SHB_OK)
     for (int i = 0; i < 3 * (motion.n_harmonics + 1); i++)

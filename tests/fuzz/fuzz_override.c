@@ -30,7 +30,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size) {
   shb_status     status =
       case_read_with(path, &overrides, CASE_MODAL | CASE_MHB, fuzz_messages(), &file);
   fuzz_messages_end(status != SHB_OK);
-  if (status == SHB_OK) check_load(&file.load);
+  if (status == SHB_OK) check_load(&file.loads[0].load);
   case_free(&file);
   free(text);
   return 0;

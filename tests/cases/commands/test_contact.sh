@@ -56,6 +56,16 @@ run 0 --contact --svg again.svg motion.yaml
 cmp -s loops.svg again.svg || fail 'the same motion gives another picture'
 ls | grep -q tmp && fail 'a temporary file is left'
 
+# a key from the command line is as one in the file, and the picture goes where it is told
+sed 's/mu: 0.4/mu: 0.2/' motion.yaml >other.yaml
+run 0 --contact other.yaml
+cp out other
+run 0 --contact --set contact.mu=0.2 --into there motion.yaml --svg loops.svg
+cmp -s out other || fail '--set contact.mu=0.2 is not as in the file'
+[ -s there/loops.svg ] || fail 'the picture is not in the folder of --into'
+run 2 --contact --set contact.mue=0.2 motion.yaml
+grep -qF "contact.mue: unknown key; did you mean 'mu'?" err || fail 'a wrong --set is not told'
+
 # the picture is XML with the dissipation in it
 if [ -n "$python" ]; then
   "$python" - <<'END' || fail 'the picture is not what it should be'

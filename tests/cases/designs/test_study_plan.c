@@ -153,9 +153,9 @@ static void faults_of_a_plan_are_told(void **state) {
   (void)state;
   static const char vary[] = "contact.n0: {from: 10 N, to: 26 N}";
   drop(make("plan: random", vary, NULL, 0, "expected grid"));
-  drop(make("plan: {sobol: 0}", vary, NULL, 0, "from 1 to 100000"));
+  drop(make("plan: {sobol: 0}", vary, NULL, 0, "plan.sobol: is 0, must be 1 to 100000"));
   drop(make("plan: {seed: 3}", vary, NULL, 0, "expected one of"));
-  drop(make("plan: {sobol: 8, seed: -1}", vary, NULL, 0, "whole number from 0"));
+  drop(make("plan: {sobol: 8, seed: -1}", vary, NULL, 0, "plan.seed: is -1, must be 0 to 1e+09"));
   drop(make("plan: grid", vary, NULL, 0, "number of points"));
 }
 

@@ -33,8 +33,8 @@ static void rows_are_sound(void **state) {
     assert_true(value == 1);
     /* the key's block stays together */
     bool worded = key->type == CASE_CHOICE || key->type == CASE_SWITCH ||
-                  key->type == CASE_ACCURACY || key->type == CASE_SAVED ||
-                  key->type == CASE_DIAMETERS;
+                  key->type == CASE_ACCURACY || key->type == CASE_WORD_OR_NUMBERS ||
+                  key->type == CASE_WORD_OR_INTEGERS;
     if (key->type != CASE_COUNT) /* may have a word besides all */
       assert_true(worded == (key->words != NULL));
   }

@@ -186,9 +186,10 @@ static void faults_of_loads(void **state) {
        1},
       {"pressure: 210 Pa", "pressure: 210 Pa, traction: [1, 0, 0]",
        "9:36: error: excitation.loads[0].traction: give only one of", 1},
-      {"-90 Pa", "0 Pa", "10:7: error: excitation.loads[1]: is 0; nothing would move\n", 1},
+      {"-90 Pa", "0 Pa", "10:18: error: excitation.loads[1].pressure: is 0; nothing would move\n",
+       1},
       {"at: [0, 0, 1 mm], ", "",
-       "11:15: error: excitation.loads[2].force.vector: has no place to act", 1},
+       "11:24: error: excitation.loads[2].force.vector: has no place to act", 1},
       {", vector: [5 N, 0, 0]", "",
        "11:15: error: excitation.loads[2].force.vector: missing; expected [x, y, z] in N\n", 1},
       {"vector: [5 N, 0, 0]", "vektor: [5 N, 0, 0]",
@@ -199,7 +200,7 @@ static void faults_of_loads(void **state) {
        "8:13: error: excitation.pressure: put it into excitation.loads", 1},
       {"group: suction", "group: load",
        "3:12: error: mesh.groups.suction: unknown group; known are root", 1},
-      {"pressure: -90 Pa", "field: none.h5", "9:5: error: excitation.loads: ", 1},
+      {"pressure: -90 Pa", "field: none.h5", "10:15: error: excitation.loads[1].field: ", 1},
   };
   check_faults(loads, rows, sizeof rows / sizeof *rows);
 }
@@ -269,15 +270,64 @@ static void faults_of_interfaces(void **state) {
       {"[0.14, 0.25]", "0.2, vary: {n0: [1, 2], interface: tip}",
        "10:75: error: contact.interfaces[1].n0: must be one number", 2},
       {"mu: 0.3", "mu: -0.3", "9:26: error: contact.interfaces[0].mu: is -0.3, must be 0 to", 1},
+      {"name: mid", "name: mid, to: ground",
+       "10:23: error: contact.interfaces[1].to: is ground, that of shroud is neighbour", 1},
+      {"name: mid", "name: mid, to: sector",
+       "10:23: error: contact.interfaces[1].to: 'sector' is not known; expected one of neighbour",
+       1},
+      {"points: 4", "points: auto",
+       "10:7: error: contact.interfaces[1].points: is a number, that of shroud is auto", 1},
+      {"  accuracy: fast\n", "  tolerance: 1e-4\n",
+       "7:14: error: contact.tolerance: only says something with contact.points: auto", 1},
   };
   check_faults(faces, rows, sizeof rows / sizeof *rows);
 }
 
+/* Each interface has all keys of its own. A list of one is as the block of the only one. */
+static void keys_of_each_interface(void **state) {
+  (void)state;
+  static const char rest_of_it[] =
+      "material: {E: 1 GPa, nu: 0, rho: 1000}\n"
+      "rotor: {axis: x, blades: 30}\n"
+      "modal: {damping: 0.2 %}\n"
+      "excitation: {pressure: 1 Pa, harmonics: {2: [1, 0]}}\n"
+      "mhb: {frequency: [0.14, 0.25], harmonics: 2}\n"
+      "mesh: {file: b.msh}\n";
+  static const char *const contact[] = {
+      "contact: {to: ground, mu: 0.3, ku: 2, kv: 3, n0: [20, 30], points: auto, psi: 5 deg}\n",
+      "contact: {interfaces: [{name: casing, to: ground, mu: 0.3, ku: 2, kv: 3, n0: [20, 30], "
+      "points: auto, psi: 5 deg}]}\n",
+      "contact: {to: ground, interfaces: [{name: casing, mu: 0.3, ku: 2, kv: 3, n0: [20, 30], "
+      "points: auto, psi: 5 deg}]}\n"};
+  for (int i = 0; i < 3; i++) {
+    char      whole[2048], *said;
+    case_file file;
+    snprintf(whole, sizeof whole, "%s%s", rest_of_it, contact[i]);
+    if (judge(whole, &said, &file) != SHB_OK) fail_msg("%s", said);
+    free(said);
+    const mhb_settings  *mhb = &file.mhb;
+    const mhb_interface *own = &mhb->interface[0];
+    assert_int_equal(mhb->n_interfaces, 1);
+    assert_string_equal(own->name, i ? "casing" : "");
+    assert_true(mhb->to_ground && own->to_ground && own->has_psi && mhb->has_psi);
+    assert_true(mhb->mu == .3 && mhb->kv == 3 && mhb->n_preloads == 2 && mhb->n0[1] == 30);
+    assert_true(case_points_are_auto(&file));
+    assert_string_equal(file.interfaces[0].right, "contact_right");
+    assert_string_equal(file.source.contact[0].right, "contact_right");
+    assert_int_equal(file.source.n_contacts, 1);
+    /* the load has harmonic 2 and no trace of the default, harmonic 1 */
+    assert_true(file.n_loads == 1 && file.loads[0].load.n_harmonics == 2);
+    assert_true(file.loads[0].load.factor[1] == 0 && file.loads[0].load.factor[2] == 1);
+    case_free(&file);
+  }
+}
+
 int main(void) {
   const struct CMUnitTest tests[] = {
-      cmocka_unit_test(materials_are_read),  cmocka_unit_test(faults_of_materials),
-      cmocka_unit_test(loads_are_read),      cmocka_unit_test(faults_of_loads),
-      cmocka_unit_test(interfaces_are_read), cmocka_unit_test(faults_of_interfaces),
+      cmocka_unit_test(keys_of_each_interface), cmocka_unit_test(materials_are_read),
+      cmocka_unit_test(faults_of_materials),    cmocka_unit_test(loads_are_read),
+      cmocka_unit_test(faults_of_loads),        cmocka_unit_test(interfaces_are_read),
+      cmocka_unit_test(faults_of_interfaces),
   };
   return cmocka_run_group_tests_name("cases.lists", tests, NULL, NULL);
 }

@@ -128,8 +128,8 @@ static int create_body(void **state) {
   snprintf(path, sizeof path, "%s/paper_fig8.msh", folder);
   assert_ok(read_mesh(path, &whole.mesh));
   assert_ok(mesh_fe_orient(&whole.mesh, whole.file.axis));
-  ok(fem_system_create(PETSC_COMM_SELF, &whole.mesh, &whole.file.material, FEM_STANDARD,
-                       &whole.system));
+  ok(fem_system_create(PETSC_COMM_SELF, &whole.mesh, &whole.file.materials[0].material,
+                       FEM_STANDARD, &whole.system));
   ok(MatConvert(whole.system.K, MATSEQAIJ, MAT_INITIAL_MATRIX, &whole.K));
   ok(MatConvert(whole.system.M, MATSEQAIJ, MAT_INITIAL_MATRIX, &whole.M));
   eigen.modes = whole.file.modes;
@@ -253,7 +253,7 @@ static PetscErrorCode apply(Mat shell, Vec x, Vec y) {
 static Vec load_vector(const body *w, Mat A) {
   Vec     f;
   double *force = malloc(3 * (size_t)w->mesh.n_nodes * sizeof *force);
-  assert_ok(fem_load_pattern(&w->mesh, &w->file.load, w->file.probe[0].at, force));
+  assert_ok(fem_load_pattern(&w->mesh, &w->file.loads[0].load, w->file.probe[0].at, force));
   ok(MatCreateVecs(A, &f, NULL));
   for (int i = 0; i < 3 * w->mesh.n_nodes; i++)
     if (w->system.row[i / 3] >= 0)

@@ -63,18 +63,21 @@ static void every_value_arrives(void **state) {
   assert_true(b->size == 0.008 && b->shroud_size == 0.004 && b->elements == MESH_HEX20);
   assert_true(b->blades == 37 && b->axis == MESH_AXIS_MY);
   assert_true(near(b->psi, 35 * degree) && near(b->phi, -3 * degree));
-  assert_true(f.material.E == 207e9 && f.material.nu == 0.29 && f.material.rho == 7850);
+  assert_true(f.materials[0].material.E == 207e9 && f.materials[0].material.nu == 0.29 &&
+              f.materials[0].material.rho == 7850);
   assert_true(f.blades == 37 && f.axis == MESH_AXIS_MY && near(f.speed[0], 2900 * 6 * degree));
   assert_true(f.modes == 17 && f.damping.ratio == 0.0023);
-  assert_true(f.engine_order == 7 && f.load.kind == FEM_LOAD_PRESSURE && f.load.pressure == 210);
-  assert_int_equal(f.load.n_harmonics, 3);
-  assert_true(f.load.factor[0] == 0 && f.load.factor[1] == 1 && f.load.factor[2] == 0);
-  assert_true(cabs(f.load.factor[3] - 0.21 * I) < 1e-16);
+  assert_true(f.engine_order == 7 && f.loads[0].load.kind == FEM_LOAD_PRESSURE &&
+              f.loads[0].load.pressure == 210);
+  assert_int_equal(f.loads[0].load.n_harmonics, 3);
+  assert_true(f.loads[0].load.factor[0] == 0 && f.loads[0].load.factor[1] == 1 &&
+              f.loads[0].load.factor[2] == 0);
+  assert_true(cabs(f.loads[0].load.factor[3] - 0.21 * I) < 1e-16);
   assert_int_equal(f.n_probes, 2);
   assert_string_equal(f.probe[0].name, "tip");
   assert_true(f.probe[0].at[0] == 0.001 && f.probe[0].at[1] == 0.002 && f.probe[0].at[2] == 0.47);
   assert_string_equal(f.probe[1].name, "mid");
-  assert_int_equal(f.points, 4);
+  assert_int_equal(f.interfaces[0].points, 4);
   const mhb_settings *m = &f.mhb;
   assert_true(!m->to_ground && m->engine_order == 7 && m->blades == 37 && m->has_psi && m->has_phi);
   assert_true(near(m->psi, 35 * degree) && near(m->phi, -3 * degree));
@@ -174,11 +177,12 @@ static void a_modal_file_needs_little(void **state) {
   assert_true(f.mhb.n0[0] == -0.2 && f.mhb.n0[3] == 1);
   /* defaults */
   assert_true(f.mhb.harmonics == 3 && f.mhb.subharmonics == 1 && f.mhb.scale == 1);
-  assert_true(f.mhb.tolerance == 1e-8 && f.mhb.max_points == 20000 && f.points == 1);
+  assert_true(f.mhb.tolerance == 1e-8 && f.mhb.max_points == 20000 && f.interfaces[0].points == 1);
   assert_int_equal(f.mhb.stability, MHB_STABILITY_AUTO);
   assert_true(f.mhb.flips && f.mhb.search.starts == MHB_SEARCH_PEAKS && f.mhb.search.n_at == 0);
   assert_true(f.mhb.search.n_orders == 3 && f.mhb.search.order[2] == 3);
-  assert_true(f.mhb.preload == MHB_EQUILIBRIUM && f.load.factor[1] == 1 && f.load.n_harmonics == 1);
+  assert_true(f.mhb.preload == MHB_EQUILIBRIUM && f.loads[0].load.factor[1] == 1 &&
+              f.loads[0].load.n_harmonics == 1);
   case_free(&f);
   free(said);
   /* the neighbour needs the inter-blade phase */
@@ -230,27 +234,28 @@ static void forces_and_tractions(void **state) {
   char     *text =
       scratch_case("pressure: 210 Pa", "force: {at: [1 mm, 0, 0.4], vector: [5 N, -1 kN, 0]}");
   assert_int_equal(read_text(folder, "x.yaml", text, &f, &said), SHB_OK);
-  assert_true(f.load.kind == FEM_LOAD_FORCE && f.load.has_at && f.load.at[0] == 0.001);
-  assert_true(f.load.force[0] == 5 && f.load.force[1] == -1000);
+  assert_true(f.loads[0].load.kind == FEM_LOAD_FORCE && f.loads[0].load.has_at &&
+              f.loads[0].load.at[0] == 0.001);
+  assert_true(f.loads[0].load.force[0] == 5 && f.loads[0].load.force[1] == -1000);
   case_free(&f);
   free(said);
   free(text);
   text =
       scratch_case("pressure: 210 Pa", "force: {vector: [5 N, 1 N, 0]}"); /* at the first probe */
   assert_int_equal(read_text(folder, "x.yaml", text, &f, &said), SHB_OK);
-  assert_true(f.load.kind == FEM_LOAD_FORCE && !f.load.has_at);
+  assert_true(f.loads[0].load.kind == FEM_LOAD_FORCE && !f.loads[0].load.has_at);
   case_free(&f);
   free(said);
   free(text);
   text = scratch_case("pressure: 210 Pa", "traction: [0, 3 kPa, -1 kPa]");
   assert_int_equal(read_text(folder, "x.yaml", text, &f, &said), SHB_OK);
-  assert_true(f.load.kind == FEM_LOAD_TRACTION && f.load.traction[1] == 3000);
+  assert_true(f.loads[0].load.kind == FEM_LOAD_TRACTION && f.loads[0].load.traction[1] == 3000);
   case_free(&f);
   free(said);
   free(text);
   text = scratch_case("points: 4", "points: all");
   assert_int_equal(read_text(folder, "x.yaml", text, &f, &said), SHB_OK);
-  assert_int_equal(f.points, 0);
+  assert_int_equal(f.interfaces[0].points, 0);
   case_free(&f);
   free(said);
   free(text);
@@ -290,12 +295,12 @@ static void materials_with_axes(void **state) {
   case_file f;
   char     *text = scratch_case("E: 207 GPa", "E: 127 GPa, G: 120 GPa, axis_1: [1, 1, 0]");
   assert_int_equal(read_text(folder, "x.yaml", text, &f, &said), SHB_OK);
-  assert_true(f.material.anisotropic && f.material.rho == 7850);
+  assert_true(f.materials[0].material.anisotropic && f.materials[0].material.rho == 7850);
   double S11 = 1 / 127e9, S12 = -.29 / 127e9, C44 = 120e9;
   double C11 = (S11 + S12) / ((S11 - S12) * (S11 + 2 * S12)),
          C12 = -S12 / ((S11 - S12) * (S11 + 2 * S12)); /* turned by 45 deg about axis 3 */
-  assert_true(fabs(f.material.C[0][0] / ((C11 + C12) / 2 + C44) - 1) < 1e-12);
-  assert_true(fabs(f.material.C[2][2] / C11 - 1) < 1e-12);
+  assert_true(fabs(f.materials[0].material.C[0][0] / ((C11 + C12) / 2 + C44) - 1) < 1e-12);
+  assert_true(fabs(f.materials[0].material.C[2][2] / C11 - 1) < 1e-12);
   settings = case_settings(&f, CASE_MODAL);
   assert_non_null(strstr(settings, "material.E = 127000000000\n"));
   assert_non_null(strstr(settings, "material.axis_1 = 1 1 0\n"));
@@ -303,12 +308,13 @@ static void materials_with_axes(void **state) {
   case_free(&f);
   text = scratch_case("E: 207 GPa", "E: [90 GPa, 150 GPa, 210 GPa], G: [61 GPa, 47 GPa, 83 GPa]");
   assert_int_equal(read_text(folder, "x.yaml", text, &f, &said), SHB_OK);
-  assert_true(f.material.anisotropic && f.material.E == 210e9 && f.material.C[5][5] == 83e9);
+  assert_true(f.materials[0].material.anisotropic && f.materials[0].material.E == 210e9 &&
+              f.materials[0].material.C[5][5] == 83e9);
   free(said), free(text);
   case_free(&f);
   text = scratch_case(NULL, NULL);
   assert_int_equal(read_text(folder, "x.yaml", text, &f, &said), SHB_OK);
-  assert_false(f.material.anisotropic);
+  assert_false(f.materials[0].material.anisotropic);
   settings = case_settings(&f, CASE_MODAL);
   assert_null(strstr(settings, "material.G"));
   free(settings), free(said), free(text);

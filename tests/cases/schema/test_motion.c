@@ -20,7 +20,7 @@ static shb_status read_text(const char *text, case_motion *motion, char **said) 
   scratch_write(folder, "m.yaml", text, strlen(text));
   snprintf(path, sizeof path, "%s/m.yaml", folder);
   FILE      *errors = open_memstream(said, &size);
-  shb_status status = case_motion_read(path, errors, motion);
+  shb_status status = case_motion_read(path, NULL, errors, motion);
   fclose(errors);
   scratch_remove(folder);
   return status;

@@ -330,13 +330,14 @@ def check_again():
 
 FAULTS = [
     ('vary: {contact.mu: [0.3]}\nplan: {sobl: 12}', "sobl: unknown key; did you mean 'sobol'?"),
-    ('vary: {contact.mu: [0.3]}\nplan: {sobol: 0}', 'plan.sobol: expected a whole number from 1'),
+    ('vary: {contact.mu: [0.3]}\nplan: {sobol: 0}', 'plan.sobol: is 0, must be 1 to 100000'),
     ('vary: {contact.mu: [0.3]}\nplan: {sobol: 8, latin_hypercube: 8}', 'plan: expected one of'),
     ('plan: {sobol: 12}', 'vary: missing'),
     ('vary: {contact.mu: [0.3]}\nseed: 3', 'seed: is that of uncertain keys'),
     ('vary: {contact.mu: [0.3]}\nsamples: 32', 'samples: needs uncertain'),
     ('uncertain: {contact.mu: {normal: [0.3, 0.1]}}', 'uncertain: needs samples'),
-    ('samples: 3\nuncertain: {contact.mu: {normal: [0.3, 0.1]}}', 'a whole number from 8'),
+    ('samples: 3\nuncertain: {contact.mu: {normal: [0.3, 0.1]}}',
+     'samples: is 3, must be 8 to 100000'),
     ('samples: 32\nuncertain: {contact.mu: {normall: [0.3, 0.1]}}',
      "normall: unknown distribution; did you mean 'normal'?"),
     ('samples: 32\nuncertain: {contact.mu: {normal: [0.3, -0.1]}}', 'deviation must be above 0'),
@@ -422,6 +423,12 @@ def check_faults():
 
 def check_overrides():
     """--set changes a key as the file would; --into moves the output."""
+    write('set.yaml', 'case: case.yaml\nvary: {contact.n0: [0.3 N]}\noutputs: [peak]\n')
+    run(program('shroudhb'), 'study', '--quiet', '--set', 'vary.contact.n0=[0.4 N]',
+        '--set', 'name=moved_study', '--into', 'apart/study', 'set.yaml')
+    table = rows('apart/study/moved_study.study.csv')
+    assert [float(row['contact.n0']) for row in table] == [0.4], table
+    assert float(table[0]['peak']) > 0 and not os.path.exists('set.study.csv')
     run(program('shroudhb'), 'check', '--quiet', '--into', 'elsewhere', 'case.yaml')
     assert not os.path.exists('elsewhere')  # a check writes nothing
     run(program('shroudhb'), 'mhb', '--quiet', '--set', 'contact.n0=0.3 N',

@@ -99,7 +99,7 @@ def check_echo():
     out = check('vary: {contact.n0: {from: 0.1 N, to: 1 N, points: 4}}\n')
     assert 'as 2 known designs took' in out and 'cost      4 sweeps: about ' in out, out
     out = check('vary: {contact.n0: {from: 0.1 N, to: 1 N, points: 300000}}\n', 2)
-    assert 'a whole number from 1 to 100000' in out, out
+    assert 'must be 1 to 100000' in out, out
     refuses('vary: {contact.n0: [0.3 N]}\noutputs: [peak, frequency, peak]\n',
             "'peak' is output 1 already")
 

@@ -17,6 +17,7 @@
 #include "modal/model/reduce.h"
 #include "modal/stage/stage.h"
 #include "tests/support/fem.h"
+#include "tests/support/one_of_each.h"
 
 enum { BLADES = 23 };
 
@@ -24,20 +25,17 @@ static const double      size[3] = {0.04, 1, 0.12}, inner = 0.1, zeta = 0.003;
 static const modal_probe probe[2] = {{"tip", {0.04, 0.0, 0.22}}, {"middle", {0, 0.01, 0.16}}};
 
 static modal_settings default_settings(int points) {
-  return (modal_settings){
-      .material = steel,
-      .axis     = MESH_AXIS_X,
-      .blades   = BLADES,
-      .modes    = 20,
-      .damping  = {.ratio = zeta},
-      .load     = {.kind        = FEM_LOAD_PRESSURE,
-                   .pressure    = 2385,
-                   .n_harmonics = 2,
-                   .factor      = {0.3, 1, -0.2 + 0.1 * I}},
-      .n_probes = 2,
-      .probe    = probe,
-      .points   = points,
-  };
+  const modal_settings own  = {.axis     = MESH_AXIS_X,
+                               .blades   = BLADES,
+                               .modes    = 20,
+                               .damping  = {.ratio = zeta},
+                               .n_probes = 2,
+                               .probe    = probe};
+  const fem_load       load = {.kind        = FEM_LOAD_PRESSURE,
+                               .pressure    = 2385,
+                               .n_harmonics = 2,
+                               .factor      = {0.3, 1, -0.2 + 0.1 * I}};
+  return one_of_each(own, points, false, load);
 }
 
 static modal_result solve(const mesh_fe *mesh, const modal_settings *settings) {
@@ -113,7 +111,7 @@ static double *condensed_dofs(const mesh_fe *mesh, const modal_settings *setting
         B[(size_t)n * (size_t)c + (size_t)(3 * row[node] + d)] = axes[a][d];
   }
   double *force = malloc(3 * (size_t)mesh->n_nodes * sizeof *force);
-  assert_int_equal(fem_load_pattern(mesh, &settings->load, NULL, force), SHB_OK);
+  assert_int_equal(fem_load_pattern(mesh, settings->loads, NULL, force), SHB_OK);
   for (int i = 0; i < mesh->n_nodes; i++)
     for (int d = 0; d < 3 && row[i] >= 0; d++)
       B[(size_t)n * (size_t)c + (size_t)(3 * row[i] + d)] = force[3 * i + d];
@@ -592,7 +590,7 @@ static void check_static_response(double speed) {
       double complex u     = model->load_residual[k * nc + c];
       for (int i = 0; i < m; i++)
         u += shape[i] * model->modal_force[k * m + i] / pow(SHB_TWO_PI * model->frequency[i], 2);
-      double complex wanted = settings.load.factor[k] * exact[c * whole.n_dofs + load];
+      double complex wanted = settings.loads->factor[k] * exact[c * whole.n_dofs + load];
       check_below(cabs(u - wanted), 1e-9 * cabs(exact[2 * whole.n_dofs + load]), "contact, load");
     }
   for (int q = 0; q < 6; q++) {

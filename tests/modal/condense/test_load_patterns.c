@@ -10,6 +10,7 @@
 #include "tests/support/box.h"
 #include "tests/support/fem.h"
 #include "tests/support/files.h"
+#include "tests/support/one_of_each.h"
 
 enum { BLADES = 23 };
 
@@ -17,12 +18,9 @@ static const double size[3] = {0.04, 1, 0.12}, inner = 0.1;
 static const int    cells[3] = {2, 2, 3};
 
 static modal_settings default_settings(void) {
-  return (modal_settings){.material = steel,
-                          .axis     = MESH_AXIS_X,
-                          .blades   = BLADES,
-                          .modes    = 6,
-                          .damping  = {.ratio = 0.002},
-                          .points   = 1};
+  const modal_settings own = {
+      .axis = MESH_AXIS_X, .blades = BLADES, .modes = 6, .damping = {.ratio = 0.002}};
+  return one_of_each(own, 1, false, (fem_load){0});
 }
 
 /* A field of complex values [m][n][width], width 0: [m][n]. */
@@ -46,7 +44,7 @@ static const char *write_field(const char *name, int n, const int *node, int m, 
 static void solve(const mesh_fe *mesh, const fem_load *load, modal_model *model) {
   modal_settings settings = default_settings();
   modal_result   result;
-  settings.load = *load;
+  settings.loads = load;
   assert_ok(modal_solve(PETSC_COMM_WORLD, mesh, &settings, NULL, &result));
   *model = result.model;
   memset(&result.model, 0, sizeof result.model);

@@ -8,6 +8,7 @@
 #include "tests/support/box.h"
 #include "tests/support/fem.h"
 #include "tests/support/files.h"
+#include "tests/support/one_of_each.h"
 
 enum { MODES = 5, SPEEDS = 4 };
 
@@ -36,8 +37,7 @@ static mesh_fe make_beam(void) {
 static const modal_probe probe = {"tip", {0.01, 0, 0.5}};
 
 static modal_settings make_settings(void) {
-  return (modal_settings){
-      .material         = steel,
+  const modal_settings own = {
       .axis             = MESH_AXIS_X,
       .blades           = 30,
       .speed            = 400,
@@ -46,15 +46,12 @@ static modal_settings make_settings(void) {
       .modes            = MODES,
       .damping          = {.ratio = 0.002},
       .full_integration = true,
-      .load             = {.kind        = FEM_LOAD_TRACTION,
-                           .traction    = {100, 70, 5},
-                           .n_harmonics = 1,
-                           .factor      = {0, 1}},
-      .to_ground        = true,
       .n_probes         = 1,
       .probe            = &probe,
-      .points           = 1,
   };
+  const fem_load load = {
+      .kind = FEM_LOAD_TRACTION, .traction = {100, 70, 5}, .n_harmonics = 1, .factor = {0, 1}};
+  return one_of_each(own, 1, true, load);
 }
 
 static double eigenvalue(const modal_speeds *s, int i, int track) {

@@ -13,6 +13,7 @@
 #include "modal/model/receptance.h"
 #include "modal/stage/stage.h"
 #include "tests/support/fem.h"
+#include "tests/support/one_of_each.h"
 
 enum { BLADES = 23 };
 
@@ -23,17 +24,16 @@ static const modal_probe probe = {"tip", {0.04, 0.0, 0.22}};
 static void check_ranks(double speed) {
   const int      cells[3] = {4, 4, 10};
   mesh_fe        mesh     = {0};
-  modal_settings settings = {
-      .material = steel,
-      .axis     = MESH_AXIS_X,
-      .blades   = BLADES,
-      .speed    = speed,
-      .modes    = 12,
-      .damping  = {.ratio = 0.002},
-      .load     = {.kind = FEM_LOAD_PRESSURE, .pressure = 200, .n_harmonics = 1, .factor = {0, 1}},
-      .n_probes = 1,
-      .probe    = &probe,
-      .points   = 3};
+  modal_settings settings = {.axis     = MESH_AXIS_X,
+                             .blades   = BLADES,
+                             .speed    = speed,
+                             .modes    = 12,
+                             .damping  = {.ratio = 0.002},
+                             .n_probes = 1,
+                             .probe    = &probe};
+  const fem_load load     = {
+          .kind = FEM_LOAD_PRESSURE, .pressure = 200, .n_harmonics = 1, .factor = {0, 1}};
+  settings = one_of_each(settings, 3, false, load);
   modal_result one, all;
   int          rank;
   MPI_Comm_rank(PETSC_COMM_WORLD, &rank);

@@ -22,10 +22,13 @@
 enum { BLADES = 6, MODES = 20 };
 
 static modal_settings default_settings(void) {
-  modal_settings settings   = sector_case(BLADES, MODES);
-  settings.load.n_harmonics = 2;
-  settings.load.factor[0]   = 0.3;
-  settings.load.factor[2]   = -0.2 + 0.5 * I;
+  modal_settings  settings = sector_case(BLADES, MODES);
+  static fem_load load;
+  load             = *settings.loads;
+  load.n_harmonics = 2;
+  load.factor[0]   = 0.3;
+  load.factor[2]   = -0.2 + 0.5 * I;
+  settings.loads   = &load;
   return settings;
 }
 

@@ -13,6 +13,7 @@
 #include "tests/support/box.h"
 #include "tests/support/fem.h"
 #include "tests/support/files.h"
+#include "tests/support/one_of_each.h"
 
 enum { BLADES = 23 };
 
@@ -21,17 +22,17 @@ static const int         cells[3] = {2, 2, 4};
 static const modal_probe probe[2] = {{"tip", {0.04, 0.0, 0.22}}, {"middle", {0, 0.01, 0.16}}};
 
 static modal_settings default_settings(void) {
-  return (modal_settings){
-      .material = steel,
+  const modal_settings own = {
       .axis     = MESH_AXIS_X,
       .blades   = BLADES,
       .modes    = 8,
       .damping  = {.ratio = 0.002},
-      .load     = {.kind = FEM_LOAD_PRESSURE, .pressure = 200, .n_harmonics = 1, .factor = {0, 1}},
       .n_probes = 2,
       .probe    = probe,
-      .points   = 2,
   };
+  const fem_load load = {
+      .kind = FEM_LOAD_PRESSURE, .pressure = 200, .n_harmonics = 1, .factor = {0, 1}};
+  return one_of_each(own, 2, false, load);
 }
 
 static const shb_provenance provenance = {"case.yaml", "name: case\n", "modal.modes = 8\n",
@@ -314,7 +315,9 @@ static void columns_need_all_points(void **state) {
   modal_settings settings  = default_settings();
   const int      single[3] = {1, 1, 5};
   modal_result   result;
-  settings.points = 1;
+  modal_contact  contact = *settings.contact;
+  contact.points         = 1;
+  settings.contact       = &contact;
   use_elements(MESH_HEX20);
   mesh_fe mesh = make_sector(size, inner, BLADES, single);
   use_elements(MESH_TET10);
@@ -512,18 +515,22 @@ static void failures_leave_the_file_alone(void **state) {
   settings        = default_settings();
   settings.blades = 24;
   refused(&settings, "sector.msh", SHB_ERR_INPUT, "contact");
-  settings     = default_settings();
-  settings.psi = &psi;
+  settings              = default_settings();
+  modal_contact contact = *settings.contact;
+  contact.psi           = &psi;
+  settings.contact      = &contact;
   refused(&settings, "sector.msh", SHB_ERR_INPUT, "contact.psi: 34.38 deg given");
-  settings        = default_settings();
-  settings.points = 17;
+  contact.psi    = NULL;
+  contact.points = 17;
   refused(&settings, "sector.msh", SHB_ERR_INPUT, "17 patches");
   settings       = default_settings();
   settings.modes = 100000;
   refused(&settings, "sector.msh", SHB_ERR_INPUT, "modal.modes: 100000");
-  settings           = default_settings();
-  settings.load.kind = FEM_LOAD_FORCE;
-  settings.n_probes  = 0;
+  settings          = default_settings();
+  fem_load force    = *settings.loads;
+  force.kind        = FEM_LOAD_FORCE;
+  settings.loads    = &force;
+  settings.n_probes = 0;
   refused(&settings, "sector.msh", SHB_ERR_INPUT, "excitation.force");
 }
 

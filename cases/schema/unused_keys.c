@@ -1,30 +1,8 @@
-#include "cases/parse/unused_keys.h"
+#include "cases/schema/unused_keys.h"
 
 #include <string.h>
 
 #include "cases/parse/key_table.h"
-
-/* The condition in words under which a key is read; NULL if it is not reported here. */
-static const char *needed(case_condition when) {
-  switch (when) {
-    case CASE_IF_MESH_FILE:
-    case CASE_IF_SIZE:
-      return "only says something with mesh.file";
-    case CASE_IF_PATCHES:
-      return "only says something with contact.points: auto";
-    case CASE_IF_STABILITY:
-      return "only says something with mhb.stability: auto or always";
-    case CASE_IF_SEARCH:
-    case CASE_IF_SEARCH_AT:
-      return "only says something with mhb.search.starts above 0";
-    case CASE_IF_SWEEP:
-      return "only says something with integrate.start: state";
-    case CASE_IF_NOT_SCALED:
-      return "leave it out: curves follow mhb.vary.scale instead";
-    default:
-      return NULL;
-  }
-}
 
 /* Does the key matter only for modes that are computed here? */
 static bool of_own_modes(const case_key *key) {
@@ -47,7 +25,7 @@ static void whole(const case_reader *r, const case_key *key, char path[CASE_PATH
     const case_key *other = &r->keys.key[i];
     if (strncmp(other->path, key->path, n) == 0 && other->path[n] == '.' &&
         !strstr(other->path, "[]"))
-      none = !case_key_applies(other, r->file);
+      none = !case_key_applies(other, r->file, r->file);
   }
   if (!none) case_path(path, "%s", key->path);
 }
@@ -66,14 +44,14 @@ void case_check_unused(const case_reader *r) {
   for (int i = 0; i < r->keys.n; i++) {
     const case_key *key = &r->keys.key[i];
     if (!r->good[i] || !r->given[i]) continue;
-    if (case_key_applies(key, r->file)) continue;
+    if (case_key_applies(key, r->file, r->file)) continue;
     if (r->file->modal_file && of_own_modes(key)) {
       whole(r, key, path);
       if (strcmp(path, last) != 0)
         case_reader_issue(r, path, "leave it out: modal.file is given, which holds what it made");
       strcpy(last, path);
-    } else if (needed(key->when) && !told(r, key)) {
-      case_reader_issue(r, key->path, "%s", needed(key->when));
+    } else if (case_condition_needed(key->when) && !told(r, key)) {
+      case_reader_issue(r, key->path, "%s", case_condition_needed(key->when));
     }
   }
 }

@@ -1,6 +1,6 @@
 /* Keys that are in the file but not read. */
-#ifndef CASES_PARSE_UNUSED_KEYS_H
-#define CASES_PARSE_UNUSED_KEYS_H
+#ifndef CASES_SCHEMA_UNUSED_KEYS_H
+#define CASES_SCHEMA_UNUSED_KEYS_H
 
 #include "cases/parse/reader.h"
 
