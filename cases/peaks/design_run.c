@@ -189,38 +189,56 @@ static bool is_known(const job *j, const exact_peak *peak) {
   return peak->found && peak->exact && (fixed || isfinite(peak->amplitude_error));
 }
 
-/* State and reason: the peak's quality, and the first curve that did not cover the range. */
-static void judge(job *j, const exact_peak *peak) {
-  char text[512]   = "";
-  j->design->state = STUDY_DONE;
-  for (int k = 0; k < j->response->n_branches; k++) {
-    const mhb_branch *b = &j->response->branch[k];
-    if (b->kind != MHB_BRANCH_NONLINEAR || b->main != k || b->complete) continue;
-    snprintf(text, sizeof text, "a curve does not cover mhb.frequency: %s",
-             b->reason ? b->reason : "no reason is known");
-    if (!(peak->walked && is_known(j, peak))) j->design->state = STUDY_NOT_CONVERGED;
+/* The first main curve that does not cover the range; NULL: all do. */
+static const mhb_branch *cut_short(const mhb_response *r) {
+  for (int k = 0; k < r->n_branches; k++) {
+    const mhb_branch *b = &r->branch[k];
+    if (b->kind == MHB_BRANCH_NONLINEAR && b->main == k && !b->complete) return b;
   }
-  if (!text[0] && peak->edge)
-    snprintf(text, sizeof text,
-             "the highest point is at an end of mhb.frequency; the peak may lie beyond");
-  if (!text[0] && !peak->edge && peak->exact && peak->doubt) {
-    snprintf(text, sizeof text, "a part of the curve that may be higher could not be solved again");
-    j->design->state = STUDY_NOT_CONVERGED;
-  }
-  if (!text[0] && !peak->exact) {
-    snprintf(text, sizeof text, "the peak could not be solved again with more harmonics");
-    j->design->state = STUDY_NOT_CONVERGED;
-  }
-  if (!text[0] && !is_known(j, peak)) {
-    snprintf(text, sizeof text, "the peak is another one with more harmonics");
-    j->design->state = STUDY_NOT_CONVERGED;
-  }
+  return NULL;
+}
+
+/* A peak without friction has no bound if a mode has no damping. */
+static bool is_of_grid(const job *j, const exact_peak *peak) {
+  const modal_model *m    = &j->model->model;
+  bool               none = false;
+  for (int i = 0; i < m->n_modes; i++) none = none || m->damping_ratio[i] <= 0;
+  return none && !peak->edge && peak->dissipation == 0;
+}
+
+/* Why the highest peak may be another one, or have another height. False: text stays. */
+static bool put_doubt(const job *j, const exact_peak *peak, size_t size, char *text) {
   const double tolerance = j->model->settings.motion_tolerance;
   const double error     = peak->amplitude_error / peak->amplitude;
-  if (!text[0] && tolerance > 0 && error > tolerance) {
-    snprintf(text, sizeof text, "the peak's estimated error of %.2g is above mhb.tolerance", error);
-    j->design->state = STUDY_NOT_CONVERGED;
-  }
+  if (is_of_grid(j, peak))
+    snprintf(text, size,
+             "a mode has no damping and nothing slips at the peak: its height is that of the grid");
+  else if (peak->exact && peak->doubt)
+    snprintf(text, size, "a part of the curve that may be higher could not be solved again");
+  else if (!peak->exact)
+    snprintf(text, size, "the peak could not be solved again with more harmonics");
+  else if (!is_known(j, peak))
+    snprintf(text, size, "the peak is another one with more harmonics");
+  else if (tolerance > 0 && error > tolerance)
+    snprintf(text, size, "the peak's estimated error of %.2g is above mhb.tolerance", error);
+  else
+    return false;
+  return true;
+}
+
+/* State and reason: the peak's quality, and the first curve that did not cover the range. */
+static void judge(job *j, const exact_peak *peak) {
+  char              text[512] = "";
+  const mhb_branch *cut       = cut_short(j->response);
+  bool              doubtful  = cut && !(peak->walked && is_known(j, peak));
+  if (cut)
+    snprintf(text, sizeof text, "a curve does not cover mhb.frequency: %s",
+             cut->reason ? cut->reason : "no reason is known");
+  else if (peak->edge)
+    snprintf(text, sizeof text,
+             "the highest point is at an end of mhb.frequency; the peak may lie beyond");
+  if (!doubtful) doubtful = put_doubt(j, peak, sizeof text, text);
+  j->design->state = doubtful ? STUDY_NOT_CONVERGED : STUDY_DONE;
   study_design_set_reason(j->design, text);
 }
 
@@ -239,8 +257,10 @@ static shb_status fill(job *j, post_output first, int harmonics, const exact_pea
   return SHB_OK;
 }
 
+/* Whether no sweep with more harmonics is needed. */
 static bool is_settled(const job *j, const exact_peak *peak) {
-  return is_known(j, peak) && !peak->doubt;
+  const bool covered = peak->walked || !j->response || !cut_short(j->response);
+  return is_known(j, peak) && !peak->doubt && covered;
 }
 
 /* Sweep with more and more harmonics until the peak is exact.
