@@ -18,6 +18,10 @@ enum { N_SWEEPS = sizeof sweeps / sizeof *sweeps, LAST_COARSE = 15, MANY = 1000 
  * this, leaves a doubt. With 15 harmonics curves are within 1 % of those with 31. */
 static const double HIGHER = 0.02;
 
+/* Points of a curve with few harmonics. Usual ones of z_notch_blade have 100 to 700. One that goes
+ * on beyond this is not traced with those of the case, which takes minutes. */
+enum { MOST_POINTS = 3000 };
+
 /* Tolerance of the contact law on these curves; the peak itself is solved with that of the case.
  * On 200 contacts of z_notch_blade the sweeps cost 0.06 s each, with 1e-4 0.09 s. */
 static const double OUTLINE = 1e-3;
@@ -57,6 +61,7 @@ static shb_status sweep(job *j, int harmonics) {
     few.motion_tolerance = 0;
     few.harmonics        = harmonics * few.subharmonics;
     few.outline          = true;
+    few.max_points       = few.max_points < MOST_POINTS ? few.max_points : MOST_POINTS;
     few.tolerance        = fmax(few.tolerance, OUTLINE);
   }
   mhb_response_destroy(j->response);
@@ -257,10 +262,14 @@ static shb_status fill(job *j, post_output first, int harmonics, const exact_pea
   return SHB_OK;
 }
 
+/* Whether the last sweep covers the range, or there was none. */
+static bool is_covered(const job *j) {
+  return !j->response || !cut_short(j->response);
+}
+
 /* Whether no sweep with more harmonics is needed. */
 static bool is_settled(const job *j, const exact_peak *peak) {
-  const bool covered = peak->walked || !j->response || !cut_short(j->response);
-  return is_known(j, peak) && !peak->doubt && covered;
+  return is_known(j, peak) && !peak->doubt && (peak->walked || is_covered(j));
 }
 
 /* Sweep with more and more harmonics until the peak is exact.
@@ -278,6 +287,7 @@ static shb_status sweep_for(job *j, solved_peak *walked) {
   for (int i = 0; i < N_SWEEPS && !is_settled(j, &peak); i++) {
     exact_peak before = peak;
     if (sweeps[i] > 0 && !is_coarse(&j->model->settings, sweeps[i])) continue;
+    if (sweeps[i] == 0 && !is_covered(j)) break;
     status = sweep(j, sweeps[i]);
     if (status == SHB_ERR_INPUT && sweeps[i] > 0) continue; /* the load has more harmonics */
     if (status != SHB_OK && status != SHB_NOT_CONVERGED) return status;

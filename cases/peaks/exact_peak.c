@@ -433,8 +433,8 @@ static shb_status settle_edge(const work *w, const fine_maximum *f, int point, i
   return SHB_OK;
 }
 
-/* -1: a frequency, Hz, lies within the range. Else the point of the branch at that end of the range,
- * nearest to the maximum. */
+/* -1: a frequency, Hz, lies within the range. Else the point of the branch at that end of the
+ * range, nearest to the maximum. */
 static int end_beyond(const work *w, const fine_maximum *f, double frequency) {
   const double *range = w->settings->frequency;
   const int     n     = f->branch->n_points;
