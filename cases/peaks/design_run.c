@@ -20,7 +20,7 @@ static const double HIGHER = 0.02;
 
 /* Points of a curve with few harmonics. Usual ones of z_notch_blade have 100 to 700. One that goes
  * on beyond this is not traced with those of the case, which takes minutes. */
-enum { MOST_POINTS = 3000 };
+enum { MOST_POINTS = 8000 };
 
 /* Tolerance of the contact law on these curves; the peak itself is solved with that of the case.
  * On 200 contacts of z_notch_blade the sweeps cost 0.06 s each, with 1e-4 0.09 s. */
