@@ -9,6 +9,8 @@
 #include "mhb/branches/record.h"
 #include "mhb/continuation/nearest_solution.h"
 #include "mhb/numerics/fourier.h"
+#include "mhb/numerics/vector.h"
+#include "mhb/tracking/output_amplitude.h"
 
 /* Of the residual, relative to the motion. */
 static const double TOLERANCE = 1e-10;
@@ -223,6 +225,45 @@ int point_matcher_between(point_matcher *matcher, const matched_solution *a,
   return solve_from(matcher, matcher->start[n], mhb_norm(matcher->x, matcher->balance->n), found);
 }
 
+/* The output as mhb/tracking numbers it: probes, then pairs. */
+static int tracked_output(const point_matcher *matcher) {
+  const bool probe = matcher->output.place == POST_PLACE_PROBE;
+  return matcher->output.index + (probe ? 0 : matcher->balance->receptance->model->n_probes);
+}
+
+/* x <- x - J^-1 r, J factored, r the residual of Newton's workspace. Returns the change of the
+ * amplitude, m; NAN: none. */
+static double chord_step(point_matcher *matcher, const double *by_x) {
+  mhb_newton *w = matcher->newton;
+  const int   n = matcher->balance->n;
+  if (!mhb_condensation_solve(w->system, w->r)) return NAN;
+  for (int i = 0; i < n; i++) matcher->x[i] -= w->r[i];
+  return -mhb_dot(n, by_x, w->r);
+}
+
+shb_status point_matcher_change(point_matcher *matcher, const matched_solution *s, double *change) {
+  mhb_balance    *b      = matcher->balance;
+  mhb_newton     *newton = matcher->newton;
+  double complex *weight = calloc(mhb_amplitude_weights(b), sizeof *weight);
+  mhb_amplitude   size   = {.by_x = matcher->normal, .weight = weight, .size = MHB_SIZE_HALF_AXIS};
+  SHB_CHECK(weight, SHB_ERR_IO, "out of memory");
+  memset(matcher->start, 0, ((size_t)b->n + 1) * sizeof *matcher->start);
+  add_kept(matcher, s, 1, matcher->start);
+  memcpy(matcher->x, matcher->start, (size_t)b->n * sizeof *matcher->x);
+  matcher->has_last = false;
+  mhb_balance_set_preload(b, s->n0);
+  mhb_balance_linearise(b, matcher->x, s->omega, newton->r, NULL);
+  mhb_output_amplitude(b, matcher->x, tracked_output(matcher), &size);
+  *change = NAN;
+  if (mhb_condensation_factor(newton->system, NULL, NULL)) {
+    const double first = chord_step(matcher, size.by_x);
+    mhb_balance_evaluate(b, matcher->x, s->omega, newton->r, NULL, NULL);
+    *change = fabs(first) + fabs(chord_step(matcher, size.by_x));
+  }
+  free(weight);
+  return SHB_OK;
+}
+
 shb_status point_matcher_record(point_matcher *matcher, mhb_response *response, int branch) {
   mhb_curve_point point = {
       .x = matcher->x, .value = matcher->omega, .evaluation = matcher->balance->eval};
@@ -241,12 +282,10 @@ shb_status point_matcher_judge(point_matcher *matcher, int *stable) {
 
 shb_status point_matcher_peak(point_matcher *matcher, mhb_peak_near near,
                               mhb_peak_derivatives *derivatives, double found[2]) {
-  mhb_balance *b     = matcher->balance;
-  bool         probe = matcher->output.place == POST_PLACE_PROBE;
-  int          index = matcher->output.index + (probe ? 0 : b->receptance->model->n_probes);
-  found[1]           = amplitude(matcher);
-  SHB_TRY(mhb_peak_derivatives_find(b, index, MHB_SIZE_HALF_AXIS, near, matcher->x, matcher->omega,
-                                    found[1], derivatives));
+  mhb_balance *b = matcher->balance;
+  found[1]       = amplitude(matcher);
+  SHB_TRY(mhb_peak_derivatives_find(b, tracked_output(matcher), MHB_SIZE_HALF_AXIS, near,
+                                    matcher->x, matcher->omega, found[1], derivatives));
   found[0] = derivatives->omega / SHB_TWO_PI;
   found[1] = derivatives->amplitude;
   if (derivatives->kind != MHB_PEAK_SMOOTH) return SHB_OK;

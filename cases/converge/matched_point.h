@@ -59,6 +59,15 @@ int point_matcher_between(point_matcher *matcher, const matched_solution *a,
                           const matched_solution *b, double share,
                           const matched_solution *const chord[2], double found[2]);
 
+/* How much the amplitude at a kept solution of fewer harmonics changes with those of the matcher,
+ * at its frequency, m. At a smooth peak that is the change of the peak, whose frequency moves too.
+ * Two steps with one linearisation, whose changes add up: where the second is not small, new slip
+ * begins. The matcher's solution found last is lost.
+ *   change  out  NAN: not known
+ * Errors: SHB_ERR_IO no memory. */
+shb_status point_matcher_change(point_matcher *matcher, const matched_solution *solution,
+                                double *change);
+
 /* Append the solution found last to a branch of a response with as many pairs and probes. The
  * branch has the harmonics of the matcher. Errors: SHB_ERR_IO no memory. */
 shb_status point_matcher_record(point_matcher *matcher, mhb_response *response, int branch);

@@ -18,6 +18,10 @@ enum { N_SWEEPS = sizeof sweeps / sizeof *sweeps, LAST_COARSE = 15, MANY = 1000 
  * this, leaves a doubt. With 15 harmonics curves are within 1 % of those with 31. */
 static const double HIGHER = 0.02;
 
+/* Points of a curve with few harmonics. Usual ones of z_notch_blade have 100 to 700. One that goes
+ * on beyond this is not traced with those of the case, which takes minutes. */
+enum { MOST_POINTS = 8000 };
+
 /* Tolerance of the contact law on these curves; the peak itself is solved with that of the case.
  * On 200 contacts of z_notch_blade the sweeps cost 0.06 s each, with 1e-4 0.09 s. */
 static const double OUTLINE = 1e-3;
@@ -57,6 +61,7 @@ static shb_status sweep(job *j, int harmonics) {
     few.motion_tolerance = 0;
     few.harmonics        = harmonics * few.subharmonics;
     few.outline          = true;
+    few.max_points       = few.max_points < MOST_POINTS ? few.max_points : MOST_POINTS;
     few.tolerance        = fmax(few.tolerance, OUTLINE);
   }
   mhb_response_destroy(j->response);
@@ -189,38 +194,56 @@ static bool is_known(const job *j, const exact_peak *peak) {
   return peak->found && peak->exact && (fixed || isfinite(peak->amplitude_error));
 }
 
-/* State and reason: the peak's quality, and the first curve that did not cover the range. */
-static void judge(job *j, const exact_peak *peak) {
-  char text[512]   = "";
-  j->design->state = STUDY_DONE;
-  for (int k = 0; k < j->response->n_branches; k++) {
-    const mhb_branch *b = &j->response->branch[k];
-    if (b->kind != MHB_BRANCH_NONLINEAR || b->main != k || b->complete) continue;
-    snprintf(text, sizeof text, "a curve does not cover mhb.frequency: %s",
-             b->reason ? b->reason : "no reason is known");
-    if (!(peak->walked && is_known(j, peak))) j->design->state = STUDY_NOT_CONVERGED;
+/* The first main curve that does not cover the range; NULL: all do. */
+static const mhb_branch *cut_short(const mhb_response *r) {
+  for (int k = 0; k < r->n_branches; k++) {
+    const mhb_branch *b = &r->branch[k];
+    if (b->kind == MHB_BRANCH_NONLINEAR && b->main == k && !b->complete) return b;
   }
-  if (!text[0] && peak->edge)
-    snprintf(text, sizeof text,
-             "the highest point is at an end of mhb.frequency; the peak may lie beyond");
-  if (!text[0] && !peak->edge && peak->exact && peak->doubt) {
-    snprintf(text, sizeof text, "a part of the curve that may be higher could not be solved again");
-    j->design->state = STUDY_NOT_CONVERGED;
-  }
-  if (!text[0] && !peak->exact) {
-    snprintf(text, sizeof text, "the peak could not be solved again with more harmonics");
-    j->design->state = STUDY_NOT_CONVERGED;
-  }
-  if (!text[0] && !is_known(j, peak)) {
-    snprintf(text, sizeof text, "the peak is another one with more harmonics");
-    j->design->state = STUDY_NOT_CONVERGED;
-  }
+  return NULL;
+}
+
+/* A peak without friction has no bound if a mode has no damping. */
+static bool is_of_grid(const job *j, const exact_peak *peak) {
+  const modal_model *m    = &j->model->model;
+  bool               none = false;
+  for (int i = 0; i < m->n_modes; i++) none = none || m->damping_ratio[i] <= 0;
+  return none && !peak->edge && peak->dissipation == 0;
+}
+
+/* Why the highest peak may be another one, or have another height. False: text stays. */
+static bool put_doubt(const job *j, const exact_peak *peak, size_t size, char *text) {
   const double tolerance = j->model->settings.motion_tolerance;
   const double error     = peak->amplitude_error / peak->amplitude;
-  if (!text[0] && tolerance > 0 && error > tolerance) {
-    snprintf(text, sizeof text, "the peak's estimated error of %.2g is above mhb.tolerance", error);
-    j->design->state = STUDY_NOT_CONVERGED;
-  }
+  if (is_of_grid(j, peak))
+    snprintf(text, size,
+             "a mode has no damping and nothing slips at the peak: its height is that of the grid");
+  else if (peak->exact && peak->doubt)
+    snprintf(text, size, "a part of the curve that may be higher could not be solved again");
+  else if (!peak->exact)
+    snprintf(text, size, "the peak could not be solved again with more harmonics");
+  else if (!is_known(j, peak))
+    snprintf(text, size, "the peak is another one with more harmonics");
+  else if (tolerance > 0 && error > tolerance)
+    snprintf(text, size, "the peak's estimated error of %.2g is above mhb.tolerance", error);
+  else
+    return false;
+  return true;
+}
+
+/* State and reason: the peak's quality, and the first curve that did not cover the range. */
+static void judge(job *j, const exact_peak *peak) {
+  char              text[512] = "";
+  const mhb_branch *cut       = cut_short(j->response);
+  bool              doubtful  = cut && !(peak->walked && is_known(j, peak));
+  if (cut)
+    snprintf(text, sizeof text, "a curve does not cover mhb.frequency: %s",
+             cut->reason ? cut->reason : "no reason is known");
+  else if (peak->edge)
+    snprintf(text, sizeof text,
+             "the highest point is at an end of mhb.frequency; the peak may lie beyond");
+  if (!doubtful) doubtful = put_doubt(j, peak, sizeof text, text);
+  j->design->state = doubtful ? STUDY_NOT_CONVERGED : STUDY_DONE;
   study_design_set_reason(j->design, text);
 }
 
@@ -239,8 +262,14 @@ static shb_status fill(job *j, post_output first, int harmonics, const exact_pea
   return SHB_OK;
 }
 
+/* Whether the last sweep covers the range, or there was none. */
+static bool is_covered(const job *j) {
+  return !j->response || !cut_short(j->response);
+}
+
+/* Whether no sweep with more harmonics is needed. */
 static bool is_settled(const job *j, const exact_peak *peak) {
-  return is_known(j, peak) && !peak->doubt;
+  return is_known(j, peak) && !peak->doubt && (peak->walked || is_covered(j));
 }
 
 /* Sweep with more and more harmonics until the peak is exact.
@@ -258,6 +287,7 @@ static shb_status sweep_for(job *j, solved_peak *walked) {
   for (int i = 0; i < N_SWEEPS && !is_settled(j, &peak); i++) {
     exact_peak before = peak;
     if (sweeps[i] > 0 && !is_coarse(&j->model->settings, sweeps[i])) continue;
+    if (sweeps[i] == 0 && !is_covered(j)) break;
     status = sweep(j, sweeps[i]);
     if (status == SHB_ERR_INPUT && sweeps[i] > 0) continue; /* the load has more harmonics */
     if (status != SHB_OK && status != SHB_NOT_CONVERGED) return status;

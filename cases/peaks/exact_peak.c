@@ -19,7 +19,13 @@ static const double MISSED = 0.9;
 /* Width of the last bracket; the whole bracket is 2. A smooth peak is then exact to 1e-8. */
 static const double WIDTH  = 1e-4;
 static const double GOLDEN = 0.3819660112501051;
+/* A point this near to an end of the range is on it, relative. */
+static const double AT_END = 1e-9;
+/* The frequency of a smooth peak is within this of the maximum found by comparison, relative. */
+static const double BESIDE = 1e-3;
 enum { MOST_SOLUTIONS = 30 };
+/* Harmonics beyond these are not looked at for the error. */
+enum { MOST_BEYOND = 64 };
 
 enum { N_LEVELS = 3 };
 static const int levels[N_LEVELS] = {9, 17, 31};
@@ -103,11 +109,9 @@ static double solve_near(maximum *m, double best, double *at) {
   return value;
 }
 
-/* Maximise over the bracket of the samples. */
-static void maximise(maximum *m) {
-  const fine_maximum *f    = m->fine;
-  double              t[3] = {0, 1, 2}, a[3] = {f->beside[0], f->found[1], f->beside[1]};
-  double              before = 2;
+/* Maximise over a bracket: places t[3] and amplitudes a[3] there. */
+static void maximise(maximum *m, double t[3], double a[3]) {
+  double before = t[2] - t[0];
   for (int n = 0; n < MOST_SOLUTIONS && t[2] - t[0] > WIDTH; n++) {
     double width = t[2] - t[0];
     double at    = next_place(t, a, width > 0.7 * before);
@@ -151,7 +155,8 @@ static shb_status solve_first(maximum *m, matched_solution *solution, mhb_peak_d
   SHB_TRY(point_matcher_peak(m->matcher, near, by, m->found));
   if (by->kind == MHB_PEAK_SMOOTH) return point_matcher_keep(m->matcher, solution);
   m->found[1] = -1;
-  maximise(m);
+  double t[3] = {0, 1, 2}, a[3] = {m->fine->beside[0], m->fine->found[1], m->fine->beside[1]};
+  maximise(m, t, a);
   if (solve(m, m->t) < 0) return SHB_OK;
   SHB_TRY(point_matcher_keep(m->matcher, solution));
   SHB_TRY(point_matcher_peak(m->matcher, between_samples(m->fine), by, solved));
@@ -221,6 +226,33 @@ static shb_status describe_peak(const work *w, const maximum *m, const mhb_peak_
   return SHB_OK;
 }
 
+/* Move a bracket by twice its longer step towards its higher end. False: no solution there. */
+static bool move_bracket(maximum *m, double t[3], double a[3]) {
+  const int    end = a[0] > a[2] ? 0 : 2, other = 2 - end;
+  const double to = t[end] + 2 * (t[end] - t[1]);
+  t[other]        = t[1];
+  a[other]        = a[1];
+  t[1]            = t[end];
+  a[1]            = a[end];
+  t[end]          = to;
+  a[end]          = solve(m, to);
+  return a[end] >= 0;
+}
+
+/* Maximise near samples of fewer harmonics. False: no maximum is found there. */
+static bool maximise_anew(maximum *m) {
+  enum { MOST_MOVES = 4 };
+  double t[3] = {0, 1, 2}, a[3];
+  m->found[1] = -1;
+  for (int i = 0; i < 3; i++) a[i] = solve(m, t[i]);
+  if (fmin(a[0], fmin(a[1], a[2])) < 0) return false;
+  for (int i = 0; i < MOST_MOVES && a[1] < fmax(a[0], a[2]); i++)
+    if (!move_bracket(m, t, a)) return false;
+  if (a[1] < fmax(a[0], a[2])) return false;
+  maximise(m, t, a);
+  return solve(m, m->t) > 0;
+}
+
 /* The peak near a solution, with the harmonics of the matcher, and its numbers. */
 static shb_status solve_near_solution(const work *w, maximum *m, const matched_solution *from,
                                       exact_peak *peak, matched_solution *solution) {
@@ -230,7 +262,16 @@ static shb_status solve_near_solution(const work *w, maximum *m, const matched_s
   no_errors(peak);
   if (!solve_beside(m, from)) return SHB_OK;
   SHB_TRY(point_matcher_peak(m->matcher, between_samples(m->fine), &by, solved));
-  if (by.kind != MHB_PEAK_SMOOTH && !solve_beside(m, from)) return SHB_OK;
+  bool there = by.kind == MHB_PEAK_SMOOTH;
+  if (by.kind == MHB_PEAK_UNJUDGED && maximise_anew(m)) {
+    SHB_TRY(point_matcher_keep(m->matcher, solution));
+    mhb_peak_near near = between_samples(m->fine);
+    near.omega[0]      = fmin(near.omega[0], SHB_TWO_PI * m->found[0] * (1 - BESIDE));
+    near.omega[1]      = fmax(near.omega[1], SHB_TWO_PI * m->found[0] * (1 + BESIDE));
+    SHB_TRY(point_matcher_peak(m->matcher, near, &by, solved));
+    there = by.kind == MHB_PEAK_SMOOTH || solve_beside(m, solution);
+  }
+  if (!there && !solve_beside(m, from)) return SHB_OK;
   SHB_TRY(point_matcher_keep(m->matcher, solution));
   return describe_peak(w, m, &by, peak);
 }
@@ -267,9 +308,45 @@ typedef struct {
   matched_solution solution;
 } candidate;
 
+/* The amplitude's change by the harmonics of the next level, or twice as many after the last one,
+ * by one linearisation, m. NAN: not known. */
+static shb_status change_beyond(const work *w, const fine_maximum *f, int level,
+                                const matched_solution *at, double *change) {
+  maximum   m    = {.fine = f};
+  const int more = level + 1 < N_LEVELS ? levels[level + 1] : 2 * levels[level];
+  *change        = NAN;
+  if (!at->x || more * f->branch->order > MOST_BEYOND) return SHB_OK;
+  SHB_TRY(matcher_for(w, &m, more));
+  const shb_status status = point_matcher_change(m.matcher, at, change);
+  point_matcher_destroy(m.matcher);
+  return status;
+}
+
+/* The error with the harmonics of a level, m. The change from fewer is that of these, and may be
+ * small by chance. It falls with the fourth power of the harmonics: a kink of the force has
+ * harmonics as k^-2, the motion as k^-4. */
+static double error_of(int level, double fewer, double beyond) {
+  const double part = pow((double)levels[level - 1] / levels[level], 4);
+  return isfinite(beyond) ? fmax(beyond, part * fewer) : fewer;
+}
+
+/* The amplitude's error. What the harmonics beyond change is that of a smooth peak: the frequency
+ * of another one moves.
+ *   fewer  in   m, the change from fewer
+ *   known  out  false: it is that change, which may be small by chance */
+static shb_status estimate(const work *w, const fine_maximum *f, int level, double fewer,
+                           const matched_solution *at, exact_peak *peak, bool *known) {
+  const bool smooth = peak->by.kind == MHB_PEAK_SMOOTH;
+  double     beyond;
+  SHB_TRY(change_beyond(w, f, level, at, &beyond));
+  *known                = !smooth || isfinite(beyond);
+  peak->amplitude_error = smooth ? error_of(level, fewer, beyond) : fmax(fewer, beyond);
+  return SHB_OK;
+}
+
 /* With as many harmonics as the tolerance of the case asks for. */
 static shb_status settle(const work *w, const fine_maximum *f, candidate *c) {
-  bool settled = false;
+  bool settled = false, known = true;
   for (int level = w->first + 1; level < N_LEVELS && !settled; level++) {
     maximum          m      = {.fine = f};
     exact_peak       more   = {0};
@@ -279,16 +356,18 @@ static shb_status settle(const work *w, const fine_maximum *f, candidate *c) {
     point_matcher_destroy(m.matcher);
     if (more.found && fabs(more.amplitude / c->peak.amplitude - 1) < CHANGE) {
       set_errors(&more, &c->peak);
+      status = estimate(w, f, level, more.amplitude_error, &at, &more, &known);
       add_drop(&more, c->drop);
       more.exact   = true;
       c->peak      = more;
       c->harmonics = levels[level];
-      settled      = more.amplitude_error < w->settings->motion_tolerance * more.amplitude;
+      settled      = known && more.amplitude_error < w->settings->motion_tolerance * more.amplitude;
       matched_solution_free(&c->solution);
       c->solution = at;
     } else {
       matched_solution_free(&at);
       settled = true; /* the error stays unknown, or is that of fewer */
+      if (!known) c->peak.amplitude_error = NAN;
     }
     SHB_TRY(status);
   }
@@ -314,33 +393,59 @@ static shb_status add_asked(const work *w, const fine_maximum *f, const candidat
   return status;
 }
 
+/* One level of an end of a branch. False: it has no solution. */
+static shb_status settle_edge_at(const work *w, const fine_maximum *f, int level, bool fixed,
+                                 const curve_place *place, candidate *c, bool *good) {
+  maximum          m     = {.fine = f};
+  exact_peak       fewer = c->peak;
+  matched_solution at    = {0};
+  double           found[2], beyond = NAN;
+  SHB_TRY(matcher_for(w, &m, fixed ? 0 : levels[level]));
+  *good             = point_matcher_solve(m.matcher, place, true, found);
+  shb_status status = *good ? describe_solution(w, &m, &c->peak) : SHB_OK;
+  if (*good && status == SHB_OK) status = point_matcher_keep(m.matcher, &at);
+  if (*good && w->asked.multipliers && status == SHB_OK)
+    status = point_matcher_judge(m.matcher, &c->peak.stable);
+  point_matcher_destroy(m.matcher);
+  if (*good && !fixed && status == SHB_OK) status = change_beyond(w, f, level, &at, &beyond);
+  matched_solution_free(&at);
+  if (!*good || level == w->first) return status;
+  set_errors(&c->peak, &fewer);
+  c->peak.amplitude_error = error_of(level, c->peak.amplitude_error, beyond);
+  return status;
+}
+
 /* The end of a branch, solved again at its frequency; without a solution the coarse point is
  * taken. */
-static shb_status settle_edge(const work *w, const fine_maximum *f, int fixed, candidate *c) {
-  const curve_place place = {f->branch, f->point, f->point, f->point, f->point, 0};
-  exact_peak        fewer;
-  c->peak.edge   = true;
-  c->peak.stable = -1;
-  SHB_TRY(describe(w, w->response, (int)(f->branch - w->response->branch), f->point, &c->peak));
-  for (int level = w->first; level < (fixed ? w->first + 1 : N_LEVELS); level++) {
-    maximum m = {.fine = f};
-    double  found[2];
-    fewer = c->peak;
-    SHB_TRY(matcher_for(w, &m, fixed ? 0 : levels[level]));
-    bool       good   = point_matcher_solve(m.matcher, &place, true, found);
-    shb_status status = good ? describe_solution(w, &m, &c->peak) : SHB_OK;
-    if (good && w->asked.multipliers && status == SHB_OK)
-      status = point_matcher_judge(m.matcher, &c->peak.stable);
-    point_matcher_destroy(m.matcher);
-    SHB_TRY(status);
-    if (!good) break;
-    c->peak.exact = true;
-    if (level == w->first) continue;
-    set_errors(&c->peak, &fewer);
+static shb_status settle_edge(const work *w, const fine_maximum *f, int point, int fixed,
+                              candidate *c) {
+  const curve_place place = {f->branch, point, point, point, point, 0};
+  bool              good  = true;
+  c->peak.edge            = true;
+  c->peak.stable          = -1;
+  SHB_TRY(describe(w, w->response, (int)(f->branch - w->response->branch), point, &c->peak));
+  for (int level = w->first; level < (fixed ? w->first + 1 : N_LEVELS) && good; level++) {
+    SHB_TRY(settle_edge_at(w, f, level, fixed, &place, c, &good));
+    c->peak.exact = c->peak.exact || good;
     if (c->peak.amplitude_error < w->settings->motion_tolerance * c->peak.amplitude) break;
   }
   c->amplitude = c->peak.amplitude;
   return SHB_OK;
+}
+
+/* -1: a frequency, Hz, lies within the range. Else the point of the branch at that end of the
+ * range, nearest to the maximum. */
+static int end_beyond(const work *w, const fine_maximum *f, double frequency) {
+  const double *range = w->settings->frequency;
+  const int     n     = f->branch->n_points;
+  if (frequency >= range[0] && frequency <= range[1]) return -1;
+  const double to = frequency < range[0] ? range[0] : range[1];
+  for (int away = 0; away < n; away++)
+    for (int sense = -1; sense <= 1; sense += 2) {
+      const int i = f->point + sense * away;
+      if (i >= 0 && i < n && fabs(f->branch->frequency[i] - to) <= AT_END * to) return i;
+    }
+  return f->point;
 }
 
 /* With the harmonics of the samples.
@@ -352,10 +457,18 @@ static shb_status begin(const work *w, const fine_maximum *f, int fixed, double 
   c->amplitude            = -1;
   c->peak.stable          = -1;
   no_errors(&c->peak);
-  if (f->edge) return settle_edge(w, f, fixed, c);
+  if (f->edge) return settle_edge(w, f, f->point, fixed, c);
   c->harmonics = fixed ? 0 : levels[w->first];
   SHB_TRY(matcher_for(w, &m, c->harmonics));
   shb_status status = solve_first(&m, &c->solution, &by);
+  const bool smooth = by.kind != MHB_PEAK_UNJUDGED;
+  const int  end =
+      c->solution.x ? end_beyond(w, f, smooth ? by.omega / SHB_TWO_PI : m.found[0]) : -1;
+  if (status == SHB_OK && end >= 0) {
+    point_matcher_destroy(m.matcher);
+    matched_solution_free(&c->solution);
+    return settle_edge(w, f, end, fixed, c);
+  }
   if (status == SHB_OK && c->solution.x) {
     c->amplitude = by.kind == MHB_PEAK_UNJUDGED ? m.found[1] : by.amplitude;
     /* beside a corner the law may go on a little higher, and Newton's method not reach the top */

@@ -535,15 +535,14 @@ static void put_flips(const mhb_response *r, post_buffer *out) {
              untraced);
 }
 
-/* Modes without damping. */
-static int undamped(const mhb_response *r) {
+int post_undamped(const mhb_response *r) {
   int n = 0;
   for (int i = 0; r->mode_damping && i < r->n_modes; i++) n += r->mode_damping[i] <= 0;
   return n;
 }
 
 static void put_undamped(const mhb_response *r, post_buffer *out) {
-  const int n = undamped(r);
+  const int n = post_undamped(r);
   if (n == 0) return;
   post_put(out, "<li class=\"caution\"><b>");
   if (n == r->n_modes)
@@ -654,7 +653,7 @@ static void put_line(const post_analysis *analysis, post_buffer *out) {
 }
 
 void post_summary(const post_analysis *analysis, post_buffer *out) {
-  const int n = undamped(analysis->response);
+  const int n = post_undamped(analysis->response);
   put_line(analysis, out);
   if (n == 0) return;
   post_put(out, "%s", out->length ? "; " : "");

@@ -11,6 +11,10 @@ void post_key_figures(const post_analysis *analysis, post_buffer *out);
  * curves, accuracy. */
 void post_findings(const post_analysis *analysis, post_buffer *out);
 
+/* Number of modes without damping. Where nothing slips the height of their resonances is that of
+ * the grid of frequencies. */
+int post_undamped(const mhb_response *response);
+
 /* The findings in one or two plain lines for the terminal, without a newline at the end. */
 void post_summary(const post_analysis *analysis, post_buffer *out);
 

@@ -4,6 +4,7 @@
 #include <stdlib.h>
 
 #include "mhb/problem/parameter.h"
+#include "postproc/analysis/findings.h"
 #include "postproc/analysis/stability_findings.h"
 #include "postproc/analysis/tracked_findings.h"
 
@@ -60,6 +61,7 @@ static shb_status put_peak(const work *w, int branch, const post_peak *peak) {
   post_json_number(w->json, "frequency", in_hertz ? peak->at : b->frequency[p]);
   post_json_number(w->json, "parameter", in_hertz ? NAN : peak->at);
   post_json_bool(w->json, "at_end", peak->edge);
+  post_json_bool(w->json, "of_grid", post_undamped(r) > 0 && !(post_state(r, b, p, 1) > 0));
   post_json_text(w->json, "stability", verdict_name(b, p));
   post_json_number(w->json, "bandwidth", in_hertz ? peak->bandwidth : NAN);
   post_json_number(w->json, "damping", in_hertz ? peak->damping : NAN);
@@ -172,20 +174,24 @@ static void put_samples(const work *w) {
 
 /* ---- the best preload ---- */
 
+/* One whose points have an error above the tolerance has no numbers. */
 static void put_tracked(const work *w, const mhb_optimum *o) {
+  const bool told = post_optimum_told(w->analysis->response);
   post_json_object(w->json, "optimum");
-  post_json_number(w->json, "parameter", o->value);
-  post_json_number(w->json, "error", o->error);
-  post_json_number(w->json, "amplitude", o->amplitude);
-  post_json_number(w->json, "frequency", o->frequency[0]);
+  post_json_bool(w->json, "marked", !told);
+  post_json_number(w->json, "parameter", told ? o->value : NAN);
+  post_json_number(w->json, "error", told ? o->error : NAN);
+  post_json_number(w->json, "amplitude", told ? o->amplitude : NAN);
+  post_json_number(w->json, "frequency", told ? o->frequency[0] : NAN);
   post_json_bool(w->json, "verified", o->verified);
   post_json_end(w->json);
 }
 
 static void put_optimum(const work *w) {
   const post_tracking *t = &w->analysis->tracking;
-  if (post_optimum_told(w->analysis->response)) {
-    put_tracked(w, &w->analysis->response->optimum);
+  const mhb_optimum   *o = &w->analysis->response->optimum;
+  if (o->kind != MHB_OPTIMUM_NONE) {
+    put_tracked(w, o);
     return;
   }
   if (t->best < 0) {
@@ -244,6 +250,7 @@ shb_status post_response_put(const post_analysis *analysis, const post_stress_so
   post_place_name(r, analysis->primary, place);
   post_json_bool(json, "finished", !r->unfinished);
   post_json_bool(json, "complete", complete);
+  post_json_integer(json, "undamped_modes", post_undamped(r));
   post_json_integer(json, "marked", marks.marked);
   post_json_number(json, "largest_marked_error", marks.marked > 0 ? marks.largest : NAN);
   post_json_integer(json, "engine_order", r->engine_order);

@@ -22,7 +22,7 @@ foreach(noun face_integration ring)
   shb_bench(${noun} NIGHTLY LIBRARIES tests_models)
 endforeach()
 foreach(noun study study_agreement)
-  shb_bench(${noun} NIGHTLY LIBRARIES shb_cases_study tests_models)
+  shb_bench(${noun} NIGHTLY SOURCES studied_designs.c LIBRARIES shb_cases_study tests_models)
 endforeach()
 # it counts their calls
 shb_bench(mistuning NIGHTLY LIBRARIES tests_models

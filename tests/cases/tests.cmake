@@ -70,6 +70,8 @@ shb_python_test(cases.study.blade_study INTEGRATION cases/study/test_blade_study
 
 shb_python_test(cases.study.study_inputs INTEGRATION cases/study/test_study_inputs.py
   ${PROGRAMS_FOLDER} ${CASES}/bring_your_own)
+shb_python_test(cases.study.one_answer INTEGRATION cases/study/test_one_answer.py
+  ${PROGRAMS_FOLDER} ${CASES}/bring_your_own)
 shb_python_test(cases.study.study_process INTEGRATION cases/study/test_study_process.py
   ${PROGRAMS_FOLDER} ${CASES}/bring_your_own)
 

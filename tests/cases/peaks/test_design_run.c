@@ -89,6 +89,33 @@ static void no_peak_of_random_designs_is_missed(void **state) {
   modal_model_free(&model.model);
 }
 
+/* The told error is that of the harmonics left out: against the same peak with 31. */
+static void the_told_error_is_that_of_the_harmonics_left_out(void **state) {
+  unsigned long seed  = 5;
+  case_model    model = lone_blade();
+  (void)state;
+  for (int i = 0; i < DESIGNS; i++) {
+    design_study one, fixed;
+    const double tolerance = model.settings.motion_tolerance;
+    model.settings.n0[0]   = 0.03 * pow(40, next_random(&seed));
+    model.settings.mu      = 0.1 + 0.5 * next_random(&seed);
+    study_design *design   = run(&model, &one);
+
+    model.settings.motion_tolerance = 0;
+    const double reference          = run(&model, &fixed)->value[0];
+    model.settings.motion_tolerance = tolerance;
+    const double error = fabs(design->value[0] - reference), told = design->error[0];
+    printf("n0 %.3f: error %.1e, told %.1e\n", model.settings.n0[0], error / reference,
+           told / reference);
+    assert_int_equal(design->state, STUDY_DONE);
+    assert_below(error, 3 * told + 1e-7 * reference); /* law and comparison */
+    assert_below(told, tolerance * reference);
+    design_study_free(&one);
+    design_study_free(&fixed);
+  }
+  modal_model_free(&model.model);
+}
+
 /* Where the peak lies beyond the range, its end has the amplitude of a curve with many harmonics,
  * which the sweep with three has not. */
 static void the_end_of_a_range_is_solved_with_enough_harmonics(void **state) {
@@ -180,6 +207,7 @@ static void deviations_are_a_key_of_a_study(void **state) {
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(no_peak_of_random_designs_is_missed),
+      cmocka_unit_test(the_told_error_is_that_of_the_harmonics_left_out),
       cmocka_unit_test(the_end_of_a_range_is_solved_with_enough_harmonics),
       cmocka_unit_test(a_ring_has_the_peak_of_its_worst_blade),
       cmocka_unit_test(deviations_are_a_key_of_a_study)};
