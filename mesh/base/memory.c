@@ -59,7 +59,7 @@ void *shb_realloc(void *array, size_t count, size_t size) {
 }
 
 char *shb_text(const char *text) {
-  return shb_text_start(text, SIZE_MAX);
+  return shb_text_start(text, PTRDIFF_MAX);
 }
 
 char *shb_text_start(const char *text, size_t most) {

@@ -40,13 +40,16 @@ static mhb_settings balance_case(void) {
 
 /* turning: with Coriolis terms. */
 static modal_settings stage_case(fem_turning turning) {
-  modal_settings settings   = sector_case(BLADES, MODES);
-  settings.coriolis         = turning;
-  settings.load.n_harmonics = 2;
-  settings.load.factor[2]   = -0.2 + 0.5 * I;
-  settings.speed            = speeds[SPEEDS - 1];
-  settings.n_speeds         = SPEEDS;
-  settings.speeds           = speeds;
+  static fem_load load;
+  modal_settings  settings = sector_case(BLADES, MODES);
+  load                     = sector_load;
+  load.n_harmonics         = 2;
+  load.factor[2]           = -0.2 + 0.5 * I;
+  settings.loads           = &load;
+  settings.coriolis        = turning;
+  settings.speed           = speeds[SPEEDS - 1];
+  settings.n_speeds        = SPEEDS;
+  settings.speeds          = speeds;
   return settings;
 }
 

@@ -25,6 +25,7 @@
 #include "modal/stage/solve.h"
 #include "tests/support/files.h"
 #include "tests/support/odd_blade.h"
+#include "tests/support/one_of_each.h"
 
 enum { MODES = 20, HARMONICS = 1 };
 
@@ -62,14 +63,12 @@ static void make_mesh(mesh_fe *mesh, int *blades) {
 static void make_model(model *m) {
   memset(m, 0, sizeof *m);
   make_mesh(&m->mesh, &m->settings.blades);
-  m->settings.material = (fem_material){.E = 2.1e11, .nu = 0.3, .rho = 7850};
-  m->settings.axis     = MESH_AXIS_X;
-  m->settings.modes    = MODES;
-  m->settings.damping =
-      (modal_damping){.kind = MODAL_DAMPING_RAYLEIGH, .alpha = alpha, .beta = beta};
-  m->settings.load =
-      (fem_load){.kind = FEM_LOAD_PRESSURE, .pressure = 1000, .n_harmonics = 1, .factor = {0, 1}};
-  m->settings.points = 1;
+  m->settings.axis    = MESH_AXIS_X;
+  m->settings.modes   = MODES;
+  m->settings.damping = (modal_damping){MODAL_DAMPING_RAYLEIGH, .alpha = alpha, .beta = beta};
+  m->settings         = one_of_each(
+              m->settings, 1, false,
+              (fem_load){.kind = FEM_LOAD_PRESSURE, .pressure = 1000, .n_harmonics = 1, .factor = {0, 1}});
   assert_ok(modal_solve(PETSC_COMM_SELF, &m->mesh, &m->settings, NULL, &m->result));
   const size_t n = (size_t)m->mesh.n_nodes;
   m->shape       = malloc(MODES * 3 * n * sizeof *m->shape);
@@ -210,7 +209,7 @@ static void compare(const model *m, const mhb_settings *s, const mhb_response *r
   double complex   *sum_sigma = calloc(6 * n, sizeof *f), x[6], du[3], p[3];
   assert_ok(mhb_receptance_create(&m->result.model, s, HARMONICS, &receptance));
   modal_patches_dofs(&m->result.patches, &dofs);
-  assert_ok(modal_load_create(&m->mesh, 1, &m->settings.load, NULL, &load));
+  assert_ok(modal_load_create(&m->mesh, 1, m->settings.loads, NULL, &load));
   for (int c = 0; c < load.dofs.n; c++) add_dof(&load.dofs, c, load.weight[load.dofs.n + c], f);
   const mhb_relative *t = &receptance->part->relative;
   for (int row = 0; row < 3; row++) {
