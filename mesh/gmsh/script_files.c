@@ -6,6 +6,7 @@
 #include <string.h>
 #include <sys/stat.h>
 
+#include "mesh/base/memory.h"
 #include "mesh/core/file_format.h"
 
 /* Take over a path, malloc'ed. */
@@ -16,14 +17,11 @@ static void put(mesh_file_list *list, char *path, const struct stat *about) {
   list->n++;
 }
 
-shb_status mesh_files_begin(const char *path, mesh_file_list *list) {
+void mesh_files_begin(const char *path, mesh_file_list *list) {
   struct stat about = {0};
-  char       *copy  = strdup(path);
   list->n           = 0;
-  SHB_CHECK(copy, SHB_ERR_IO, "out of memory");
   (void)stat(path, &about); /* who reads it tells that it is not there */
-  put(list, copy, &about);
-  return SHB_OK;
+  put(list, shb_text(path), &about);
 }
 
 void mesh_files_free(mesh_file_list *list) {
@@ -42,10 +40,7 @@ shb_status mesh_files_add(mesh_file_list *list, const char *from, const char *na
   struct stat  about;
   const char  *slash  = strrchr(from, '/');
   const int    folder = slash && name[0] != '/' ? (int)(slash + 1 - from) : 0;
-  const size_t size   = (size_t)folder + n + 1;
-  char        *path   = malloc(size);
-  SHB_CHECK(path, SHB_ERR_IO, "out of memory");
-  snprintf(path, size, "%.*s%.*s", folder, from, (int)n, name);
+  char        *path   = shb_text_of("%.*s%.*s", folder, from, (int)n, name);
   const bool added = is_new(list, path, &about), full = list->n == MESH_MOST_FILES;
   if (added && !full)
     put(list, path, &about);
@@ -59,7 +54,7 @@ shb_status mesh_files_add(mesh_file_list *list, const char *from, const char *na
 char *mesh_files_text(const char *path) {
   struct stat about;
   FILE       *file = stat(path, &about) == 0 && S_ISREG(about.st_mode) ? fopen(path, "rb") : NULL;
-  char       *text = file ? malloc((size_t)about.st_size + 1) : NULL;
+  char       *text = file ? shb_alloc((size_t)about.st_size + 1, 1) : NULL;
   if (text) text[fread(text, 1, (size_t)about.st_size, file)] = '\0';
   if (file) fclose(file);
   return text;
@@ -80,7 +75,7 @@ static shb_status add_quoted(mesh_file_list *list, const char *from, const char 
 
 /* What a script merges with the ending of a mesh or a solid includes nothing. */
 shb_status mesh_script_files(const char *path, mesh_file_list *list) {
-  SHB_TRY(mesh_files_begin(path, list));
+  mesh_files_begin(path, list);
   for (int i = 0; i < list->n; i++) {
     const mesh_format format = mesh_format_of(list->path[i]);
     if (format != MESH_FORMAT_GEO && format != MESH_FORMAT_UNKNOWN) continue;

@@ -17,12 +17,12 @@ typedef struct {
   ino_t inode[MESH_MOST_FILES];
 } mesh_file_list;
 
-/* Start a list with a file. SHB_ERR_IO: no memory. */
-shb_status mesh_files_begin(const char *path, mesh_file_list *list);
-void       mesh_files_free(mesh_file_list *list);
+/* Start a list with a file. */
+void mesh_files_begin(const char *path, mesh_file_list *list);
+void mesh_files_free(mesh_file_list *list);
 
 /* Add the file `name` of n characters, in the folder of the file `from`, if it is a file and not
- * there yet. Errors: SHB_ERR_INPUT too many files; SHB_ERR_IO no memory. */
+ * there yet. Errors: SHB_ERR_INPUT too many files. */
 shb_status mesh_files_add(mesh_file_list *list, const char *from, const char *name, size_t n);
 
 /* The text of a file; malloc'ed. NULL: it cannot be read. */

@@ -5,6 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "mesh/base/memory.h"
 #include "mesh/base/vec3.h"
 #include "mesh/gmsh/api.h"
 #include "mesh/gmsh/session.h"
@@ -277,6 +278,27 @@ static void find_ends(face_sum *f, int d) {
   f->pole[d][1] = coincide(f, uv + 3, 3, 1);
 }
 
+/* Nodes that gmsh copied from another face, for cyclic sides, have the parameters of that one: give
+ * each such node those of the nearest point.
+ *   xyz  in      coordinates [n][3], m
+ *   at   in,out  parameters [n][2] */
+static void correct_places(const face_sum *f, size_t n, const double *xyz, double *at) {
+  double *x    = NULL;
+  size_t  size = 0;
+  int     ierr = 0;
+  gmshModelGetValue(2, f->tag, at, 2 * n, &x, &size, &ierr);
+  for (size_t i = 0; i < n && ierr == 0 && size == 3 * n; i++) {
+    double *nearest = NULL, *uv = NULL;
+    size_t  n_nearest = 0, n_uv = 0;
+    if (vec3_distance(x + 3 * i, xyz + 3 * i) < 1e-6 * f->extent) continue;
+    gmshModelGetClosestPoint(2, f->tag, xyz + 3 * i, 3, &nearest, &n_nearest, &uv, &n_uv, &ierr);
+    if (ierr == 0 && n_uv == 2) memcpy(at + 2 * i, uv, 2 * sizeof *uv);
+    gmshFree(nearest);
+    gmshFree(uv);
+  }
+  gmshFree(x);
+}
+
 /* The places of a face's nodes. *known: it has parameters. */
 static shb_status read_places(face_sum *f, bool *known) {
   size_t *tags = NULL, n_xyz = 0, n_at = 0;
@@ -287,10 +309,11 @@ static shb_status read_places(face_sum *f, bool *known) {
   GMSH_TRY(f->path,
            gmshModelGetParametrizationBounds(2, f->tag, &low, &n_low, &high, &n_high, &ierr));
   *known    = n_at == 2 * f->n_places && n_low == 2 && n_high == 2;
-  f->places = *known ? malloc((f->n_places + 1) * sizeof *f->places) : NULL;
-  for (size_t i = 0; f->places && i < f->n_places; i++)
-    f->places[i] = (place){tags[i], {at[2 * i], at[2 * i + 1]}};
-  if (f->places) {
+  f->places = *known ? shb_alloc(f->n_places + 1, sizeof *f->places) : NULL;
+  if (*known) {
+    correct_places(f, f->n_places, xyz, at);
+    for (size_t i = 0; i < f->n_places; i++)
+      f->places[i] = (place){tags[i], {at[2 * i], at[2 * i + 1]}};
     qsort(f->places, f->n_places, sizeof *f->places, by_tag);
     memcpy(f->low, low, sizeof f->low);
     memcpy(f->high, high, sizeof f->high);
@@ -300,7 +323,6 @@ static shb_status read_places(face_sum *f, bool *known) {
   gmshFree(at);
   gmshFree(low);
   gmshFree(high);
-  SHB_CHECK(!*known || f->places, SHB_ERR_IO, "%s: no memory to measure it", f->path);
   return SHB_OK;
 }
 

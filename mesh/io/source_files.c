@@ -29,7 +29,7 @@ static shb_status add_cards(mesh_file_list *list, const char *from, const char *
 }
 
 static shb_status deck_files(const char *path, mesh_file_list *list) {
-  SHB_TRY(mesh_files_begin(path, list));
+  mesh_files_begin(path, list);
   for (int i = 0; i < list->n; i++) {
     char            *text   = mesh_files_text(list->path[i]);
     const shb_status status = text ? add_cards(list, list->path[i], text) : SHB_OK;
@@ -56,9 +56,13 @@ static shb_status hash(const mesh_file_list *list, char out[17]) {
 shb_status mesh_source_fingerprint(const char *path, char out[17]) {
   mesh_file_list    list   = {0};
   const mesh_format format = mesh_format_of(path);
-  shb_status        status = format == MESH_FORMAT_GEO   ? mesh_script_files(path, &list)
-                             : format == MESH_FORMAT_INP ? deck_files(path, &list)
-                                                         : mesh_files_begin(path, &list);
+  shb_status        status = SHB_OK;
+  if (format == MESH_FORMAT_GEO)
+    status = mesh_script_files(path, &list);
+  else if (format == MESH_FORMAT_INP)
+    status = deck_files(path, &list);
+  else
+    mesh_files_begin(path, &list);
   if (status == SHB_OK) status = hash(&list, out);
   mesh_files_free(&list);
   return status;

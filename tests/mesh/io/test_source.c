@@ -301,11 +301,13 @@ static void solids_are_meshed(void **state) {
 static void sides_are_made_to_match(void **state) {
   (void)state;
   mesh_fe     mesh;
-  mesh_source source = {.path   = scratch("sector.geo"),
-                        .unit   = 1,
-                        .size   = .012,
-                        .axis   = MESH_AXIS_X,
-                        .blades = BLADES};
+  mesh_source source = {.path       = scratch("sector.geo"),
+                        .unit       = 1,
+                        .size       = .012,
+                        .axis       = MESH_AXIS_X,
+                        .blades     = BLADES,
+                        .n_contacts = 1,
+                        .contact    = {{"contact_right", "contact_left"}}};
   put(source.path,
       "SetFactory(\"OpenCASCADE\");\nRectangle(1) = {0, .3, 0, .05, .04};\n"
       "Extrude {{1, 0, 0}, {0, 0, 0}, 2*Pi/23} { Surface{1}; }\n"
