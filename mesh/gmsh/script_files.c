@@ -37,11 +37,11 @@ static bool is_new(const mesh_file_list *list, const char *path, struct stat *ab
 }
 
 shb_status mesh_files_add(mesh_file_list *list, const char *from, const char *name, size_t n) {
-  struct stat  about;
-  const char  *slash  = strrchr(from, '/');
-  const int    folder = slash && name[0] != '/' ? (int)(slash + 1 - from) : 0;
-  char        *path   = shb_text_of("%.*s%.*s", folder, from, (int)n, name);
-  const bool added = is_new(list, path, &about), full = list->n == MESH_MOST_FILES;
+  struct stat about;
+  const char *slash  = strrchr(from, '/');
+  const int   folder = slash && name[0] != '/' ? (int)(slash + 1 - from) : 0;
+  char       *path   = shb_text_of("%.*s%.*s", folder, from, (int)n, name);
+  const bool  added = is_new(list, path, &about), full = list->n == MESH_MOST_FILES;
   if (added && !full)
     put(list, path, &about);
   else

@@ -282,7 +282,7 @@ static void find_ends(face_sum *f, int d) {
  * each such node those of the nearest point.
  *   xyz  in      coordinates [n][3], m
  *   at   in,out  parameters [n][2] */
-static void correct_places(const face_sum *f, size_t n, const double *xyz, double *at) {
+static void correct_places(const face_sum *f, size_t n, double *xyz, double *at) {
   double *x    = NULL;
   size_t  size = 0;
   int     ierr = 0;
@@ -342,13 +342,13 @@ static shb_status add_face(face_sum *f, bool *known) {
   return status;
 }
 
-static size_t count_elements(const face_sum *f, const int *tags, size_t n) {
+static size_t count_elements(const face_sum *f, int n, const int *face) {
   size_t all = 0;
-  for (size_t i = 0; i < n; i++) {
+  for (int i = 0; i < n; i++) {
     size_t *ids = NULL, *node = NULL, here = 0, n_nodes = 0;
     int     ierr = 0;
     gmshModelMeshGetElementsByType(mesh_topology_of(f->kind)->gmsh_face, &ids, &here, &node,
-                                   &n_nodes, abs(tags[2 * i + 1]), 0, 1, &ierr);
+                                   &n_nodes, abs(face[i]), 0, 1, &ierr);
     all += here;
     gmshFree(ids);
     gmshFree(node);
@@ -356,11 +356,11 @@ static size_t count_elements(const face_sum *f, const int *tags, size_t n) {
   return all;
 }
 
-static shb_status add_faces(face_sum *f, const int *tags, size_t n, bool *known) {
+static shb_status add_faces(face_sum *f, int n, const int *face, bool *known) {
   *known = true;
-  for (size_t i = 0; i < n && *known; i++) {
-    f->tag                  = abs(tags[2 * i + 1]);
-    f->sign                 = tags[2 * i + 1] < 0 ? -1 : 1;
+  for (int i = 0; i < n && *known; i++) {
+    f->tag                  = abs(face[i]);
+    f->sign                 = face[i] < 0 ? -1 : 1;
     const shb_status status = add_face(f, known);
     free(f->places);
     f->places = NULL;
@@ -369,28 +369,24 @@ static shb_status add_faces(face_sum *f, const int *tags, size_t n, bool *known)
   return SHB_OK;
 }
 
-shb_status mesh_solid_volume_of(const char *path, mesh_kind kind, int solid,
+shb_status mesh_solid_volume_of(const char *path, mesh_kind kind, int solid, int n, const int *face,
                                 mesh_solid_volume *out) {
-  face_sum f      = {.path = path, .kind = kind};
-  int      one[2] = {3, solid}, *tags = NULL;
-  size_t   n = 0;
+  face_sum f = {.path = path, .kind = kind};
   double   low[3], high[3];
   bool     known = true;
   *out           = (mesh_solid_volume){NAN, NAN};
   GMSH_TRY(path, gmshModelGetBoundingBox(3, solid, &low[0], &low[1], &low[2], &high[0], &high[1],
                                          &high[2], &ierr));
   for (int d = 0; d < 3; d++) f.centre[d] = (low[d] + high[d]) / 2;
-  f.extent = vec3_distance(low, high) / 2;
-  GMSH_TRY(path, gmshModelGetBoundary(one, 2, &tags, &n, 0, 1, 0, &ierr));
+  f.extent          = vec3_distance(low, high) / 2;
   f.tolerance       = INFINITY; /* a first volume, of which the tolerance is a part */
-  shb_status status = add_faces(&f, tags, n / 2, &known);
+  shb_status status = add_faces(&f, n, face, &known);
   if (status == SHB_OK && known) {
-    f.tolerance = agree * fabs(f.flux[1]) / (double)(count_elements(&f, tags, n / 2) + 1);
+    f.tolerance = agree * fabs(f.flux[1]) / (double)(count_elements(&f, n, face) + 1);
     f.flux[0] = f.flux[1] = f.left = 0;
     memset(f.normal, 0, sizeof f.normal);
-    status = add_faces(&f, tags, n / 2, &known);
+    status = add_faces(&f, n, face, &known);
   }
-  gmshFree(tags);
   if (status != SHB_OK || !known) return status;
   out->volume = fabs(f.flux[1]) / 3;
   out->error  = (f.left + fabs(f.flux[1] - f.flux[0]) / 2 + vec3_norm(f.normal) * f.extent) / 3;

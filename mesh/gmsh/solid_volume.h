@@ -24,8 +24,9 @@ typedef struct {
  * solid.
  *   kind   in  of the volume elements
  *   solid  in  gmsh's tag
- * Errors: SHB_ERR_INPUT; SHB_ERR_IO no memory. */
-shb_status mesh_solid_volume_of(const char *path, mesh_kind kind, int solid,
+ *   face   in  [n] gmsh's tags of its faces, below 0 where their elements look inwards
+ * Errors: SHB_ERR_INPUT. */
+shb_status mesh_solid_volume_of(const char *path, mesh_kind kind, int solid, int n, const int *face,
                                 mesh_solid_volume *out);
 
 #endif

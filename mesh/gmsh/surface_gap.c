@@ -7,6 +7,7 @@
 
 #include "mesh/base/memory.h"
 #include "mesh/base/vec3.h"
+#include "mesh/core/faces.h"
 #include "mesh/gmsh/api.h"
 #include "mesh/gmsh/session.h"
 #include "mesh/gmsh/solid_volume.h"
@@ -50,14 +51,22 @@ static int by_tag(const void *a, const void *b) {
   return (p > q) - (p < q);
 }
 
-/* Coordinates of the nodes of an element on a face. False: a node is not in the mesh. */
-static bool find_nodes(const mesh_fe *mesh, const size_t *tags, int n, double (*x)[3]) {
+/* Indices of the nodes of an element on a face. False: a node is not in the mesh. */
+static bool find_nodes(const mesh_fe *mesh, const size_t *tags, int n, int *node) {
   for (int i = 0; i < n; i++) {
     const long  tag   = (long)tags[i];
     const long *found = bsearch(&tag, mesh->node_tag, (size_t)mesh->n_nodes, sizeof tag, by_tag);
     if (!found) return false;
-    memcpy(x[i], mesh->coordinates + 3 * (found - mesh->node_tag), sizeof x[i]);
+    node[i] = (int)(found - mesh->node_tag);
   }
+  return true;
+}
+
+/* Their coordinates. */
+static bool find_places(const mesh_fe *mesh, const size_t *tags, int n, double (*x)[3]) {
+  int node[MESH_FACE_NODES];
+  if (!find_nodes(mesh, tags, n, node)) return false;
+  for (int i = 0; i < n; i++) memcpy(x[i], mesh->coordinates + 3 * node[i], sizeof x[i]);
   return true;
 }
 
@@ -105,7 +114,7 @@ static shb_status add_face(sums *s, const face *f) {
   size_t kept = 0;
   for (size_t e = 0; e < f->n; e++) {
     double x[MESH_FACE_NODES][3];
-    if (!find_nodes(s->mesh, f->node + e * (size_t)nodes, nodes, x)) continue;
+    if (!find_places(s->mesh, f->node + e * (size_t)nodes, nodes, x)) continue;
     place_points(s, (const double(*)[3])x, nodes, point + kept, area + kept);
     for (int q = 0; q < each; q++)
       s->cone += f->sign * vec3_dot(point[kept + (size_t)q], area[kept + (size_t)q]);
@@ -132,7 +141,41 @@ static shb_status take_face(const sums *s, int signed_tag, face *f) {
   return SHB_OK;
 }
 
-static shb_status add_faces(sums *s, const int *tags, int n) {
+/* 1: the corners follow each other as in an outward face, -1: the other way round, 0: others. */
+static int same_sense(int n, const int *outward, const int *corner) {
+  for (int first = 0; first < n; first++)
+    for (int sense = -1; sense <= 1; sense += 2) {
+      int same = 0;
+      while (same < n && outward[(first + sense * same + n) % n] == corner[same]) same++;
+      if (same == n) return sense;
+    }
+  return 0;
+}
+
+/* Whether the elements of each face look outwards, by the volume elements. gmsh's own sense is
+ * another one on faces that a script made before their solid. Between two solids it is kept. */
+static void orient(const mesh_fe *mesh, int n, face *faces) {
+  const mesh_topology *t        = mesh_topology_of(mesh->kind);
+  char                *marked   = shb_alloc_zeroed((size_t)mesh->n_nodes + 1, 1);
+  int(*corner)[MESH_FACE_NODES] = shb_alloc_zeroed((size_t)n + 1, sizeof *corner);
+  mesh_face_set set             = {0};
+  for (int i = 0; i < n; i++) {
+    if (faces[i].n == 0 || !find_nodes(mesh, faces[i].node, t->face_nodes, corner[i])) continue;
+    for (int c = 0; c < t->face_nodes; c++) marked[corner[i][c]] = 1;
+  }
+  mesh_faces_outer(mesh, marked, &set);
+  for (int i = 0; i < n; i++)
+    for (int e = 0, sense = 0; e < set.n && sense == 0 && faces[i].n > 0; e++) {
+      sense = same_sense(t->face_corners, set.nodes + (size_t)e * (size_t)t->face_nodes, corner[i]);
+      if (sense != 0) faces[i].sign = sense;
+    }
+  free(set.nodes);
+  free(corner);
+  free(marked);
+}
+
+/* tag  out  [n] gmsh's tags, below 0 where the elements look inwards */
+static shb_status add_faces(sums *s, const int *tags, int n, int *tag) {
   face      *faces  = shb_alloc_zeroed((size_t)n + 1, sizeof *faces);
   size_t     curved = 0;
   shb_status status = SHB_OK;
@@ -141,7 +184,9 @@ static shb_status add_faces(sums *s, const int *tags, int n) {
     curved += faces[i].curved ? faces[i].n : 0;
   }
   s->step = 1 + curved / MEASURED;
+  if (status == SHB_OK) orient(s->mesh, n, faces);
   for (int i = 0; i < n && status == SHB_OK; i++) status = add_face(s, &faces[i]);
+  for (int i = 0; i < n; i++) tag[i] = faces[i].sign * faces[i].tag;
   for (int i = 0; i < n; i++) gmshFree(faces[i].node);
   free(faces);
   return status;
@@ -154,11 +199,15 @@ shb_status mesh_surface_gap_of(const mesh_source *source, const mesh_fe *mesh, i
   size_t n = 0;
   *gap     = (mesh_surface_gap){.volume = 0};
   GMSH_TRY(source->path, gmshModelGetBoundary(one, 2, &tags, &n, 0, 1, 0, &ierr));
-  const shb_status status = add_faces(&s, tags, (int)(n / 2));
+  const int         n_faces = (int)(n / 2);
+  int              *signs   = shb_alloc((size_t)n_faces + 1, sizeof *signs);
+  mesh_solid_volume exact;
+  shb_status        status = add_faces(&s, tags, n_faces, signs);
+  if (status == SHB_OK)
+    status = mesh_solid_volume_of(source->path, mesh->kind, solid, n_faces, signs, &exact);
+  free(signs);
   gmshFree(tags);
   SHB_TRY(status);
-  mesh_solid_volume exact;
-  SHB_TRY(mesh_solid_volume_of(source->path, mesh->kind, solid, &exact));
   const double unit = source->unit, cubic = unit * unit * unit;
   gap->volume   = cubic * fabs(s.cone) / 3;
   gap->missing  = cubic * (exact.volume - fabs(s.cone) / 3);

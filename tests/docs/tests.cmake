@@ -6,4 +6,6 @@ shb_shell_test(docs.case_reference UNIT ${PAGES}/test_reference.sh $<TARGET_FILE
 shb_python_test(docs.sector UNIT ${PAGES}/test_sector.py $<TARGET_FILE:shroudhb>
   ${CMAKE_CURRENT_BINARY_DIR}/docs_sector)
 shb_python_test(docs.first_case INTEGRATION ${PAGES}/test_first_case.py $<TARGET_FILE:shroudhb>
-  ${PROJECT_SOURCE_DIR} ${CMAKE_CURRENT_BINARY_DIR}/docs_first_case)
+  ${PROJECT_SOURCE_DIR} ${CMAKE_CURRENT_BINARY_DIR}/docs_first_case 15 80)
+shb_python_test(docs.first_case_all NIGHTLY ${PAGES}/test_first_case.py $<TARGET_FILE:shroudhb>
+  ${PROJECT_SOURCE_DIR} ${CMAKE_CURRENT_BINARY_DIR}/docs_first_case_all)

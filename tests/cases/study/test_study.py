@@ -172,7 +172,7 @@ def check_one_key():
     for text, fault in (((': peak, ', ': frequency, algorithm: slope, '), 'slope minimises peak'),
                         ((': peak, ', ': peak, algorithm: slope, at_most: {peak: 1 m}, '),
                          'slope has no limits'),
-                        ((': peak, ', ': peak, algorithm: steep, '), 'direct or slope'),
+                        ((': peak, ', ': peak, algorithm: steep, '), 'direct, slope'),
                         (('scale: log}', 'scale: log}\n  contact.mu: {from: 0.1, to: 0.2}'),
                          None)):
         write('bad.yaml', ONE_KEY.replace(*text))

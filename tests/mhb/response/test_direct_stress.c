@@ -66,9 +66,9 @@ static void make_model(model *m) {
   m->settings.axis    = MESH_AXIS_X;
   m->settings.modes   = MODES;
   m->settings.damping = (modal_damping){MODAL_DAMPING_RAYLEIGH, .alpha = alpha, .beta = beta};
-  m->settings         = one_of_each(
-              m->settings, 1, false,
-              (fem_load){.kind = FEM_LOAD_PRESSURE, .pressure = 1000, .n_harmonics = 1, .factor = {0, 1}});
+  const fem_load load = {
+      .kind = FEM_LOAD_PRESSURE, .pressure = 1000, .n_harmonics = 1, .factor = {0, 1}};
+  m->settings = one_of_each(m->settings, 1, false, load);
   assert_ok(modal_solve(PETSC_COMM_SELF, &m->mesh, &m->settings, NULL, &m->result));
   const size_t n = (size_t)m->mesh.n_nodes;
   m->shape       = malloc(MODES * 3 * n * sizeof *m->shape);
