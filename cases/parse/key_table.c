@@ -1,6 +1,7 @@
 /* The rows of the key table. */
 #include "cases/parse/key_table.h"
 
+/* NOLINTBEGIN(bugprone-macro-parentheses): texts that are joined, members of an initialiser */
 #define AT(member) .at = offsetof(case_file, member)
 #define LIST(member, count) \
   AT(member), .count_at = offsetof(case_file, count), .each = sizeof(*((case_file *)0)->member)
@@ -108,6 +109,8 @@ enum { MOST_HARMONICS = 200 };
    COUNT_AT(mhb.n_preloads), .stages = CASE_MHB, .when = WHEN,                                     \
    .help = "normal preload, negative for a gap of -n0/kv: a number, a list, or {from, to, "        \
            "points}; lists of several interfaces have one length"},
+
+/* NOLINTEND(bugprone-macro-parentheses) */
 
 static const case_key table[] = {
     {"name", CASE_WORD, "", AT(name), .stages = CASE_POST,

@@ -147,7 +147,7 @@ void mesh_section_mesh_create(const mesh_section_grid *grid, mesh_planar *plan,
   const int k = grid->half, n = grid->chord;
   const int quads = 6 * k * k + 2 * k * n, most = 8 * quads + 1;
   double(*key)[2] = shb_alloc((size_t)most, sizeof *key);
-  int    *node    = shb_alloc((size_t)((4 * k + 1) * (2 * (n + k) + 1)), sizeof *node);
+  int    *node    = shb_alloc((size_t)(4 * k + 1) * (size_t)(2 * (n + k) + 1), sizeof *node);
   drawing d       = {.plan = plan, .capacity = most};
   memset(plan, 0, sizeof *plan);
   d.uy          = shb_alloc((size_t)most, sizeof *d.uy);

@@ -258,8 +258,8 @@ static bool coincide(const face_sum *f, double (*uv)[2], int n, int apart) {
   double *x    = NULL;
   size_t  size = 0;
   int     ierr = 0;
-  gmshModelGetValue(2, f->tag, uv[0], (size_t)(2 * n), &x, &size, &ierr);
-  bool same = ierr == 0 && size == (size_t)(3 * n);
+  gmshModelGetValue(2, f->tag, uv[0], 2 * (size_t)n, &x, &size, &ierr);
+  bool same = ierr == 0 && size == 3 * (size_t)n;
   for (int i = 0; i + apart < n && same; i++)
     same = vec3_distance(x + 3 * i, x + 3 * (i + apart)) < 1e-6 * f->extent;
   gmshFree(x);

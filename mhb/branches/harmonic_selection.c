@@ -46,7 +46,8 @@ static int most_harmonics(const modal_model *model, const mhb_settings *s) {
   const modal_nodal_diameters *d    = s->nodal_diameters;
   const int                    rows = 3 * (model->n_pairs > 0 ? model->n_pairs : 1);
   if (d && d->n <= d->blades / 2) return MHB_USUAL_HARMONICS;
-  return (int)fmin(MHB_MOST_HARMONICS, (AFFORDABLE / rows - 1) / 4);
+  const int affordable = (AFFORDABLE / rows - 1) / 4;
+  return affordable < MHB_MOST_HARMONICS ? affordable : MHB_MOST_HARMONICS;
 }
 
 int mhb_harmonic_levels_ladder(const modal_model *model, const mhb_settings *s,

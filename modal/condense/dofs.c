@@ -8,7 +8,7 @@
 /* Append one dof of n_entries entries, to be filled by the caller. */
 static void append_dof(modal_dofs *dofs, int n_entries) {
   const size_t total     = (size_t)dofs->n_entries + (size_t)n_entries;
-  dofs->start            = shb_realloc(dofs->start, (size_t)(dofs->n + 2), sizeof *dofs->start);
+  dofs->start            = shb_realloc(dofs->start, (size_t)dofs->n + 2, sizeof *dofs->start);
   dofs->node             = shb_realloc(dofs->node, total, sizeof *dofs->node);
   dofs->weight           = shb_realloc(dofs->weight, 3 * total, sizeof *dofs->weight);
   dofs->start[dofs->n]   = dofs->n_entries;
