@@ -18,8 +18,8 @@ enum { N_SWEEPS = sizeof sweeps / sizeof *sweeps, LAST_COARSE = 15, MANY = 1000 
  * this, leaves a doubt. With 15 harmonics curves are within 1 % of those with 31. */
 static const double HIGHER = 0.02;
 
-/* Points of a curve with few harmonics. Usual ones of z_notch_blade have 100 to 700. One that goes
- * on beyond this is not traced with those of the case, which takes minutes. */
+/* Points of a curve with few harmonics; two of z_notch_blade have 96 and 709. One that goes on
+ * beyond this is not traced with those of the case, which takes minutes. */
 enum { MOST_POINTS = 8000 };
 
 /* Tolerance of the contact law on these curves; the peak itself is solved with that of the case.

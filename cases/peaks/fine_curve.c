@@ -14,11 +14,7 @@
  * One such peak of 400 random contacts is 3.5 % above the coarse curve, which is 2.4 % below its
  * highest there. A SLACK of 0.03 is not enough. */
 static const double SLACK = 0.05, SPREAD = 3, LEAST = 0.6, UNKNOWN = 0.1;
-/* Maxima of a curve with few harmonics are checked from this part of its highest on. One without a
- * fine solution beside it may belong to a higher one. Of 50 random contacts one was missed: 16 %
- * higher, where the coarse maximum has 0.7 of the highest. */
-static const double CHECKED = 0.4;
-/* A low maximum that is this part of the highest on the fine curve is left to a better sweep. */
+/* Part of the highest point from which on a maximum of the coarse curve is high. */
 static const double HIGH = 0.9;
 /* A curve with few harmonics is checked at each STRIDE-th point above this part of its highest, or
  * at each STRIDE_SLIPPING-th where no contact opens. It may lack superharmonic resonances. Of 300
@@ -125,18 +121,16 @@ static bool is_maximum(const fine_branch *b, int i) {
          !(i < b->branch->n_points - 1 && b->coarse[i + 1] >= own);
 }
 
-/* The error of the coarse curve at its own maxima. Low ones are only checked. */
+/* The error of the coarse curve at its own maxima. */
 static void measure_error(work *w, fine_branch *b) {
   for (int i = 0; i < b->branch->n_points; i++) {
     const double own = b->coarse[i];
-    const bool   low = own < (1 - SPREAD * UNKNOWN) * w->top;
     double       found[2];
-    if (own < CHECKED * w->top || !is_maximum(b, i)) continue;
+    if (own < (1 - SPREAD * UNKNOWN) * w->top || !is_maximum(b, i)) continue;
     curve_place place = place_of(b, i);
     bool        good  = point_matcher_solve(b->matcher, &place, false, found);
-    if (!low) w->error = fmax(w->error, good ? fabs(found[1] / own - 1) : UNKNOWN);
+    w->error          = fmax(w->error, good ? fabs(found[1] / own - 1) : UNKNOWN);
     if (!good) w->unsolved = fmax(w->unsolved, own);
-    if (good && low && found[1] > HIGH * w->top) w->unsolved = fmax(w->unsolved, found[1]);
   }
 }
 
@@ -310,7 +304,7 @@ static shb_status sample_all(work *w, bool hasty, fine_maxima *out) {
   }
   for (int k = 0; k < w->n; k++) measure_error(w, &w->branch[k]);
   out->missed = hasty && is_doubtful(w) ? w->top : w->unsolved;
-  if (hasty && out->missed > 0) return SHB_OK;
+  if (hasty && out->missed > HIGH * w->top) return SHB_OK;
   for (int k = 0; k < w->n; k++) SHB_TRY(sample_points(w, &w->branch[k]));
   for (int k = 0; k < w->n; k++) SHB_TRY(fill_gaps(w, &w->branch[k]));
   for (int k = 0; k < w->n; k++) SHB_TRY(halve_steps(w, &w->branch[k]));

@@ -31,13 +31,13 @@
   /* read and choose points */
   const svg = $("response"), r = svg.getBoundingClientRect();
   let read = 0, chosen = new Set();
-  for (let t = 0.08; t < 0.96; t += 0.02)
-    for (let s = 0.1; s < 0.9; s += 0.1) {
+  for (let t = 0.08; t < 0.96; t += 0.04)
+    for (let s = 0.1; s < 0.9; s += 0.2) {
       const x = r.left + t * r.width, y = r.top + s * r.height;
       send(svg, "pointermove", x, y);
       if ($("readout").hidden) continue;
       read++;
-      if (read % 9) continue;
+      if (read % 5) continue;
       send(svg, "pointerdown", x, y);
       send(window, "pointerup", x, y);
       if ($("point-where")) chosen.add($("point-where").textContent);
