@@ -278,27 +278,6 @@ static void find_ends(face_sum *f, int d) {
   f->pole[d][1] = coincide(f, uv + 3, 3, 1);
 }
 
-/* Nodes that gmsh copied from another face, for cyclic sides, have the parameters of that one: give
- * each such node those of the nearest point.
- *   xyz  in      coordinates [n][3], m
- *   at   in,out  parameters [n][2] */
-static void correct_places(const face_sum *f, size_t n, double *xyz, double *at) {
-  double *x    = NULL;
-  size_t  size = 0;
-  int     ierr = 0;
-  gmshModelGetValue(2, f->tag, at, 2 * n, &x, &size, &ierr);
-  for (size_t i = 0; i < n && ierr == 0 && size == 3 * n; i++) {
-    double *nearest = NULL, *uv = NULL;
-    size_t  n_nearest = 0, n_uv = 0;
-    if (vec3_distance(x + 3 * i, xyz + 3 * i) < 1e-6 * f->extent) continue;
-    gmshModelGetClosestPoint(2, f->tag, xyz + 3 * i, 3, &nearest, &n_nearest, &uv, &n_uv, &ierr);
-    if (ierr == 0 && n_uv == 2) memcpy(at + 2 * i, uv, 2 * sizeof *uv);
-    gmshFree(nearest);
-    gmshFree(uv);
-  }
-  gmshFree(x);
-}
-
 /* The places of a face's nodes. *known: it has parameters. */
 static shb_status read_places(face_sum *f, bool *known) {
   size_t *tags = NULL, n_xyz = 0, n_at = 0;
@@ -311,7 +290,6 @@ static shb_status read_places(face_sum *f, bool *known) {
   *known    = n_at == 2 * f->n_places && n_low == 2 && n_high == 2;
   f->places = *known ? shb_alloc(f->n_places + 1, sizeof *f->places) : NULL;
   if (*known) {
-    correct_places(f, f->n_places, xyz, at);
     for (size_t i = 0; i < f->n_places; i++)
       f->places[i] = (place){tags[i], {at[2 * i], at[2 * i + 1]}};
     qsort(f->places, f->n_places, sizeof *f->places, by_tag);
