@@ -8,8 +8,6 @@
 #include "mesh/base/memory.h"
 #include "modal/model/receptance.h"
 
-enum { SAMPLES = 201, MAX_BYTES = 64 << 20 };
-
 static shb_status export_regions(hid_t file, const mesh_fe *mesh) {
   const char *name[MESH_MAX_VOLUMES];
   for (int i = 0; i < mesh->n_regions; i++) name[i] = mesh->region_name[i];
