@@ -8,9 +8,10 @@ liblapacke-dev libopenblas-dev libsuitesparse-dev libmumps-dev libyaml-dev libgs
 libcmocka-dev openmpi-bin"
 
 # The tests also read files with h5dump and python3, compare frequencies with CalculiX, check case
-# files by the JSON Schema, make a Debian package, and open the pages in a browser.
+# files by the JSON Schema, make a Debian package, and open the pages in a browser; node runs the
+# modules of their scripts, which eslint reads.
 packages_test="hdf5-tools python3 python3-h5py python3-matplotlib python3-jsonschema python3-yaml
-calculix-ccx dpkg-dev chromium-headless-shell"
+calculix-ccx dpkg-dev chromium-headless-shell nodejs eslint"
 
 # continuous integration also checks the sources, and tries random inputs
 packages_check="clang-format clang-tidy clang-14 libclang-rt-14-dev python3"

@@ -8,7 +8,7 @@
 #include "mesh/base/constants.h"
 #include "mhb/structure/relative_motion.h"
 #include "postproc/draw/number_format.h"
-#include "postproc/report/still_blade.h"
+#include "postproc/field/blade_skin.h"
 
 _Static_assert(__BYTE_ORDER__ == __ORDER_LITTLE_ENDIAN__, "the page's arrays are little-endian");
 
@@ -385,34 +385,4 @@ shb_status post_blade_data(const post_analysis *analysis, const post_blade_view 
   free(data);
   post_skin_free(&skin);
   return status;
-}
-
-/* ---------------------------------------------------------------- section */
-
-void post_blade_section(const post_analysis *analysis, const post_blade_view *view,
-                        post_buffer *out) {
-  (void)analysis;
-  post_put(
-      out,
-      "<section id=\"blade\">\n<h2>The blade in motion</h2>\n<p class=\"note\" id=\"blade-note\">"
-      "The surface of the mesh.</p>\n<div class=\"card\"><figure>\n<div class=\"tools\">\n"
-      "<label>Shown<select id=\"blade-shown\"></select></label>\n"
-      "<label>Colour<select id=\"blade-colour\"><option value=\"stress\">stress</option>"
-      "<option value=\"motion\">displacement</option></select></label>\n"
-      "<label>Size of the motion<input type=\"range\" id=\"blade-scale\" min=\"0\" max=\"100\" "
-      "value=\"40\"></label>\n"
-      "<label>Neighbours<select id=\"blade-ring\"><option value=\"0\">none</option>"
-      "<option value=\"1\">one on each side</option><option value=\"3\">three on each side"
-      "</option><option value=\"all\">the whole ring</option></select></label>\n"
-      "<button type=\"button\" id=\"blade-play\">Pause</button>\n"
-      "<button type=\"button\" id=\"blade-home\">Whole blade</button>\n"
-      "<button type=\"button\" id=\"blade-save\">PNG</button>\n</div>\n"
-      "<div id=\"blade-still\">\n");
-  post_still_blade(view->field, view->axis, out);
-  post_put(out,
-           "</div>\n<canvas id=\"blade-canvas\" tabindex=\"0\" hidden aria-label=\"The blade in "
-           "motion\"></canvas>\n<div class=\"scale\" id=\"blade-bar\" hidden><span></span><i></i>"
-           "<span></span></div>\n<p class=\"hint\">Drag to turn, wheel or two fingers to zoom, "
-           "with Shift drag to move. Click a curve above to see its motion here.</p>\n"
-           "</figure></div>\n</section>\n");
 }

@@ -18,10 +18,6 @@ typedef struct {
  * must match the response (post_blade_field_match). */
 bool post_blade_view_fits(const post_blade_view *view, const mhb_response *response);
 
-/* Section of the page: canvas, controls, still picture. */
-void post_blade_section(const post_analysis *analysis, const post_blade_view *view,
-                        post_buffer *out);
-
 /* Numbers for the script, at most 3 MB as text:
  *
  *   nodes, triangles  numbers;  lo, size  [3] box of the surface, m;  modesLeftOut

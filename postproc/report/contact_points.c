@@ -305,16 +305,20 @@ void post_contact_plan_free(post_contact_plan *plan) {
 
 /* ---------------------------------------------------------------- writing */
 
-void post_put_contact_names(const post_analysis *analysis, const post_contact_plan *plan,
-                            post_buffer *out) {
-  post_put(out, "[");
+void post_put_contacts(const post_analysis *analysis, const post_contact_plan *plan,
+                       post_buffer *out) {
+  post_put(out, "{\"all\":%d,\"names\":[", analysis->response->n_pairs);
   for (int i = 0; i < plan->n; i++) {
     char name[128];
     post_contact_name(analysis->response, plan->pair[i], " ", name);
     post_put(out, i ? "," : "");
     post_put_json(out, name);
   }
-  post_put(out, "]");
+  post_put(out,
+           "],\"full\":%d,\"signals\":[\"phase\",\"u\",\"w\",\"fu\",\"fw\",\"load\",\"state\"],"
+           "\"loop\":[\"n\",\"u\",\"w\",\"fu\",\"fw\",\"load\",\"limit\",\"stuck\",\"slipping\","
+           "\"open\",\"dissipation\"]}",
+           FULL);
 }
 
 static int16_t part_of(double value, double scale) {

@@ -26,9 +26,10 @@ typedef struct {
 shb_status post_contact_points(const post_analysis *analysis, post_contact_plan *plan);
 void       post_contact_plan_free(post_contact_plan *plan);
 
-/* Names of the contacts written: ["contact 1", ...]. */
-void post_put_contact_names(const post_analysis *analysis, const post_contact_plan *plan,
-                            post_buffer *out);
+/* {"all": number of contacts, "names": of those written, "full": 32767, "signals": rows of a
+ * loop's data, "loop": columns of its numbers}. */
+void post_put_contacts(const post_analysis *analysis, const post_contact_plan *plan,
+                       post_buffer *out);
 
 /* ,"contact":{"at":[indices into kept],"loops":[[n, scales, numbers], ...],"data":"base64"}
  *

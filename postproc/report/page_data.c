@@ -8,15 +8,19 @@
 #include "mhb/problem/parameter.h"
 #include "postproc/report/charts.h"
 #include "postproc/report/contact_points.h"
+#include "postproc/report/ring_data.h"
+#include "postproc/report/safe_diagram.h"
 
-enum {
-  BUDGET        = 400000,
-  FIXED_ROWS    = 9,
-  LEAST_ROWS    = 12,
-  MAX_COLUMNS   = 256,
-  MAX_PLACES    = 8,
-  MAX_HARMONICS = 16
-};
+enum { BUDGET = 400000, LEAST_ROWS = 12, MAX_COLUMNS = 256, MAX_PLACES = 8, MAX_HARMONICS = 16 };
+
+static const char format[] = "shroudhb report page";
+enum { VERSION = 1 };
+
+/* Rows of every curve; the script finds them by these names. */
+enum { ABSCISSA, STUCK, SLIPPING, OPEN, DISSIPATION, ERROR, STABILITY, SPECIAL, MARK, FIXED_ROWS };
+static const char *const row_name[FIXED_ROWS] = {"abscissa",  "stuck",       "slipping",
+                                                 "open",      "dissipation", "error",
+                                                 "stability", "special",     "mark"};
 
 /* One output; if n > 0, the amplitudes of harmonics 0 .. n - 1 of a place. */
 typedef struct {
@@ -125,23 +129,29 @@ static void put_triple(post_buffer *out, bool *first, int group, double at, doub
   *first = false;
 }
 
-static void put_track_point(const post_analysis *analysis, const post_track_point *p, int group,
-                            post_buffer *out) {
-  const mhb_branch *branch = &analysis->response->branch[p->branch];
-  double            all[]  = {p->n0,
-                              p->amplitude,
-                              p->at,
-                  p->doubtful ? 2 : p->edge,
-                              post_state(analysis->response, branch, p->point, 0),
-                              post_state(analysis->response, branch, p->point, 1),
-                              post_state(analysis->response, branch, p->point, 2),
-                              post_dissipation(analysis->response, branch, p->point)};
-  post_put(out, "[%d", group);
-  for (int i = 0; i < 8; i++) {
-    post_put(out, ",");
-    put_value(out, all[i]);
+static void put_row(post_buffer *out, int n, const double *value) {
+  for (int i = 0; i < n; i++) {
+    post_put(out, i ? "," : "[");
+    put_value(out, value[i]);
   }
   post_put(out, "]");
+}
+
+static void put_track_point(const post_analysis *analysis, const post_track_point *p, int group,
+                            post_buffer *out) {
+  const mhb_response *r      = analysis->response;
+  const mhb_branch   *branch = &r->branch[p->branch];
+  const double        all[]  = {group,
+                                p->n0,
+                                p->amplitude,
+                                p->at,
+                                p->edge,
+                                p->doubtful,
+                                post_state(r, branch, p->point, 0),
+                                post_state(r, branch, p->point, 1),
+                                post_state(r, branch, p->point, 2),
+                                post_dissipation(r, branch, p->point)};
+  put_row(out, sizeof all / sizeof *all, all);
 }
 
 static shb_status put_track(const post_analysis *analysis, double *const *values,
@@ -164,7 +174,7 @@ static shb_status put_track(const post_analysis *analysis, double *const *values
   return SHB_OK;
 }
 
-/* "resonances":[[[n0, abscissa, amplitude], ...], ...]; empty below two. */
+/* "resonances": a list of points for each; empty below two. */
 static shb_status put_resonances(const post_analysis *analysis, double *const *values,
                                  post_buffer *out) {
   post_resonances r;
@@ -175,11 +185,8 @@ static shb_status put_resonances(const post_analysis *analysis, double *const *v
     for (int k = 0; k < r.list[i].n; k++) {
       const post_track_point *p      = &r.list[i].point[k];
       const double            all[3] = {p->n0, p->at, p->amplitude};
-      for (int j = 0; j < 3; j++) {
-        post_put(out, j ? "," : k ? ",[" : "[");
-        put_value(out, all[j]);
-      }
-      post_put(out, "]");
+      post_put(out, k ? "," : "");
+      put_row(out, 3, all);
     }
     post_put(out, "]");
   }
@@ -279,22 +286,23 @@ static shb_status put_columns(const post_analysis *analysis, const plan *p, bool
 
 static double fixed_value(const post_analysis *analysis, const mhb_branch *branch, int point,
                           int row) {
+  const mhb_response *r = analysis->response;
   switch (row) {
-    case 0:
-      return post_abscissa_values(analysis->response, branch)[point];
-    case 1:
-    case 2:
-    case 3:
-      return post_state(analysis->response, branch, point, row - 1);
-    case 4:
-      return post_dissipation(analysis->response, branch, point);
-    case 5:
+    case ABSCISSA:
+      return post_abscissa_values(r, branch)[point];
+    case STUCK:
+    case SLIPPING:
+    case OPEN:
+      return post_state(r, branch, point, row - STUCK);
+    case DISSIPATION:
+      return post_dissipation(r, branch, point);
+    case ERROR:
       return post_error(branch, point);
-    case 6: /* 1 stable, 0 never seen, -1 not judged, 2 modulated */
-      return post_verdict_of(branch, point) == POST_VERDICT_MODULATED ? 2 : branch->stable[point];
-    case 7:
+    case STABILITY:
+      return post_verdict_of(branch, point);
+    case SPECIAL:
       return branch->special[point];
-    default: /* 1 above the tolerance, 2 undetermined friction, 4 not judged */
+    default:
       return branch->mark[point];
   }
 }
@@ -317,42 +325,38 @@ static shb_status make_sheet(const post_analysis *analysis, int b, int rows, int
 }
 
 static void put_list(post_buffer *out, const char *name, int n, const double *value) {
-  post_put(out, ",\"%s\":[", name);
-  for (int i = 0; i < n; i++) {
-    post_put(out, i ? "," : "");
-    put_value(out, value[i]);
-  }
-  post_put(out, "]");
+  post_put(out, "\"%s\":", name);
+  put_row(out, n, value);
 }
 
-/* The motion that lasts, of the primary output: the sweep, and settled points as [frequency, mean,
- * worst, kind], m. */
+/* The motion that lasts, of the primary output: the sweep of the ring, and settled points that
+ * differ from the wave. */
 static void put_lasting(const post_analysis *analysis, int b, post_buffer *out) {
   const mhb_branch        *branch = &analysis->response->branch[b];
   const mhb_lasting_curve *sweep  = &branch->lasting_curve;
   const char              *comma  = "";
   if (branch->kind != MHB_BRANCH_NONLINEAR || !branch->lasting_kind) return;
   if (sweep->n > 0) {
-    put_list(out, "ringAt", sweep->n, sweep->frequency);
-    put_list(out, "ringMean", sweep->n, sweep->mean);
-    put_list(out, "ringWorst", sweep->n, sweep->worst);
-    post_put(out, ",\"ringLasts\":[");
+    post_put(out, ",\"ring\":{");
+    put_list(out, "at", sweep->n, sweep->frequency);
+    post_put(out, ",");
+    put_list(out, "mean", sweep->n, sweep->mean);
+    post_put(out, ",");
+    put_list(out, "worst", sweep->n, sweep->worst);
+    post_put(out, ",\"lasts\":[");
     for (int i = 0; i < sweep->n; i++)
-      post_put(out, "%s%d", i ? "," : "", post_swing_lasts(branch, i));
-    post_put(out, "]");
+      post_put(out, "%s%s", i ? "," : "", post_swing_lasts(branch, i) ? "true" : "false");
+    post_put(out, "]}");
   }
   post_put(out, ",\"lasting\":[");
   for (int i = 0; i < branch->n_points; i++) {
-    double wave = analysis->curve[b].amplitude[i];
-    if (!branch->lasting_kind[i]) continue;
-    post_put(out, "%s[", comma);
+    const double wave   = analysis->curve[b].amplitude[i];
+    const double all[3] = {branch->frequency[i], wave * branch->lasting_mean[i],
+                           wave * branch->lasting_worst[i]};
+    if (branch->lasting_kind[i] <= MHB_LASTING_WAVE) continue;
+    post_put(out, "%s", comma);
     comma = ",";
-    put_value(out, branch->frequency[i]);
-    post_put(out, ",");
-    put_value(out, wave * branch->lasting_mean[i]);
-    post_put(out, ",");
-    put_value(out, wave * branch->lasting_worst[i]);
-    post_put(out, ",%d]", branch->lasting_kind[i]);
+    put_row(out, 3, all);
   }
   post_put(out, "]");
 }
@@ -384,11 +388,11 @@ static shb_status put_curves(const post_analysis *analysis, int rows, const shee
                              post_buffer *out) {
   post_contact_plan contacts;
   shb_status        status = post_contact_points(analysis, &contacts);
-  post_put(out, ",\"pairs\":%d,\"contacts\":", analysis->response->n_pairs);
-  post_put_contact_names(analysis, &contacts, out);
+  post_put(out, ",\"contacts\":");
+  post_put_contacts(analysis, &contacts, out);
   post_put(out, ",\"branches\":[");
   if (status == SHB_OK) status = put_branches(analysis, rows, sheets, &contacts, out);
-  post_put(out, "]}");
+  post_put(out, "]");
   post_contact_plan_free(&contacts);
   return status;
 }
@@ -416,14 +420,75 @@ static void put_abscissa(const post_abscissa *x, post_buffer *out) {
            x->log ? "true" : "false", x->range[0], x->range[1]);
 }
 
-static shb_status put_all(const post_analysis *analysis, int chosen, sheet *sheets,
-                          post_buffer *out, int *left_out) {
+/* ---------------------------------------------------------------- document */
+
+typedef struct {
+  const char *word;
+  int         code;
+} code;
+
+static void put_code(post_buffer *out, const char *name, int n, const code *list) {
+  post_put(out, "\"%s\":{", name);
+  for (int i = 0; i < n; i++)
+    post_put(out, "%s\"%s\":%d", i ? "," : "", list[i].word, list[i].code);
+  post_put(out, "}");
+}
+
+/* What numbers mean: rows of the curves, columns of lists, codes. */
+static void put_meaning(post_buffer *out) {
+  static const code stability[] = {{"stable", POST_VERDICT_STABLE},
+                                   {"not judged", POST_VERDICT_NOT_JUDGED},
+                                   {"modulated", POST_VERDICT_MODULATED},
+                                   {"never seen", POST_VERDICT_NEVER_SEEN}};
+  static const code special[]   = {{"fold", MHB_FOLD},
+                                   {"peak", MHB_PEAK},
+                                   {"flip", MHB_FLIP},
+                                   {"Neimark-Sacker point", MHB_NEIMARK_SACKER},
+                                   {"optimum", MHB_OPTIMUM}};
+  static const code mark[]      = {{"aboveTolerance", MHB_ABOVE_TOLERANCE},
+                                   {"undetermined", MHB_TRACTION_UNDETERMINED},
+                                   {"notJudged", MHB_ERROR_NOT_JUDGED}};
+  code              rows[FIXED_ROWS];
+  for (int i = 0; i < FIXED_ROWS; i++) rows[i] = (code){row_name[i], i};
+  put_code(out, "fields", FIXED_ROWS, rows);
+  post_put(out, ",\n\"codes\":{");
+  put_code(out, "stability", 4, stability);
+  post_put(out, ",");
+  put_code(out, "special", 5, special);
+  post_put(out, ",");
+  put_code(out, "mark", 3, mark);
+  post_put(out,
+           "},\n\"columns\":{"
+           "\"track\":[\"group\",\"n0\",\"amplitude\",\"at\",\"edge\",\"doubtful\","
+           "\"stuck\",\"slipping\",\"open\",\"dissipation\"],"
+           "\"peak\":[\"group\",\"at\",\"amplitude\"],"
+           "\"resonance\":[\"n0\",\"at\",\"amplitude\"],"
+           "\"lasting\":[\"at\",\"mean\",\"worst\"]}");
+}
+
+/* Numbers of the other charts. */
+static shb_status put_parts(const post_analysis *analysis, const post_blade_view *blade,
+                            post_buffer *out) {
+  const mhb_response *r = analysis->response;
+  post_put(out, ",\n\"axes\":{\"psi\":%.9g,\"phi\":%.9g}", r->psi, r->phi);
+  post_put_blades(r, out);
+  post_put_factors(r->samples, out);
+  if (analysis->safe) post_safe_data(analysis->safe, out);
+  if (!blade) return SHB_OK;
+  post_put(out, ",\n\"blade\":");
+  return post_blade_data(analysis, blade, out);
+}
+
+static shb_status put_all(const post_analysis *analysis, int chosen, const post_blade_view *blade,
+                          sheet *sheets, post_buffer *out, int *left_out) {
   int  stride = 1 + LEAST_ROWS * analysis->n_points / (BUDGET + 1);
   plan p      = make_plan(analysis->response, analysis->n_points / stride);
   *left_out   = p.left_out;
   for (int b = 0; b < analysis->response->n_branches; b++)
     SHB_TRY(make_sheet(analysis, b, p.rows, stride, &sheets[b]));
-  post_put(out, "{\"rows\":%d,\"chosen\":%d,\"log\":%s,\"abscissa\":", p.rows, chosen,
+  post_put(out, "{\"format\":\"%s\",\"version\":%d,\n", format, VERSION);
+  put_meaning(out);
+  post_put(out, ",\n\"rows\":%d,\"chosen\":%d,\"log\":%s,\"abscissa\":", p.rows, chosen,
            post_amplitude_is_log(analysis) ? "true" : "false");
   put_abscissa(&analysis->abscissa, out);
   if (analysis->response->run_up && analysis->response->engine_order > 0)
@@ -435,15 +500,18 @@ static shb_status put_all(const post_analysis *analysis, int chosen, sheet *shee
   post_put(out, "],\"spectra\":[");
   SHB_TRY(put_columns(analysis, &p, true, sheets, out));
   post_put(out, "]");
-  return put_curves(analysis, p.rows, sheets, out);
+  SHB_TRY(put_curves(analysis, p.rows, sheets, out));
+  SHB_TRY(put_parts(analysis, blade, out));
+  post_put(out, "}");
+  return SHB_OK;
 }
 
-shb_status post_page_data(const post_analysis *analysis, int chosen, post_buffer *out,
-                          int *left_out) {
+shb_status post_page_data(const post_analysis *analysis, int chosen, const post_blade_view *blade,
+                          post_buffer *out, int *left_out) {
   int    n      = analysis->response->n_branches;
   sheet *sheets = calloc((size_t)n + 1, sizeof *sheets);
   SHB_CHECK(sheets, SHB_ERR_IO, "not enough memory for the report");
-  shb_status status = put_all(analysis, chosen, sheets, out, left_out);
+  shb_status status = put_all(analysis, chosen, blade, sheets, out, left_out);
   for (int b = 0; b < n; b++) {
     free(sheets[b].kept);
     free(sheets[b].data);

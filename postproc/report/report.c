@@ -10,26 +10,17 @@
 #include "postproc/analysis/findings.h"
 #include "postproc/draw/colour.h"
 #include "postproc/draw/number_format.h"
-#include "postproc/draw/plot.h"
+#include "postproc/draw/template.h"
 #include "postproc/report/charts.h"
 #include "postproc/report/convergence_chart.h"
 #include "postproc/report/page.h"
 #include "postproc/report/page_data.h"
-#include "postproc/report/ring_charts.h"
+#include "postproc/report/picture.h"
+#include "postproc/report/ring_data.h"
 #include "postproc/report/safe_diagram.h"
-#include "postproc/report/still_blade.h"
 #include "postproc/report/tables.h"
 
 /* ---------------------------------------------------------------- head */
-
-static void put_head(const post_analysis *analysis, const char *case_name, post_buffer *out) {
-  post_page_open(case_name, "forced response", out);
-  post_put_ramp(analysis->n_ranks, false, out);
-  post_put(out, "\n@media screen and (prefers-color-scheme: dark){");
-  post_put_ramp(analysis->n_ranks, true, out);
-  post_put(out, "}\n%s%s</style>\n</head>\n", analysis->campbell ? post_campbell_css : "",
-           analysis->convergence ? post_convergence_css : "");
-}
 
 /* Angle in degrees, rounded to 0.001, so that rounding errors print as 0. */
 static double degrees(double angle) {
@@ -71,37 +62,7 @@ static void put_lede(const post_analysis *analysis, const post_origin *source, p
   post_put(out, ".</p>\n");
 }
 
-static void put_header(const post_analysis *analysis, const post_origin *source,
-                       const char *case_name, post_buffer *out) {
-  post_put(out,
-           "<body>\n<a class=\"skip\" href=\"#chart\">To the chart</a>\n<header class=\"top\">\n"
-           "<p class=\"kicker\">Shrouded blade · forced response</p>\n<h1>");
-  post_put_escaped(out, case_name);
-  post_put(out, "</h1>\n");
-  put_lede(analysis, source, out);
-  post_key_figures(analysis, out);
-  post_findings(analysis, out);
-  post_put(out, "</header>\n<main>\n");
-}
-
 /* ---------------------------------------------------------------- main chart */
-
-static void put_tools(const mhb_response *response, post_buffer *out) {
-  char harmonic[32];
-  post_quantity_name(response, POST_QUANTITY_FIRST_HARMONIC, harmonic);
-  post_put(out,
-           "<div class=\"tools\">\n<label>Where<select id=\"place\"></select></label>\n"
-           "<label>Motion<select id=\"axis\"></select></label>\n"
-           "<fieldset><legend>Measure</legend><span class=\"switch\">"
-           "<button type=\"button\" data-quantity=\"%s\">%c%s</button>"
-           "<button type=\"button\" data-quantity=\"peak to peak\">Peak to "
-           "peak</button></span></fieldset>\n"
-           "<fieldset><legend>Amplitude</legend><span class=\"switch\">"
-           "<button type=\"button\" data-scale=\"linear\">Linear</button>"
-           "<button type=\"button\" data-scale=\"log\">Logarithmic</button></span></fieldset>\n"
-           "<button type=\"button\" id=\"whole\">Whole range</button>\n</div>\n",
-           harmonic, toupper(harmonic[0]), harmonic + 1);
-}
 
 static void put_key(const post_group *group, int index, post_buffer *out) {
   char classes[POST_CLASS], name[64];
@@ -119,11 +80,8 @@ static void put_key(const post_group *group, int index, post_buffer *out) {
 }
 
 static void put_keys(const post_analysis *analysis, post_buffer *out) {
-  post_put(out, "<ul class=\"keys\" aria-label=\"Curves shown\">\n<li class=\"lead\">%s</li>\n",
-           analysis->n_ranks > 0 ? "Preload n₀" : "Curves");
   for (int g = 0; g < analysis->n_groups; g++)
     if (!analysis->group[g].empty) put_key(&analysis->group[g], g, out);
-  post_put(out, "</ul>\n");
 }
 
 /* Of the main chart. */
@@ -156,158 +114,7 @@ static void put_marks(const post_analysis *analysis, post_buffer *out) {
         undetermined, undetermined > 1 ? "s" : "");
 }
 
-static void put_main(const post_analysis *analysis, const char *case_name, post_buffer *out) {
-  char frequency[POST_PLACE], harmonic[32];
-  post_quantity_name(analysis->response, post_quantity_primary(analysis->response), harmonic);
-  post_put(out, "<section id=\"chart\">\n<h2>%s%s</h2>\n<div class=\"card\"><figure>\n",
-           tracked_title(analysis->response), post_frequency_text(analysis, frequency));
-  put_tools(analysis->response, out);
-  post_put(out, "<div class=\"chart\">\n");
-  post_chart_response(analysis, case_name, out);
-  post_put(out, "<div id=\"readout\" class=\"readout\" hidden></div>\n</div>\n");
-  put_keys(analysis, out);
-  post_put(
-      out,
-      "<figcaption class=\"note\">Solid: stable. Dashed: modulated. Dotted: beyond a fold, never "
-      "seen. Thin: not judged. Bands and bars: the whole ring, from the mean to the worst blade. "
-      "Small circles: folds; full ones: flips (period doubling) and Neimark-Sacker points. "
-      "Dashed grey: the linear limits, contact open (long) and stuck (short). Amplitude, %s: "
-      "the largest displacement it reaches in a cycle.</figcaption>\n",
-      harmonic);
-  put_marks(analysis, out);
-  post_put(
-      out,
-      "<p class=\"hint\">Point at a curve to read it, click or tap it to see its contact, "
-      "harmonics and "
-      "motion below. Drag a rectangle, turn the wheel (after a click into the chart, or with Ctrl) "
-      "or "
-      "spread two fingers to zoom; double-click for the whole range. Keyboard: arrows move along "
-      "and "
-      "between curves, Enter chooses, Escape resets.</p>\n<p id=\"spoken\" class=\"hidden\" "
-      "aria-live=\"polite\"></p>\n"
-      "</figure></div>\n</section>\n");
-}
-
-/* ---------------------------------------------------------------- chosen point */
-
-/* A chart that the script draws. */
-static void put_scripted(const char *id, const char *heading, const char *text, post_buffer *out) {
-  post_put(out, "<div class=\"card\"><figure><h3>%s</h3><div class=\"chart\">\n", heading);
-  plot_svg_open(out, id, 540, 380, heading, text);
-  plot_svg_close(out);
-  post_put(out, "</div></figure></div>\n");
-}
-
-/* Loops, friction path, load and spectrum at the point that was clicked. */
-static void put_point(const post_analysis *analysis, post_buffer *out) {
-  bool contact = analysis->settings && analysis->response->n_pairs > 0;
-  post_put(out,
-           "<section id=\"point\" class=\"scripted\">\n<h2>At the chosen point</h2>\n"
-           "<p id=\"point-where\" class=\"note\"></p>\n"
-           "<div class=\"tools\"><label id=\"pair-label\">Contact<select id=\"pair\"></select>"
-           "</label></div>\n");
-  if (contact) {
-    post_put(out, "<p id=\"contact-where\" class=\"note\"></p>\n<div class=\"pair\">\n");
-    put_scripted("loop-u", "Hysteresis loop along u",
-                 "Friction along the sliding axis u over the relative motion along it.", out);
-    put_scripted("loop-w", "Hysteresis loop along w",
-                 "Friction along the axis w over the relative motion along it.", out);
-    put_scripted("path", "Friction within its limit",
-                 "Path of the friction force in a period; circles: its limit at the least and the "
-                 "greatest normal load.",
-                 out);
-    put_scripted("period", "Load and friction over the period",
-                 "Normal load, friction and its limit over one period, and the contact state.",
-                 out);
-    post_put(
-        out,
-        "</div>\n<ul class=\"legend\"><li class=\"stick\"><i></i><span>stuck</span></li>"
-        "<li class=\"slip\"><i></i><span>slipping</span></li>"
-        "<li class=\"gap\"><i></i><span>open</span></li><li>The motion in the file, followed by "
-        "the contact law of the balance.</li></ul>\n");
-  } else if (analysis->response->n_pairs > 0) {
-    post_put(out,
-             "<p class=\"note\">Loops at the contact are left out: the settings that the response "
-             "was made from are not those of the case. Run <code>shroudhb mhb</code> again.</p>\n");
-  }
-  put_scripted("spectrum", "Harmonics at the point",
-               "Amplitude of each harmonic of the motion at the chosen point.", out);
-  post_put(out, "</section>\n");
-}
-
-/* ---------------------------------------------------------------- the other charts */
-
-static void put_tracking(const post_analysis *analysis, post_buffer *out) {
-  if (analysis->tracking.n < 2) return;
-  bool doubtful = false;
-  for (int i = 0; i < analysis->tracking.n; i++) doubtful |= analysis->tracking.point[i].doubtful;
-  post_put(
-      out,
-      "<section>\n<h2>Peak against preload</h2>\n<p class=\"note\">Each preload’s highest peak, "
-      "joined; lesser peaks are the "
-      "faint dots.%s An open ring marks a largest value at the edge of the %s range%s.</p>\n"
-      "<div class=\"card\"><figure><div class=\"chart\">\n",
-      analysis->resonances.n > 1 ? " The thin lines join the peaks of one resonance each." : "",
-      post_at_one_frequency(analysis) ? "parameter’s" : "frequency",
-      doubtful ? ", a thin one an estimated error above the tolerance" : "");
-  post_chart_tracking(analysis, out);
-  post_put(out, "</div></figure></div>\n");
-  post_table_resonances(analysis, out);
-  post_put(out, "</section>\n");
-}
-
-static void put_contact(const post_analysis *analysis, int chosen, post_buffer *out) {
-  if (analysis->response->n_pairs < 1) return;
-  post_put(out, "<div class=\"pair\">\n");
-  if (analysis->tracking.n > 0) {
-    post_put(out,
-             "<div class=\"card\"><figure><h3>At the highest peak, by preload</h3><div "
-             "class=\"chart\">\n");
-    post_chart_state(analysis, out);
-    post_put(out, "</div></figure></div>\n");
-  }
-  post_put(out, "<div class=\"card\"><figure><h3>Along the curve</h3><div class=\"chart\">\n");
-  post_chart_along(analysis, chosen, out);
-  post_put(out,
-           "</div></figure></div>\n</div>\n"
-           "<ul class=\"legend\"><li class=\"stick\"><i></i><span>stuck</span></li>"
-           "<li class=\"slip\"><i></i><span>slipping</span></li>"
-           "<li class=\"gap\"><i></i><span>open</span></li>"
-           "<li>Mean over the contacts; energy of all contacts.</li></ul>\n");
-}
-
-static void put_details(const post_analysis *analysis, int chosen, post_buffer *out) {
-  if (chosen < 0) return;
-  char name[64];
-  bool followed = analysis->abscissa.parameter == MHB_IN_N0;
-  post_group_name(&analysis->group[analysis->curve[chosen].group], name);
-  post_put(out,
-           "<section>\n<h2>Contact and harmonics</h2>\n<p class=\"note\">To begin with along the "
-           "%scurve%s%s%s.</p>\n"
-           "<div class=\"tools\"><label>Curve<select id=\"curve\"></select></label></div>\n",
-           followed ? "first " : "", followed ? "" : " of ", followed ? "" : name,
-           analysis->tracking.best >= 0 ? ", the one with the lowest peak" : "");
-  put_contact(analysis, chosen, out);
-  post_put(out,
-           "<div class=\"card\"><figure><h3>Harmonics along the curve</h3><div class=\"chart\">\n");
-  post_chart_harmonics(analysis, chosen, out);
-  post_put(out, "</div></figure></div>\n</section>\n");
-}
-
-static void put_axes(const post_analysis *analysis, post_buffer *out) {
-  if (analysis->response->n_pairs < 1) return;
-  post_put(out,
-           "<section>\n<h2>Axes of the contact</h2>\n<div class=\"card\"><figure><div "
-           "class=\"chart\">\n");
-  post_contact_axes(analysis->response->psi, analysis->response->phi, out);
-  post_put(out,
-           "</div><figcaption class=\"note\">v is normal to the right face and positive where the "
-           "motion presses the faces together, u and w lie in it. Red: the contact face.%s"
-           "</figcaption></figure></div>\n</section>\n",
-           analysis->response->n_pairs > 1 ? " Angles: mean of the contacts." : "");
-}
-
-/* ---------------------------------------------------------------- tables and provenance */
+/* ---------------------------------------------------------------- provenance */
 
 static void put_source_row(const char *label, const char *text, post_buffer *out) {
   if (!*text) return;
@@ -317,31 +124,11 @@ static void put_source_row(const char *label, const char *text, post_buffer *out
 }
 
 static void put_source(const post_origin *source, post_buffer *out) {
-  post_put(out, "<section>\n<h2>Case and provenance</h2>\n<dl class=\"source\">\n");
   put_source_row("Case file", source->case_path, out);
   put_source_row("Computed by", source->command, out);
   put_source_row("Revision", source->revision, out);
   put_source_row("Computed", source->created, out);
   put_source_row("Page made by", shb_revision(), out);
-  post_put(out, "</dl>\n<h3>Settings</h3>\n");
-  post_table_settings(source->settings, out);
-  if (*source->case_text) {
-    post_put(out,
-             "<h3>The case, verbatim</h3>\n<pre tabindex=\"0\" aria-label=\"Case file\"><code>");
-    post_put_escaped(out, source->case_text);
-    post_put(out, "</code></pre>\n");
-  }
-  post_put(out, "</section>\n");
-}
-
-static void put_tables(const post_analysis *analysis, post_buffer *out) {
-  post_put(out, "<section>\n<h2>Peaks and folds</h2>\n");
-  post_table_peaks(analysis, out);
-  post_put(out, "</section>\n<section>\n<h2>Numerical quality</h2>\n");
-  post_table_quality(analysis, out);
-  post_put(out, "</section>\n<section>\n<h2>Modes</h2>\n");
-  post_table_modes(analysis->response, out);
-  post_put(out, "</section>\n");
 }
 
 /* A file name as a relative address. */
@@ -352,47 +139,139 @@ static void put_address(const char *name, post_buffer *out) {
   }
 }
 
+/* ---------------------------------------------------------------- page */
+
+/* A part of the template that is there or not. */
+static void flag(post_values_list *values, const char *name, bool there) {
+  post_buffer *value = post_value(values, name);
+  if (there) post_put(value, "1");
+}
+
+static void put_text(post_values_list *values, const char *name, const char *text) {
+  post_put(post_value(values, name), "%s", text);
+}
+
+static void escaped(post_values_list *values, const char *name, const char *text) {
+  post_put_escaped(post_value(values, name), text);
+}
+
+static void fill_head(const post_analysis *analysis, const post_origin *source,
+                      const char *case_name, post_values_list *v) {
+  char         frequency[POST_PLACE], harmonic[32];
+  post_buffer *css, *findings;
+  escaped(v, "name", case_name);
+  put_text(v, "css", post_page_css);
+  post_put_ramp(analysis->n_ranks, false, post_value(v, "ramp"));
+  post_put_ramp(analysis->n_ranks, true, post_value(v, "ramp_dark"));
+  css = post_value(v, "more_css");
+  if (analysis->campbell) post_put(css, "%s", post_campbell_css);
+  if (analysis->convergence) post_put(css, "%s", post_convergence_css);
+  put_lede(analysis, source, post_value(v, "lede"));
+  findings = post_value(v, "findings");
+  post_key_figures(analysis, findings);
+  post_findings(analysis, findings);
+  post_put(post_value(v, "title"), "%s%s", tracked_title(analysis->response),
+           post_frequency_text(analysis, frequency));
+  post_quantity_name(analysis->response, POST_QUANTITY_FIRST_HARMONIC, harmonic);
+  put_text(v, "harmonic", harmonic);
+  post_put(post_value(v, "Harmonic"), "%c%s", toupper(harmonic[0]), harmonic + 1);
+}
+
+/* NAME.svg without its XML declaration, the first line. */
+static void put_picture(const post_analysis *analysis, const char *case_name, post_buffer *out) {
+  post_buffer svg = {0};
+  post_picture(analysis, case_name, &svg);
+  const char *line = svg.failed ? NULL : strchr(svg.text, '\n');
+  if (line) post_put(out, "%s", line + 1);
+  out->failed = out->failed || !line;
+  post_buffer_free(&svg);
+}
+
+static void fill_chart(const post_analysis *analysis, const char *case_name, post_values_list *v) {
+  const mhb_response *r = analysis->response;
+  put_picture(analysis, case_name, post_value(v, "picture"));
+  post_describe_response(analysis, post_value(v, "description"));
+  put_text(v, "abscissa", analysis->abscissa.name);
+  put_text(v, "key_lead", analysis->n_ranks > 0 ? "Preload n₀" : "Curves");
+  put_keys(analysis, post_value(v, "keys"));
+  put_marks(analysis, post_value(v, "marks"));
+  flag(v, "contact", r->n_pairs > 0);
+  flag(v, "contacts", r->n_pairs > 1);
+  flag(v, "loops", analysis->settings && r->n_pairs > 0);
+  flag(v, "no_loops", !analysis->settings && r->n_pairs > 0);
+}
+
+static void fill_tracking(const post_analysis *analysis, post_values_list *v) {
+  const post_tracking *t        = &analysis->tracking;
+  bool                 doubtful = false;
+  for (int i = 0; i < t->n; i++) doubtful |= t->point[i].doubtful;
+  flag(v, "tracked", t->n > 1);
+  flag(v, "state", t->n > 0);
+  flag(v, "doubtful", doubtful);
+  put_text(v, "range_name", post_at_one_frequency(analysis) ? "parameter’s" : "frequency");
+  post_table_resonances(analysis, post_value(v, "resonances"));
+}
+
+/* The curve that the page begins with. */
+static void fill_chosen(const post_analysis *analysis, int chosen, post_values_list *v) {
+  post_buffer *out      = post_value(v, "chosen");
+  const bool   followed = analysis->abscissa.parameter == MHB_IN_N0;
+  char         name[64];
+  if (chosen < 0) return;
+  post_group_name(&analysis->group[analysis->curve[chosen].group], name);
+  post_put(out, "%scurve%s%s%s", followed ? "first " : "", followed ? "" : " of ",
+           followed ? "" : name,
+           analysis->tracking.best >= 0 ? ", the one with the lowest peak" : "");
+}
+
+static void fill_sections(const post_analysis *analysis, const post_origin *source,
+                          post_values_list *v) {
+  const post_safe *safe = analysis->safe;
+  put_text(v, "stress", analysis->stress ? analysis->stress : "");
+  post_buffer *campbell = post_value(v, "campbell"), *convergence = post_value(v, "convergence");
+  if (analysis->campbell)
+    post_campbell_section(analysis->n_campbells, analysis->campbell, campbell);
+  if (analysis->convergence) post_convergence_section(analysis->convergence, convergence);
+  post_buffer *rows = post_value(v, "safe");
+  if (safe) post_safe_table(safe, rows);
+  flag(v, "disc", safe && safe->disc);
+  flag(v, "turning", safe && safe->speed > 0);
+  post_table_peaks(analysis, post_value(v, "peaks"));
+  post_table_quality(analysis, post_value(v, "quality"));
+  post_table_modes(analysis->response, post_value(v, "modes"));
+  put_source(source, post_value(v, "source"));
+  post_table_settings(source->settings, post_value(v, "settings"));
+  escaped(v, "case", source->case_text);
+}
+
+static shb_status fill_data(const post_analysis *analysis, int chosen, const post_blade_view *blade,
+                            const char *case_name, post_values_list *v) {
+  int         left_out = 0;
+  post_buffer unused   = {0};
+  flag(v, "moving", blade != NULL);
+  flag(v, "blades", post_put_blades(analysis->response, &unused) > 0);
+  flag(v, "factors", post_put_factors(analysis->response->samples, &unused));
+  post_buffer_free(&unused);
+  SHB_TRY(post_page_data(analysis, chosen, blade, post_value(v, "data"), &left_out));
+  post_buffer *number = post_value(v, "left_out");
+  if (left_out > 0) post_put(number, "%d", left_out);
+  put_address(case_name, post_value(v, "address"));
+  put_text(v, "script", post_report_js);
+  return SHB_OK;
+}
+
 shb_status post_report(const post_analysis *analysis, const post_origin *source,
                        const char *case_name, const post_blade_view *blade, post_buffer *out) {
-  bool moving = blade && post_blade_view_fits(blade, analysis->response);
-  int  chosen = post_chosen_branch(analysis), left_out = 0;
-  put_head(analysis, case_name, out);
-  put_header(analysis, source, case_name, out);
-  put_main(analysis, case_name, out);
-  if (chosen >= 0) put_point(analysis, out);
-  if (moving) post_blade_section(analysis, blade, out);
-  put_tracking(analysis, out);
-  post_put_blades(analysis->response, out);
-  post_put_factors(analysis->response->samples, out);
-  put_details(analysis, chosen, out);
-  if (analysis->stress) post_put_bytes(out, analysis->stress, strlen(analysis->stress));
-  put_axes(analysis, out);
-  if (analysis->campbell) post_campbell_section(analysis->n_campbells, analysis->campbell, out);
-  if (analysis->safe) post_safe_section(analysis->safe, out);
-  if (analysis->convergence) post_convergence_section(analysis->convergence, out);
-  put_tables(analysis, out);
-  put_source(source, out);
-  post_put(out, "</main>\n<script type=\"application/json\" id=\"data\">\n");
-  SHB_TRY(post_page_data(analysis, chosen, out, &left_out));
-  if (moving) {
-    post_put(out, "\n</script>\n<script type=\"application/json\" id=\"blade-data\">\n");
-    SHB_TRY(post_blade_data(analysis, blade, out));
-  }
-  post_put(out, "\n</script>\n<footer>");
-  if (left_out > 0)
-    post_put(out,
-             "To keep this page small its charts leave out %d outputs; the response file and the "
-             "CSV have all. ",
-             left_out);
-  post_put(out, "Displacements in SI: <a href=\"");
-  put_address(case_name, out);
-  post_put(out,
-           ".csv\">the table of every point</a>, beside this page. Works without "
-           "network.</footer>\n<script>\n");
-  post_put_bytes(out, post_plot_js, strlen(post_plot_js));
-  if (moving) post_put_bytes(out, post_blade_js, strlen(post_blade_js));
-  post_put_bytes(out, post_page_js, strlen(post_page_js));
-  post_put(out, "</script>\n</body>\n</html>\n");
-  SHB_CHECK(!out->failed, SHB_ERR_IO, "not enough memory for the report");
-  return SHB_OK;
+  const bool       moving = blade && post_blade_view_fits(blade, analysis->response);
+  const int        chosen = post_chosen_branch(analysis);
+  post_values_list values = {0};
+  fill_head(analysis, source, case_name, &values);
+  fill_chart(analysis, case_name, &values);
+  fill_tracking(analysis, &values);
+  fill_chosen(analysis, chosen, &values);
+  fill_sections(analysis, source, &values);
+  shb_status status = fill_data(analysis, chosen, moving ? blade : NULL, case_name, &values);
+  if (status == SHB_OK) status = post_template(post_report_html, &values, out);
+  post_values_list_free(&values);
+  return status;
 }

@@ -9,9 +9,8 @@
 #include "mhb/structure/gyroscopic.h"
 #include "modal/model/nodal_diameters.h"
 #include "postproc/draw/number_format.h"
-#include "postproc/draw/plot.h"
 
-enum { WIDTH = 1000, HEIGHT = 500, MOST_FAMILIES = 8, SHOWN = 3 };
+enum { MOST_FAMILIES = 8, SHOWN = 3 };
 
 /* ---------------------------------------------------------------- frequencies */
 
@@ -87,69 +86,36 @@ void post_safe_free(post_safe *s) {
   *s = (post_safe){0};
 }
 
-/* ---------------------------------------------------------------- diagram */
+/* ---------------------------------------------------------------- page */
 
-static void draw_family(const post_safe *s, const post_plot *plot, int family, bool stuck) {
-  const int most = s->blades / 2 + 1;
-  double    x[most], y[most];
-  int       n = 0;
-  for (int d = 0; d < most; d++) {
-    const double f = (stuck ? s->stuck : s->open)[d * s->n_families + family];
-    if (!(f == f)) continue; /* a diameter that the file of a disc lacks */
-    x[n]   = d;
-    y[n++] = f;
+static void put_frequencies(const post_safe *s, const char *name, const double *f,
+                            post_buffer *out) {
+  post_put(out, ",\"%s\":[", name);
+  for (int i = 0; i < (s->blades / 2 + 1) * s->n_families; i++) {
+    const int family = i % s->n_families;
+    post_put(out, "%s%s", family ? "," : i ? ",[" : "[", "");
+    post_put(out, isfinite(f[i]) ? "%.9g" : "null", f[i]);
+    if (family == s->n_families - 1) post_put(out, "]");
   }
-  plot_line(plot, stuck ? "line limit stuck" : "line limit open", n, x, y, NULL);
-  for (int i = 0; i < n; i++)
-    if (y[i] <= plot->y.hi) plot_dot(plot, "dot family", x[i], y[i], 2.2);
+  post_put(out, "]");
 }
 
-/* The range of the curves at the diameter of each driven harmonic; rings where it holds a
- * frequency. Harmonic k of the excitation is at k times the frequency of the curve. */
-static void draw_excitation(const post_safe *s, const post_plot *plot) {
-  for (int h = 0; h < s->n_driven; h++) {
-    const int    k = s->driven[h], d = modal_nodal_diameter(k * s->engine_order, s->blades);
-    const double lo = k * s->range[0], hi = fmin(k * s->range[1], plot->y.hi), x[2] = {d, d};
-    char         text[32];
-    if (lo >= plot->y.hi) continue;
-    plot_line(plot, "line excited", 2, x, (double[2]){lo, hi}, NULL);
-    snprintf(text, sizeof text, "%d E = %d", k, k * s->engine_order);
-    plot_text(plot, "mark", d, hi, (double[2]){6, 4}, "start", k == 1 ? text + 2 : text);
-    for (int i = 0; i < 2 * s->n_families; i++) {
-      double f = (i % 2 ? s->stuck : s->open)[d * s->n_families + i / 2];
-      if (f >= lo && f <= hi) plot_dot(plot, "crossing", d, f, 6);
-    }
-  }
+void post_safe_data(const post_safe *s, post_buffer *out) {
+  if (s->n_families == 0) return;
+  post_put(out,
+           ",\n\"safe\":{\"blades\":%d,\"engineOrder\":%d,\"range\":[%.9g,%.9g],\"speed\":%.9g,"
+           "\"driven\":[",
+           s->blades, s->engine_order, s->range[0], s->range[1], s->speed);
+  for (int i = 0; i < s->n_driven; i++) post_put(out, "%s%d", i ? "," : "", s->driven[i]);
+  post_put(out, "]");
+  put_frequencies(s, "open", s->open, out);
+  put_frequencies(s, "stuck", s->stuck, out);
+  post_put(out, "}");
 }
 
-/* The zigzag of all engine orders at the speed of the rotor: order k is at k Omega. */
-static void draw_zigzag(const post_safe *s, const post_plot *plot) {
-  const double rate = s->speed / SHB_TWO_PI;
-  if (!(rate > 0)) return;
-  const int n = (int)fmin(4. * s->blades, plot->y.hi / rate) + 2;
-  double   *x = calloc((size_t)n, 2 * sizeof *x), *y = x ? x + n : NULL;
-  if (!x) {
-    plot->out->failed = true;
-    return;
-  }
-  for (int k = 0; k < n; k++) {
-    x[k] = modal_nodal_diameter(k, s->blades);
-    y[k] = k * rate;
-  }
-  plot_line(plot, "order", n, x, y, NULL);
-  free(x);
-}
-
-static double top_of(const post_safe *s) {
-  const int last = s->n_families < SHOWN ? s->n_families - 1 : SHOWN - 1;
-  double    top  = 1.15 * s->range[1];
-  for (int d = 0; d <= s->blades / 2; d++)
-    top = fmax(top, fmin(2 * s->range[1], 1.05 * s->stuck[d * s->n_families + last]));
-  return top;
-}
-
-static void put_rows(const post_safe *s, post_buffer *out) {
+void post_safe_table(const post_safe *s, post_buffer *out) {
   char number[POST_NUMBER];
+  if (s->n_families == 0) return;
   post_put(out,
            "<div class=\"scroll\"><table><caption>Frequencies at the nodal diameter of each "
            "excited order, Hz.</caption>\n<thead><tr><th scope=\"col\">Order</th>"
@@ -168,39 +134,4 @@ static void put_rows(const post_safe *s, post_buffer *out) {
     }
   }
   post_put(out, "</tbody></table></div>\n");
-}
-
-void post_safe_section(const post_safe *s, post_buffer *out) {
-  if (s->n_families == 0) return;
-  post_put(out,
-           "<section>\n<h2>Nodal diameters</h2>\n<p class=\"note\">SAFE diagram: natural "
-           "frequencies of the ring over the nodal diameter, with open contacts (dashed) and with "
-           "stuck ones (dotted). %s Thick: frequencies of the curves, at the nodal diameter that "
-           "the excitation drives; "
-           "rings: its resonances there.%s</p>\n"
-           "<div class=\"card\"><figure><div class=\"chart\">\n",
-           s->disc ? "The blades share a flexible disc; dots: the nodal diameters of the file."
-                   : "The root is clamped, so that open blades do not know each other.",
-           s->speed > 0 ? " Thin zigzag: every engine order at the speed of the rotor." : "");
-  plot_svg_open(out, "safe", WIDTH, HEIGHT, "SAFE diagram",
-                "Natural frequencies of the ring over the nodal diameter; the table has those of "
-                "the excited orders.");
-  post_plot plot = {.out    = out,
-                    .id     = "safe-a",
-                    .left   = 66,
-                    .top    = 34,
-                    .width  = WIDTH - 66 - 40,
-                    .height = HEIGHT - 34 - 58};
-  const int last = s->blades / 2;
-  plot.x         = (plot_axis){-0.3, last + 0.3, false, 0, 1, "nodal diameter"};
-  plot.y         = (plot_axis){0, top_of(s), false, 0, 1, "frequency, Hz"};
-  plot_frame(&plot);
-  draw_zigzag(s, &plot);
-  for (int i = 0; i < s->n_families; i++)
-    for (int stuck = 0; stuck < 2; stuck++) draw_family(s, &plot, i, stuck);
-  draw_excitation(s, &plot);
-  plot_svg_close(out);
-  post_put(out, "</div></figure></div>\n");
-  put_rows(s, out);
-  post_put(out, "</section>\n");
 }

@@ -28,7 +28,9 @@ shb_status post_safe_compute(const modal_model *model, const mhb_settings *setti
                              const double range[2], double speed, post_safe *safe);
 void       post_safe_free(post_safe *safe);
 
-/* The section of the report; nothing without families. */
-void post_safe_section(const post_safe *safe, post_buffer *out);
+/* ,"safe":{...} of the page's numbers (report.schema.json), and its table as HTML; nothing without
+ * families. */
+void post_safe_data(const post_safe *safe, post_buffer *out);
+void post_safe_table(const post_safe *safe, post_buffer *out);
 
 #endif

@@ -79,6 +79,11 @@ static void put_block(const design_study *s, const char *name, block which, int 
   post_put(out, "]");
 }
 
+static const char *const state_word[STUDY_N_STATES] = {[STUDY_WAITING]       = "not run",
+                                                       [STUDY_DONE]          = "done",
+                                                       [STUDY_FAILED]        = "failed",
+                                                       [STUDY_NOT_CONVERGED] = "not converged"};
+
 static void put_states(const design_study *s, post_buffer *out) {
   post_put(out, ",\"status\":[");
   for (int i = 0; i < s->n; i++) post_put(out, "%s%d", i ? "," : "", (int)s->design[i].state);
@@ -382,7 +387,12 @@ static shb_status put_curves(const design_study *s, post_buffer *out, double *to
 }
 
 shb_status study_data(const design_study *s, post_buffer *out, double *tolerance) {
-  post_put(out, "{\"name\":");
+  post_put(out, "{\"format\":\"shroudhb study page\",\"version\":1,\"states\":[");
+  for (int i = 0; i < STUDY_N_STATES; i++) {
+    post_put(out, i ? "," : "");
+    post_put_json(out, state_word[i]);
+  }
+  post_put(out, "],\"name\":");
   post_put_json(out, s->name ? s->name : "");
   post_put(out, ",\"plan\":");
   post_put_json(out, s->plan);

@@ -83,7 +83,6 @@ shb_status study_page(const design_study *s, post_buffer *out) {
            "\n</script>\n<footer>Curves are drawn to %s of the chart. The CSV beside this page has "
            "every digit. Works without network.</footer>\n<script>\n",
            post_percent(percent, tolerance));
-  post_put_bytes(out, post_plot_js, strlen(post_plot_js));
   post_put_bytes(out, post_study_js, strlen(post_study_js));
   post_put(out, "</script>\n</body>\n</html>\n");
   SHB_CHECK(!out->failed, SHB_ERR_IO, "not enough memory for the page of the study");

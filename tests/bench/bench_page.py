@@ -61,7 +61,8 @@ def main():
                                 '/mesh/nodes', '--csv'], capture_output=True, text=True,
                                check=True).stdout.count('\n') - 1
         surface = re.search(r'"nodes":(\d+)', page).group(1)
-        blade = len(re.search(r'id="blade-data">(.*?)</script>', page, re.S).group(1))
+        numbers = json.loads(re.search(r'id="data">(.*?)</script>', page, re.S).group(1))
+        blade = len(json.dumps(numbers['blade']))
         print('  nodes  surface  curves  page MB  blade MB  shown s  empty page s')
         print(f'{nodes:7d} {surface:>8} {len(summary["curves"]):7d} {len(page) / 1e6:8.2f} '
               f'{blade / 1e6:9.2f} {load_time(chromium, page, folder):8.2f} '

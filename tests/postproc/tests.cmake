@@ -1,7 +1,7 @@
-shb_test(postproc/draw UNIT colour number_format text_buffer plot LIBRARIES shb_post)
+shb_test(postproc/draw UNIT colour number_format text_buffer template plot LIBRARIES shb_post)
 shb_test(postproc/analysis UNIT outputs abscissa curves curve_distance convergence response_analysis
   campbell file_origin findings resonances stability_findings LIBRARIES tests_responses)
-shb_test(postproc/report UNIT csv ring_charts page_data tables picture safe_diagram
+shb_test(postproc/report UNIT csv ring_data page_data tables picture safe_diagram
   contact_points INTEGRATION publish point_numbers report blade_view
   LIBRARIES tests_responses tests_models tests_box)
 # The program itself: exit codes and the one line of an error.
@@ -16,12 +16,32 @@ shb_test(postproc/field UNIT peak_stress whole_period stress_section strain_gaug
 shb_test(postproc/study UNIT study_file study_effects study_page LIBRARIES tests_studies)
 shb_test(postproc/comparison UNIT run_comparison LIBRARIES tests_responses)
 
-# The pages in a browser, where there is one.
-if(SHROUDHB_CHROMIUM)
-  shb_python_test(postproc.study.page_script INTEGRATION postproc/study/test_page_script.py
-    $<TARGET_FILE:test_postproc_study> ${SHROUDHB_CHROMIUM})
-  shb_python_test(postproc.report.page_script INTEGRATION postproc/report/test_page_script.py
-    $<TARGET_FILE:test_postproc_report> ${SHROUDHB_CHROMIUM})
-  shb_python_test(postproc.report.page_numbers INTEGRATION postproc/report/test_point_numbers.py
-    $<TARGET_FILE:test_postproc_report> ${SHROUDHB_CHROMIUM})
+# The scripts of the pages: their modules under node, the pages in a browser, their numbers against
+# the schemas. What a machine lacks is told as skipped.
+file(GLOB SCRIPT_TESTS RELATIVE ${CMAKE_CURRENT_SOURCE_DIR}/postproc/script CONFIGURE_DEPENDS
+  ${CMAKE_CURRENT_SOURCE_DIR}/postproc/script/test_*.mjs)
+foreach(script ${SCRIPT_TESTS})
+  string(REGEX REPLACE "test_(.*)\\.mjs" "\\1" noun ${script})
+  shb_tool_test(postproc.script.${noun} UNIT node "${SHROUDHB_NODE}"
+    ${SHROUDHB_NODE} --test ${CMAKE_CURRENT_SOURCE_DIR}/postproc/script/${script})
+endforeach()
+shb_tool_test(postproc.script.eslint INTEGRATION eslint "${SHROUDHB_ESLINT}"
+  ${SHROUDHB_ESLINT} --format unix --ext .js,.mjs postproc/script tests/postproc/script)
+if(SHROUDHB_ESLINT)
+  # where Debian's eslint has its libraries, for a node from elsewhere
+  set_tests_properties(postproc.script.eslint PROPERTIES WORKING_DIRECTORY ${PROJECT_SOURCE_DIR}
+    ENVIRONMENT "NODE_PATH=/usr/share/nodejs:/usr/share/javascript")
 endif()
+shb_python_test(postproc.script.schema INTEGRATION postproc/script/test_schema.py
+  $<TARGET_FILE:test_postproc_report> $<TARGET_FILE:test_postproc_study>)
+foreach(room study report)
+  shb_tool_test(postproc.${room}.page_script INTEGRATION chromium "${SHROUDHB_CHROMIUM}"
+    ${SHROUDHB_PYTHON} -B ${CMAKE_CURRENT_SOURCE_DIR}/postproc/${room}/test_page_script.py
+    $<TARGET_FILE:test_postproc_${room}> ${SHROUDHB_CHROMIUM})
+endforeach()
+if(NOT SHROUDHB_CHROMIUM)
+  set(SHROUDHB_CHROMIUM)
+endif()
+shb_tool_test(postproc.report.page_numbers INTEGRATION node "${SHROUDHB_NODE}"
+  ${SHROUDHB_PYTHON} -B ${CMAKE_CURRENT_SOURCE_DIR}/postproc/report/test_point_numbers.py
+  $<TARGET_FILE:test_postproc_report> ${SHROUDHB_NODE} ${SHROUDHB_CHROMIUM})

@@ -88,10 +88,10 @@
     if (b.dataset.save !== "PNG") b.click();
   const wanted = document.querySelectorAll('[data-save="SVG"],[data-save="CSV"]').length;
   if (!wanted || saved.length !== wanted) faults.push(`${saved.length} of ${wanted} files saved`);
-  const rows = Plot.table("response").split("\n");
+  const rows = module_panel.table(module_chart.shown.response).split("\n");
   if (rows.length < 50 || rows.some(l => l && l.split(",").length < 4))
     faults.push(`table of ${rows.length} rows`);
-  if (!/^<svg[^>]*xmlns=/.test(Plot.picture("response"))) faults.push("no picture of the chart");
+  if (!/^<svg[^>]*xmlns=/.test(module_chart.picture("response"))) faults.push("no picture of the chart");
   /* keyboard */
   for (const key of ["ArrowRight", "ArrowUp", "ArrowDown", "ArrowLeft", "Enter", "Escape"])
     svg.dispatchEvent(new KeyboardEvent("keydown", {key, bubbles: true}));
@@ -99,7 +99,8 @@
   window.dispatchEvent(new Event("resize"));
   /* the blade: every control changes the picture, which is neither empty nor full */
   let pictures;
-  if ($("blade-canvas") && typeof Blade !== "undefined" && Blade) {
+  const Blade = module_report_page.blade;
+  if (Blade) {
     const gl = $("blade-canvas").getContext("webgl2"), seen = new Set();
     const look = what => {
       const {width, height} = $("blade-canvas"), data = new Uint8Array(4 * width * height);
@@ -140,7 +141,7 @@
     const word = $("blade-play").textContent;
     $("blade-play").click();
     if ($("blade-play").textContent === word) faults.push("the motion cannot be stopped");
-    if (!Blade.picture().startsWith("data:image/png")) faults.push("no picture of the blade");
+    if (!Blade.dataUrl().startsWith("data:image/png")) faults.push("no picture of the blade");
     $("blade-home").click();
     pictures = seen.size;
   }

@@ -16,7 +16,7 @@
     point: $("point-where").textContent,
     contact: $("contact-where").textContent,
     name: $("pair").selectedOptions.length ? $("pair").selectedOptions[0].textContent : "contact",
-    tables: Object.fromEntries(charts.map(id => [id, Plot.table(id)]))
+    tables: Object.fromEntries(charts.map(id => [id, module_panel.table(module_chart.shown[id])]))
   });
   const contacts = end => {
     for (const o of values("pair")) {

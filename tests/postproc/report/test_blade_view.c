@@ -7,7 +7,6 @@
 #include "postproc/field/blade_skin.h"
 #include "postproc/field/whole_period.h"
 #include "postproc/report/report.h"
-#include "postproc/report/still_blade.h"
 #include "tests/support/box.h"
 #include "tests/support/check.h"
 #include "tests/support/fixture.h"
@@ -171,24 +170,6 @@ static void a_large_surface_is_merged(void **state) {
   free_field(&f);
 }
 
-static void pictures_are_drawn(void **state) {
-  (void)state;
-  post_blade_field f;
-  post_buffer      out = {0};
-  make_field((const int[]){4, 1, 10}, &f);
-  post_still_blade(&f, MESH_AXIS_X, &out);
-  /* nine edges of a box are seen, and no other: 3 (4 + 1 + 10) x 2 halves */
-  int pieces = 0;
-  for (const char *c = strstr(out.text, " d=\"") + 4; *c != '"'; c++) pieces += *c == 'M';
-  assert_int_equal(pieces, 90);
-  post_buffer_free(&out);
-  post_contact_axes(SHB_PI / 6, -0.1, &out);
-  assert_has(out.text, "ψ = 30°");
-  assert_has(out.text, "φ = −5.73°");
-  post_buffer_free(&out);
-  free_field(&f);
-}
-
 /* ---------------------------------------------------------------- a disc */
 
 /* Harmonic 3 also as harmonic 2, which runs backwards: 2 x 5 of 12 is nodal diameter 2. */
@@ -294,7 +275,6 @@ int main(int argc, char **argv) {
       cmocka_unit_test(a_small_surface_is_whole),
       cmocka_unit_test(fifty_thousand_nodes_fit_into_three_megabytes),
       cmocka_unit_test(a_large_surface_is_merged),
-      cmocka_unit_test(pictures_are_drawn),
       cmocka_unit_test(waves_of_a_disc_are_there),
       cmocka_unit_test(many_waves_fit_into_three_megabytes),
   };

@@ -1,6 +1,8 @@
 /* The JSON of the page: members, the numbers behind base64, what is left out of large responses. */
 #include "postproc/report/page_data.h"
 
+#include "postproc/analysis/stability_findings.h"
+
 #include "tests/support/check.h"
 #include "tests/support/fixture.h"
 
@@ -9,7 +11,7 @@ static char *data_of(mhb_response *r, int *left_out) {
   post_buffer    out = {0};
   assert_non_null(r);
   assert_ok(post_analysis_create(r, &analysis));
-  assert_ok(post_page_data(analysis, 0, &out, left_out));
+  assert_ok(post_page_data(analysis, 0, NULL, &out, left_out));
   assert_false(out.failed);
   post_analysis_destroy(analysis);
   return out.text;
@@ -56,17 +58,25 @@ static void numbers_are_those_of_the_response(void **state) {
   char           *text = data_of(r, &left_out);
   check_brackets(text);
   assert_int_equal(left_out, 0);
-  static const char *const members[] = {
-      "\"rows\":",     "\"chosen\":0",  "\"abscissa\":{", "\"groups\":[",
-      "\"outputs\":[", "\"spectra\":[", "\"branches\":[", "\"parameter\":\"frequency\""};
+  static const char *const members[] = {"\"format\":\"shroudhb report page\",\"version\":1",
+                                        "\"abscissa\":0",
+                                        "\"stability\":6",
+                                        "\"rows\":",
+                                        "\"chosen\":0",
+                                        "\"abscissa\":{",
+                                        "\"groups\":[",
+                                        "\"outputs\":[",
+                                        "\"spectra\":[",
+                                        "\"branches\":[",
+                                        "\"parameter\":\"frequency\""};
   for (size_t i = 0; i < sizeof members / sizeof *members; i++) assert_has(text, members[i]);
   const char *branch = strstr(text, "\"branches\":[");
   assert_has(branch, "\"n\":240,");
   const char *data = strstr(branch, "\"data\":\"") + strlen("\"data\":\"");
   for (size_t i = 0; i < 240; i += 13)
     assert_near(float_at(data, i), r->branch[0].frequency[i], 1e-5);
-  for (size_t i = 0; i < 240; i += 13) /* row 6: stable */
-    assert_near(float_at(data, 6 * 240 + i), r->branch[0].stable[i], 0);
+  for (size_t i = 0; i < 240; i += 13)
+    assert_near(float_at(data, 6 * 240 + i), post_verdict_of(&r->branch[0], (int)i), 0);
   free(text);
   mhb_response_destroy(r);
 }

@@ -26,13 +26,14 @@ LOOPS = {'loop-u', 'loop-w', 'path', 'period'}
 MOTION = """
 <script>
 queueMicrotask(() => {
+  const Blade = module_report_page.blade;
   Blade.choose(wanted.b, wanted.x, 0, () => "first");
   const select = document.getElementById("blade-shown");
   select.value = "point";
   select.dispatchEvent(new Event("change"));
   let off = 0, size = 0, at = 0;
   for (const s of wanted.sectors)
-    for (const x of Blade.motion(s, wanted.instant)) {
+    for (const x of Blade.motionOf(s, wanted.instant)) {
       off = Math.max(off, Math.abs(x - wanted.u[at]));
       size = Math.max(size, Math.abs(wanted.u[at++]));
     }

@@ -1,12 +1,15 @@
 #!/usr/bin/env python3
 """Every number that a page shows and draws at a clicked point, against the response file.
 
-    test_point_numbers.py MAKER CHROMIUM
+    test_point_numbers.py MAKER NODE [CHROMIUM]
 
 MAKER point_numbers keep writes pages, response files and NAME.json with areas and settings
 (test_point_numbers.c): a wave, a disc, rings of equal and of different blades, several pairs,
 several interfaces, gaps. Shares of pairs, loads and limits are computed here once more. Loads of
 equal blades are also those of the wave, at the ends of the range.
+
+The modules of the page's script run under node (point_views.mjs). A browser then shows one page
+and must say and draw the very same.
 """
 import csv
 import json
@@ -18,6 +21,7 @@ from pathlib import Path
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[2] / 'support'))
 from browser import visit
+from page_schema import document, first_fault, schema_of
 
 try:
     import h5py
@@ -27,6 +31,8 @@ except ImportError:
     sys.exit(77)
 
 ACTIONS = (Path(__file__).parent / 'point_actions.js').read_text()
+VIEWS = Path(__file__).parents[1] / 'script' / 'point_views.mjs'
+SHOWN = 'sides'  # the page of the browser: several contacts of several interfaces
 SCENES = ('wave', 'equal', 'ring', 'sides', 'parted', 'disc', 'gap', 'pressed', 'doubled')
 UNITS = {'Hz': 1, 'm': 1, 'mm': 1e-3, 'µm': 1e-6, 'N': 1, 'mN': 1e-3, 'µN': 1e-6, 'kN': 1e3,
          'J': 1, 'mJ': 1e-3, 'µJ': 1e-6, 'nJ': 1e-9, '%': 0.01}
@@ -264,37 +270,67 @@ def by_state(text, panel):
     return np.concatenate([lines(text, panel, [f'line {s}']) for s in ('stick', 'slip', 'gap')])
 
 
+def views(node, page):
+    """What the script's modules say and draw."""
+    run = subprocess.run([node, VIEWS, page], capture_output=True, text=True, timeout=120,
+                         check=False)
+    return (json.loads(run.stdout), []) if run.returncode == 0 else ([], [run.stderr])
+
+
+def differences(chromium, folder, seen):
+    """Where a browser says and draws something else."""
+    if not chromium:
+        print('a page in a browser: skipped, there is none')
+        return []
+    page = (folder / f'{SHOWN}.html').read_text()
+    faults, shown = visit(chromium, folder, page, f'<script>{ACTIONS}</script>')
+    for a, b in zip(seen, shown or []):
+        faults += [f'{key}: {a[key]!r:.200}, in a browser {b.get(key)!r:.200}' for key in a
+                   if a[key] != b.get(key)]
+    print(f'{SHOWN} in a browser: {len(shown or [])} views')
+    return faults + ([] if len(shown or []) == len(seen) else ['a view is missing'])
+
+
+def check_scene(scene, seen, faults):
+    """Check the views of a page; returns faults, and the loads at the ends of the range."""
+    check, ends = Check(), {}
+    check.faults += faults
+    for at in seen:
+        i = check_point(scene, at, check)
+        span = check_contact(scene, at, i, check)
+        if at.get('end'):
+            ends[at['end'], at['name']] = span
+        if at.get('outputs'):
+            check_outputs(scene, at, i, check)
+    if len({at['point'] for at in seen}) < 4:
+        check.faults.append('fewer than four points')
+    worst = sorted(check.worst.items(), key=lambda w: -w[1])[:3]
+    print(f'{check.numbers} numbers of {len(seen)} views; worst of their '
+          f'tolerance: {", ".join(f"{w} {x:.2f}" for w, x in worst)}')
+    return check.faults, ends
+
+
 def main():
-    maker, chromium = sys.argv[1:]
-    bad = 0
+    maker, node = sys.argv[1:3]
+    chromium = sys.argv[3] if len(sys.argv) > 3 else None
+    bad, ends = [], {}
     with tempfile.TemporaryDirectory() as name:
         folder = Path(name)
         subprocess.run([Path(maker).resolve(), 'point_numbers', 'keep'], cwd=folder, check=True)
-        ends = {}
         for scene_name in SCENES:
-            check, scene = Check(), Scene(folder, scene_name)
-            page = (folder / f'{scene_name}.html').read_text()
-            check.faults, seen = visit(chromium, folder, page, f'<script>{ACTIONS}</script>')
-            seen = seen or []
-            for at in seen:
-                i = check_point(scene, at, check)
-                span = check_contact(scene, at, i, check)
-                if at.get('end'):
-                    ends.setdefault(scene_name, {})[at['end'], at['name']] = span
-                if at.get('outputs'):
-                    check_outputs(scene, at, i, check)
-            if len({at['point'] for at in seen}) < 4:
-                check.faults.append('fewer than four points')
-            worst = sorted(check.worst.items(), key=lambda w: -w[1])[:3]
-            print(f'{scene_name}: {check.numbers} numbers of {len(seen)} views; worst of their '
-                  f'tolerance: {", ".join(f"{w} {x:.2f}" for w, x in worst)}')
-            for fault in check.faults[:8]:
-                print('  ' + fault)
-            bad += bool(check.faults)
-        faults = check_equal(ends)
-        for fault in faults[:8]:
-            print('  ' + fault)
-    return 1 if bad or faults else 0
+            seen, faults = views(node, folder / f'{scene_name}.html')
+            print(f'{scene_name}: ', end='')
+            faults, ends[scene_name] = check_scene(Scene(folder, scene_name), seen, faults)
+            schema = schema_of('report')
+            fault = schema and first_fault(schema, document(folder / f'{scene_name}.html'))
+            faults += [fault] if fault else []
+            if scene_name == SHOWN:
+                faults += differences(chromium, folder, seen)
+            bad += [f'{scene_name}: {fault}' for fault in faults[:8]]
+        bad += check_equal(ends)
+    for fault in bad:
+        print('  ' + fault)
+    return 1 if bad else 0
 
 
 if __name__ == '__main__':

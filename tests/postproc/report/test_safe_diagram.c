@@ -24,7 +24,7 @@ static void families_are_those_of_the_ring(void **state) {
   mhb_settings s        = random_settings(3);
   const double range[2] = {0.1, 0.3};
   post_safe    safe;
-  post_buffer  html = {0};
+  post_buffer  html = {0}, data = {0};
   double       f[6];
   random_model(1, WITH_LEFT, 3, &model);
   assert_ok(post_safe_compute(&model, &s, range, 0.2, &safe));
@@ -38,16 +38,18 @@ static void families_are_those_of_the_ring(void **state) {
       assert_true(f[i] > model.frequency[i] * (1 - 1e-12)); /* springs only stiffen */
     }
   }
-  post_safe_section(&safe, &html);
-  assert_non_null(strstr(html.text, "SAFE diagram"));
-  assert_non_null(strstr(html.text, "every engine order"));
+  post_safe_table(&safe, &html);
+  post_safe_data(&safe, &data);
   assert_non_null(strstr(html.text, "<td>stuck</td>"));
+  assert_non_null(strstr(data.text, "\"driven\":[1,2],\"open\":[["));
+  post_buffer_free(&data);
   post_buffer_free(&html);
   post_safe_free(&safe);
   s.to_ground = true;
   assert_ok(post_safe_compute(&model, &s, range, 0, &safe));
-  post_safe_section(&safe, &html);
-  assert_true(safe.n_families == 0 && html.length == 0);
+  post_safe_table(&safe, &html);
+  post_safe_data(&safe, &data);
+  assert_true(safe.n_families == 0 && html.length == 0 && data.length == 0);
   modal_model_free(&model);
 }
 
