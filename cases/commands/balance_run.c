@@ -151,6 +151,7 @@ static shb_status solve(const case_file *file, const char *modal, char *settings
   if (status == SHB_OK && case_points_are_auto(file)) note_points(progress, file, &model);
   if (status == SHB_OK && !file->modal_file) status = case_model_judge_points(&model);
   if (status == SHB_OK) status = case_model_face(&model, modal);
+  if (status == SHB_OK) status = case_model_diagrams(file, &model, modal);
   if (status == SHB_OK && model.settings.track != MHB_TRACK_NOTHING)
     status = mhb_tracked_response(&model.model, &model.settings, output, &provenance, progress,
                                   &response);

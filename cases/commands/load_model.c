@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "mesh/base/constants.h"
+#include "mhb/amplification/ring_frequencies.h"
 #include "mhb/mistuning/deviation_table.h"
 #include "mhb/mistuning/deviations.h"
 #include "modal/model/nodal_diameters.h"
@@ -190,7 +191,15 @@ shb_status case_model_face(case_model *m, const char *path) {
   return SHB_OK;
 }
 
+/* The pairs are all those of the modal file, whatever contact.points chose. */
+shb_status case_model_diagrams(const case_file *file, case_model *m, const char *path) {
+  SHB_TRY(mhb_diagrams_compute(path, &file->mhb, &m->diagrams));
+  m->settings.diagrams = &m->diagrams;
+  return SHB_OK;
+}
+
 void case_model_free(case_model *m) {
+  mhb_diagrams_free(&m->diagrams);
   modal_contact_face_free(&m->face);
   if (!m->run_up && !m->ring && !m->disc) modal_model_free(&m->model);
   mhb_mistuned_ring_destroy(m->ring);

@@ -6,6 +6,7 @@
 #include "cases/parse/case_file.h"
 #include "mhb/mistuning/mistuned_ring.h"
 #include "mhb/run_up/disc_speeds.h"
+#include "mhb/run_up/stuck_frequencies.h"
 #include "mhb/structure/receptance.h"
 #include "modal/model/contact_face.h"
 #include "modal/model/nodal_diameters.h"
@@ -23,6 +24,7 @@ typedef struct {
   mhb_disc_table        *disc_run_up; /* run-up of a disc, owner of run_up */
   mhb_disc_speeds       *disc_top;    /* owner of disc and top there */
   modal_contact_face     face;        /* for maps; without nodes: none */
+  mhb_diagrams           diagrams;    /* of the ring, for the file */
   contact_points        *points;      /* the model's finer or coarser one; NULL: none */
 } case_model;
 
@@ -46,6 +48,9 @@ shb_status case_model_judge_points(case_model *model);
 
 /* Maps of the contact at peaks: the face of the modal file at path, if it holds one. */
 shb_status case_model_face(case_model *model, const char *path);
+
+/* Frequencies of the ring with stuck contacts, of the modal file at path. */
+shb_status case_model_diagrams(const case_file *file, case_model *model, const char *path);
 
 void case_model_free(case_model *model);
 

@@ -128,7 +128,8 @@ typedef struct {
   /* Equal groups of consecutive pairs, each a contact with the stiffness and preload of the case.
    * 0, 1: all pairs are one contact. */
   int                              contacts;
-  const struct modal_contact_face *face; /* for maps of the contact at peaks; NULL: none */
+  const struct mhb_diagrams       *diagrams; /* to be written into the file; NULL: none */
+  const struct modal_contact_face *face;     /* for maps of the contact at peaks; NULL: none */
   const mhb_other_pairs *other_pairs; /* by which the spatial error is estimated; NULL: it is not */
   /* The curve in outline, with a fixed number of harmonics: peaks are not located, and the errors
    * of points are unknown (NAN). The linear limits have no points. */

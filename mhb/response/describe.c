@@ -45,6 +45,7 @@ shb_status mhb_response_describe(mhb_response *response, const modal_model *mode
   response->engine_order    = settings->engine_order;
   response->blades          = settings->blades;
   response->run_up          = settings->run_up != NULL;
+  response->diagrams        = settings->diagrams;
   response->lacks_diameters =
       settings->stability != MHB_STABILITY_NEVER && !mhb_judges_stability(settings);
   response->parameter      = settings->parameter;

@@ -9,6 +9,7 @@
 #include "mhb/response/face_wear.h"
 #include "mhb/response/response.h"
 #include "mhb/response/response_fields.h"
+#include "mhb/run_up/stuck_frequencies.h"
 #include "modal/hdf5/h5.h"
 
 static const char response_format[] = "shroudhb response";
@@ -186,6 +187,7 @@ static shb_status write_parts(hid_t file, const void *context) {
   SHB_TRY(h5_write_provenance(file, response_format, RESPONSE_VERSION, c->provenance));
   SHB_TRY(write_root(file, response));
   if (response->face) SHB_TRY(mhb_contact_face_write(file, response->face));
+  if (response->diagrams) SHB_TRY(mhb_diagrams_write(file, response->diagrams));
   for (int i = 0; i < response->n_branches; i++) SHB_TRY(mhb_branch_write(file, response, i));
   return SHB_OK;
 }

@@ -264,11 +264,12 @@ typedef struct {
   char   *track, *output;    /* with mhb.track: what is followed, of which output; else NULL */
   bool    tracks_multiplier; /* these are flips or Neimark-Sacker points */
   int     output_harmonic;   /* of the excitation: of the amplitude of outputs; 0, 1: the first */
-  mhb_output_quantity       quantity; /* of the amplitude of outputs */
-  mhb_optimum               optimum;
-  mhb_tracking_cost         cost;    /* of mhb.track */
-  mhb_samples              *samples; /* of a mistuned ring; NULL: none were drawn */
-  const modal_contact_face *face;    /* that the maps are written on; NULL: no maps; not owned */
+  mhb_output_quantity        quantity; /* of the amplitude of outputs */
+  mhb_optimum                optimum;
+  mhb_tracking_cost          cost;     /* of mhb.track */
+  mhb_samples               *samples;  /* of a mistuned ring; NULL: none were drawn */
+  const struct mhb_diagrams *diagrams; /* of the ring, to be written; NULL: none; not owned */
+  const modal_contact_face  *face;     /* that the maps are written on; NULL: no maps; not owned */
 } mhb_response;
 
 struct mhb_unfinished {

@@ -397,6 +397,10 @@ void post_campbell_section(int n, const post_campbell *campbell, post_buffer *ou
                   : " Dotted: the ring with stuck contacts, at the nodal diameter of "
                     "the excitation.",
            disc ? " An excited order meets the modes of its own nodal diameter only." : "");
+  if (campbell->stuck_unknown)
+    post_put(out,
+             "<p class=\"note\">The response was made by a version that stored no frequencies with "
+             "stuck contacts. <code>shroudhb mhb --force</code> makes it anew, with them.</p>\n");
   for (int i = 0; i < n; i++) put_diagram(&campbell[i], out);
   post_put(out, "</section>\n");
 }

@@ -14,9 +14,10 @@ typedef struct {
   int                 engine_order; /* E of the excitation; 0: none */
   /* [speed][n_stuck] Hz, rising: the ring with stuck contacts at the nodal diameter of E; NULL:
    * not known */
-  int     n_stuck;
-  double *stuck;
-  int     blades, diameter; /* of a disc: N, and the nodal diameter of its modes; blades 0: none */
+  int           n_stuck;
+  const double *stuck;
+  bool          stuck_unknown; /* the response is of a version that stored none */
+  int blades, diameter; /* of a disc: N, and the nodal diameter of its modes; blades 0: none */
 } post_campbell;
 
 /* A resonance: the line of an engine order meets a mode. */

@@ -3,7 +3,8 @@
 #include <stdio.h>
 #include <stdlib.h>
 
-#include "mhb/continuation/linear_resonances.h"
+#include "mesh/base/memory.h"
+#include "mhb/run_up/stuck_frequencies.h"
 #include "modal/model/sector_speeds.h"
 #include "postproc/analysis/findings.h"
 #include "postproc/analysis/resonances.h"
@@ -24,6 +25,7 @@ typedef struct {
   post_campbell      *campbell;
   int                 n_campbells;
   post_safe           safe;
+  mhb_diagrams        diagrams;
   double             *area; /* [n_pairs] m2, of each contact, or NULL */
   post_buffer         html, csv, svg, diagram;
 } work;
@@ -80,83 +82,38 @@ static shb_status add_model(const post_job *job, work *w) {
 }
 
 /* Frequencies of the ring with stuck contacts over the nodal diameter. */
-static shb_status add_safe(const post_job *job, work *w) {
-  modal_nodal_diameters disc;
-  if (!job->html || !job->modal || !job->settings || post_at_one_frequency(w->analysis))
-    return SHB_OK;
-  SHB_TRY(modal_nodal_diameters_read(job->modal, &disc));
-  mhb_settings settings    = *job->settings;
-  settings.nodal_diameters = disc.n > 0 ? &disc : NULL;
-  shb_status status =
-      post_safe_compute(&w->model, &settings, w->analysis->frequency, job->speed, &w->safe);
-  modal_nodal_diameters_free(&disc);
+static void add_safe(const post_job *job, work *w) {
+  const mhb_response *r = w->response;
+  if (!job->html || !job->modal || post_at_one_frequency(w->analysis)) return;
+  if (r->n_pairs < 1 || r->blades < 3) return;
+  post_safe_create(&w->diagrams, &w->model, r, w->analysis->frequency, job->speed, &w->safe);
   w->analysis->safe = &w->safe;
-  return status;
 }
 
-/* The models of a disc at one speed; only the lists are its own. */
-static shb_status at_speed(const modal_sector_speeds *all, int speed, modal_nodal_diameters *out) {
-  SHB_TRY(modal_nodal_diameters_create(all->blades, all->n, out));
-  for (int i = 0; i < all->n; i++) {
-    const modal_speeds *at = &all->at[i];
-    out->diameter[i]       = all->diameter[i];
-    out->model[i]          = at->model[speed];
-    if (!at->imaginary) continue;
-    out->imaginary[i] = at->imaginary[speed];
-    out->backward[i]  = at->backward[speed];
-  }
-  return SHB_OK;
+/* Stuck frequencies at each speed, of the nodal diameter of the diagram. */
+static void add_stuck(const work *w, post_campbell *c) {
+  const mhb_diagrams *d = &w->diagrams;
+  c->stuck_unknown      = !d->known && w->response->n_pairs > 0;
+  for (int i = 0; i < d->n_waves && d->n_speeds == c->speeds->n; i++)
+    if (c->blades == 0 || d->wave[i] == c->diameter) {
+      c->n_stuck = d->n_stuck;
+      c->stuck   = d->over + i * d->n_speeds * d->n_stuck;
+      return;
+    }
 }
 
-static void release(modal_nodal_diameters *d) {
-  for (int i = 0; d->model && i < d->n; i++)
-    d->model[i] = d->imaginary[i] = d->backward[i] = (modal_model){0};
-  modal_nodal_diameters_free(d);
-}
-
-/* Stuck frequencies at one speed, at the nodal diameter of the diagram. */
-static shb_status find_stuck(const mhb_settings *settings, const work *w, int speed,
-                             const post_campbell *c) {
-  mhb_settings          here   = *settings;
-  modal_nodal_diameters models = {0};
-  const bool            disc   = c->blades > 0;
-  const modal_model    *model  = disc ? &w->sector.at[0].model[speed] : &c->speeds->model[speed];
-  shb_status            status = disc ? at_speed(&w->sector, speed, &models) : SHB_OK;
-  here.nodal_diameters         = disc ? &models : NULL;
-  if (status == SHB_OK)
-    status = mhb_stuck_frequencies(model, &here, disc ? c->diameter : settings->engine_order,
-                                   c->n_stuck, c->stuck + speed * c->n_stuck);
-  release(&models);
-  return status;
-}
-
-/* Stuck frequencies at each speed. */
-static shb_status add_stuck(const mhb_settings *settings, const work *w, post_campbell *c) {
-  enum { MOST = 12 };
-  const modal_speeds *s = c->speeds;
-  if (!settings || s->model[0].n_pairs == 0) return SHB_OK;
-  if (!settings->to_ground && !s->model[0].has_left) return SHB_OK;
-  c->n_stuck = s->n_modes < MOST ? s->n_modes : MOST;
-  c->stuck   = calloc((size_t)c->n_stuck * (size_t)s->n, sizeof *c->stuck);
-  SHB_CHECK(c->stuck, SHB_ERR_IO, "not enough memory for the Campbell diagram");
-  for (int i = 0; i < s->n; i++) SHB_TRY(find_stuck(settings, w, i, c));
-  return SHB_OK;
-}
-
-/* The nodal diameters that the load meets, that of the engine order first. */
+/* A diagram for each nodal diameter that the load meets. */
 static void list_diagrams(work *w) {
   const modal_sector_speeds *all   = &w->sector;
-  const modal_model         *model = &all->at[0].model[0];
   const int                  E     = w->response->engine_order;
-  for (int h = 1; h <= model->n_load; h++) {
-    const int n    = modal_nodal_diameter((long)h * E, all->blades);
-    bool      have = !modal_model_is_driven(model, h);
-    for (int i = 0; i < w->n_campbells; i++) have = have || w->campbell[i].diameter == n;
-    for (int i = 0; i < all->n && !have; i++)
-      if (all->diameter[i] == n)
-        w->campbell[w->n_campbells++] = (post_campbell){
-            .speeds = &all->at[i], .engine_order = E, .blades = all->blades, .diameter = n};
-  }
+  int                       *index = shb_alloc((size_t)all->n, sizeof *index);
+  w->n_campbells                   = mhb_driven_diameters(all, E, index);
+  for (int i = 0; i < w->n_campbells; i++)
+    w->campbell[i] = (post_campbell){.speeds       = &all->at[index[i]],
+                                     .engine_order = E,
+                                     .blades       = all->blades,
+                                     .diameter     = all->diameter[index[i]]};
+  free(index);
 }
 
 static shb_status add_campbell(const post_job *job, work *w) {
@@ -171,7 +128,7 @@ static shb_status add_campbell(const post_job *job, work *w) {
   else
     w->campbell[w->n_campbells++] =
         (post_campbell){.speeds = &w->speeds, .engine_order = w->response->engine_order};
-  for (int i = 0; i < w->n_campbells; i++) SHB_TRY(add_stuck(job->settings, w, &w->campbell[i]));
+  for (int i = 0; i < w->n_campbells; i++) add_stuck(w, &w->campbell[i]);
   if (w->n_campbells == 0) return SHB_OK;
   w->analysis->campbell    = w->campbell;
   w->analysis->n_campbells = w->n_campbells;
@@ -191,8 +148,9 @@ static shb_status compose(const post_job *job, shb_progress *progress, work *w) 
     w->analysis->convergence = &w->convergence;
   }
   SHB_TRY(add_model(job, w));
+  SHB_TRY(mhb_diagrams_read(job->response, &w->diagrams));
   SHB_TRY(add_campbell(job, w));
-  SHB_TRY(add_safe(job, w));
+  add_safe(job, w);
   shb_progress_note(progress, "read %d points on %d curves in %.2f s", w->analysis->n_points,
                     w->response->n_branches, shb_seconds() - started);
   started = shb_seconds();
@@ -241,9 +199,9 @@ shb_status post_publish(const post_job *job, shb_progress *progress, char **summ
   post_buffer_free(&w.csv);
   post_buffer_free(&w.svg);
   post_buffer_free(&w.diagram);
-  for (int i = 0; i < w.n_campbells; i++) free(w.campbell[i].stuck);
   free(w.campbell);
   post_safe_free(&w.safe);
+  mhb_diagrams_free(&w.diagrams);
   free(w.area);
   modal_speeds_free(&w.speeds);
   modal_sector_speeds_free(&w.sector);

@@ -234,6 +234,7 @@ static void fill_sections(const post_analysis *analysis, const post_origin *sour
   if (analysis->convergence) post_convergence_section(analysis->convergence, convergence);
   post_buffer *rows = post_value(v, "safe");
   if (safe) post_safe_table(safe, rows);
+  flag(v, "safe_unknown", safe && !safe->known);
   flag(v, "disc", safe && safe->disc);
   flag(v, "turning", safe && safe->speed > 0);
   post_table_peaks(analysis, post_value(v, "peaks"));

@@ -3,81 +3,42 @@
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
+#include <string.h>
 
-#include "mesh/base/constants.h"
-#include "mhb/continuation/linear_resonances.h"
-#include "mhb/structure/gyroscopic.h"
+#include "mesh/base/memory.h"
 #include "modal/model/nodal_diameters.h"
 #include "postproc/draw/number_format.h"
 
-enum { MOST_FAMILIES = 8, SHOWN = 3 };
-
-/* ---------------------------------------------------------------- frequencies */
+enum { SHOWN = 3 }; /* families at least */
 
 /* Families up to half above the range, at least three. */
-static int count_families(const modal_model *model, double high) {
+static int count_families(const modal_model *model, int stored, double high) {
   int n = 0;
-  while (n < model->n_modes && n < MOST_FAMILIES && (n < SHOWN || model->frequency[n] < 1.5 * high))
-    n++;
+  while (n < model->n_modes && n < stored && (n < SHOWN || model->frequency[n] < 1.5 * high)) n++;
   return n;
 }
 
-static void find_driven(const modal_model *model, post_safe *s) {
-  for (int k = 1; k <= model->n_load && s->n_driven < 16; k++)
-    if (modal_model_is_driven(model, k)) s->driven[s->n_driven++] = k;
-}
-
-/* The model at a nodal diameter; NULL: the file of a disc lacks it. */
-static const modal_model *model_at(const modal_model *model, const mhb_settings *settings,
-                                   int diameter) {
-  const modal_nodal_diameters *disc = settings->nodal_diameters;
-  if (!disc) return model;
-  const int at = modal_nodal_diameters_find(disc, diameter);
-  return at < 0 ? NULL : &disc->model[at];
-}
-
-/* Frequencies of the open families at a nodal diameter, Hz. With Coriolis terms they are those of
- * the wave that runs to the right, as an excitation of that order does. */
-static shb_status find_open(const modal_model *own, const mhb_settings *settings, int diameter,
-                            int n, double *open) {
-  modal_wave     wave;
-  mhb_gyroscopic g;
-  int            missing;
-  for (int i = 0; i < n; i++) open[i] = own ? own->frequency[i] : NAN;
-  if (!own || !own->coriolis) return SHB_OK;
-  if (!settings->nodal_diameters ||
-      !modal_nodal_diameters_wave(settings->nodal_diameters, diameter, &wave, &missing))
-    wave = modal_wave_real(own);
-  shb_status status = mhb_gyroscopic_of_wave(&wave, &g);
-  for (int i = 0; i < n && status == SHB_OK; i++) open[i] = g.omega[g.n + i] / SHB_TWO_PI;
-  mhb_gyroscopic_free(&g);
-  return status;
-}
-
-shb_status post_safe_compute(const modal_model *model, const mhb_settings *settings,
-                             const double range[2], double speed, post_safe *s) {
-  *s = (post_safe){.blades       = settings->blades,
-                   .engine_order = settings->engine_order,
-                   .range        = {range[0], range[1]},
-                   .speed        = speed,
-                   .disc         = settings->nodal_diameters != NULL};
-  if (settings->to_ground || !model->has_left || model->n_pairs == 0 || settings->blades < 3)
-    return SHB_OK;
-  const int n = count_families(model, range[1]), diameters = settings->blades / 2 + 1;
-  s->open           = calloc((size_t)n * (size_t)diameters, sizeof *s->open);
-  s->stuck          = calloc((size_t)n * (size_t)diameters, sizeof *s->stuck);
-  shb_status status = s->open && s->stuck ? SHB_OK : SHB_ERR_IO;
-  SHB_CHECK(status == SHB_OK, SHB_ERR_IO, "not enough memory for the SAFE diagram");
-  for (int d = 0; d < diameters && status == SHB_OK; d++) {
-    const modal_model *own = model_at(model, settings, d);
-    status                 = find_open(own, settings, d, n, s->open + d * n);
-    for (int i = 0; i < n; i++) s->stuck[d * n + i] = NAN;
-    if (own && status == SHB_OK)
-      status = mhb_stuck_frequencies(own, settings, d, n, s->stuck + d * n);
+void post_safe_create(const mhb_diagrams *d, const modal_model *model, const mhb_response *response,
+                      const double range[2], double speed, post_safe *s) {
+  *s          = (post_safe){.blades       = response->blades,
+                            .engine_order = response->engine_order,
+                            .known        = d->known,
+                            .n_families   = count_families(model, d->n_families, range[1]),
+                            .n_driven     = d->n_driven,
+                            .range        = {range[0], range[1]},
+                            .speed        = speed,
+                            .disc         = d->disc};
+  const int n = s->n_families, all = response->blades / 2 + 1;
+  memcpy(s->driven, d->driven, sizeof s->driven);
+  s->open  = shb_alloc((size_t)(n * all) + 1, sizeof *s->open);
+  s->stuck = shb_alloc((size_t)(n * all) + 1, sizeof *s->stuck);
+  for (int i = 0; i < n * all; i++) s->open[i] = s->stuck[i] = NAN;
+  for (int i = 0; i < d->n_diameters; i++) {
+    const int at = d->diameter[i];
+    if (at < 0 || at >= all) continue;
+    memcpy(s->open + at * n, d->open + i * d->n_families, (size_t)n * sizeof *s->open);
+    memcpy(s->stuck + at * n, d->stuck + i * d->n_families, (size_t)n * sizeof *s->stuck);
   }
-  find_driven(model, s);
-  s->n_families = n;
-  return status;
 }
 
 void post_safe_free(post_safe *s) {

@@ -6,8 +6,8 @@
 #ifndef POSTPROC_REPORT_SAFE_DIAGRAM_H
 #define POSTPROC_REPORT_SAFE_DIAGRAM_H
 
-#include "mhb/problem/settings.h"
-#include "modal/model/model.h"
+#include "mhb/response/response.h"
+#include "mhb/run_up/stuck_frequencies.h"
 #include "postproc/draw/text_buffer.h"
 
 typedef struct post_safe {
@@ -18,15 +18,17 @@ typedef struct post_safe {
   double  range[2];             /* of the curves, Hz */
   double  speed;                /* of the rotor, rad/s; 0: not known */
   bool    disc;                 /* the blades share a flexible disc */
+  bool    known;                /* false: the file is of a version that stored no frequencies */
 } post_safe;
 
-/* Compute the families. The open ones of a blade that is clamped at its root have the same
- * frequency at every diameter. Of a disc, settings->nodal_diameters, they are NAN at diameters that
- * its file lacks. n_families = 0 without a neighbour or with less than three blades.
- * Errors: SHB_ERR_IO no memory. */
-shb_status post_safe_compute(const modal_model *model, const mhb_settings *settings,
-                             const double range[2], double speed, post_safe *safe);
-void       post_safe_free(post_safe *safe);
+/* The families of a response file that a diagram over its range shows. Frequencies at nodal
+ * diameters that the file lacks are NAN.
+ *   model  in  of the response: its frequencies tell how many families there are in the range
+ *   range  in  of the curves, Hz */
+void post_safe_create(const mhb_diagrams *diagrams, const modal_model *model,
+                      const mhb_response *response, const double range[2], double speed,
+                      post_safe *safe);
+void post_safe_free(post_safe *safe);
 
 /* ,"safe":{...} of the page's numbers (report.schema.json), and its table as HTML; nothing without
  * families. */

@@ -68,7 +68,16 @@ function offer(name) {
     svg.parentElement.append(box);
   }
 }
+/* Draws anew for a printer: what a canvas holds has the colours of the screen. */
+function wirePrint(draw) {
+  const set = on => () => {
+    document.documentElement.classList.toggle("printing", on);
+    draw();
+  };
+  window.addEventListener("beforeprint", set(true));
+  window.addEventListener("afterprint", set(false));
+}
 /* The numbers of the page. */
 const readData = () => JSON.parse($("data").textContent);
 
-export {$, shown, widthOf, show, picture, save, raster, offer, readData};
+export {$, shown, widthOf, show, picture, save, raster, offer, wirePrint, readData};

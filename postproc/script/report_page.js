@@ -1,6 +1,6 @@
 /* The report of a case: controls, and which chart follows which. */
 import {escape, unique} from "./numbers.js";
-import {$, show, widthOf, offer, save, readData} from "./chart.js";
+import {$, show, widthOf, offer, save, wirePrint, readData} from "./chart.js";
 import {
   readReport, classOf, selectable, topOf, firstState, outputFor
 } from "./report_data.js";
@@ -232,11 +232,6 @@ const chart = {
 };
 
 /* ---------------------------------------------------------------- start */
-function wirePrint() {
-  window.addEventListener("beforeprint", () => {
-    if (blade) blade.print();
-  });
-}
 function start() {
   const name = document.querySelector("h1").textContent.replace(/[^\w.-]+/g, "_");
   let timer;
@@ -244,7 +239,7 @@ function start() {
   wireCurve();
   wireKeys();
   wireChart(chart);
-  wirePrint();
+  if (blade) wirePrint(() => blade.print());
   drawAll();
   showBlade();
   offer(name);

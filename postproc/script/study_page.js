@@ -1,5 +1,5 @@
 /* A design study: which charts the page has. */
-import {$} from "./chart.js";
+import {$, wirePrint} from "./chart.js";
 import {D, keys, outputs, known, state, dark, select, drawAll, U} from "./study_state.js";
 import {choose} from "./study_design.js";
 import {buildCurves} from "./study_curves.js";
@@ -75,4 +75,5 @@ if (D.n > 0 && keys.length) {
     if (e.key === "Escape" && state.chosen >= 0) choose(-1);
   });
   dark.addEventListener("change", drawAll);
+  wirePrint(drawAll);
 }

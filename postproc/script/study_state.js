@@ -43,7 +43,8 @@ const active = i => {
 };
 
 const dark = matchMedia("(prefers-color-scheme: dark)");
-const ramp = () => D.ramp[dark.matches ? "dark" : "light"];
+const printing = () => document.documentElement.classList.contains("printing");
+const ramp = () => D.ramp[dark.matches && !printing() ? "dark" : "light"];
 const css = name => getComputedStyle(document.documentElement).getPropertyValue(name).trim();
 const shade = (c, v) => Math.max(0, Math.min(32, Math.round(32 * place(c, v)))) || 0;
 const colourOf = (c, v) => ramp()[shade(c, v)];

@@ -35,7 +35,8 @@ shb_test(mhb/continuation UNIT arclength_scalar balance_curve closed_curve corre
   event_location events linear_corrector nearest_solution outputs
   resonance_detection segment INTEGRATION first_solution arclength linear_resonances
   LIBRARIES tests_models LINK LINKER:--wrap=mhb_arclength_start)
-shb_test(mhb/amplification UNIT whitehead INTEGRATION ring_response LIBRARIES tests_models)
+shb_test(mhb/amplification UNIT whitehead ring_frequencies INTEGRATION ring_response
+  LIBRARIES tests_models)
 shb_test(mhb/branches UNIT free_body branch_completion chain linear_limits main_branch peak_search
   period_doubling record tracer
   INTEGRATION branch_stability forced_response harmonic_selection

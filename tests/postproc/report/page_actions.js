@@ -142,6 +142,15 @@
     $("blade-play").click();
     if ($("blade-play").textContent === word) faults.push("the motion cannot be stopped");
     if (!Blade.dataUrl().startsWith("data:image/png")) faults.push("no picture of the blade");
+    /* paper gets a copy of the picture, in a canvas that is not WebGL's */
+    window.dispatchEvent(new Event("beforeprint"));
+    const paper = $("blade-print");
+    const inked = paper.getContext("2d").getImageData(0, 0, paper.width || 1, paper.height || 1)
+        .data.filter((v, i) => i % 4 === 3 && v > 0).length / (paper.width * paper.height);
+    if (!(inked > 0.01 && inked < 0.9)) faults.push(`${inked} of the printed picture drawn`);
+    if (!document.documentElement.classList.contains("printing")) faults.push("no paper");
+    window.dispatchEvent(new Event("afterprint"));
+    if (document.documentElement.classList.contains("printing")) faults.push("paper stays");
     $("blade-home").click();
     pictures = seen.size;
   }

@@ -4,11 +4,8 @@
 #include <math.h>
 #include <string.h>
 
-#include "mesh/base/constants.h"
-#include "mhb/continuation/linear_resonances.h"
 #include "modal/model/nodal_diameters.h"
 #include "tests/support/check.h"
-#include "tests/support/random_model.h"
 
 static void diameters_of_orders(void **state) {
   (void)state;
@@ -18,43 +15,61 @@ static void diameters_of_orders(void **state) {
   assert_int_equal(modal_nodal_diameter(3, 7), 3);
 }
 
-static void families_are_those_of_the_ring(void **state) {
+/* A ring of seven blades, whose file lacks nodal diameter 2: the range chooses the families. */
+static void families_in_the_range_are_shown(void **state) {
   (void)state;
-  modal_model  model;
-  mhb_settings s        = random_settings(3);
-  const double range[2] = {0.1, 0.3};
-  post_safe    safe;
-  post_buffer  html = {0}, data = {0};
-  double       f[6];
-  random_model(1, WITH_LEFT, 3, &model);
-  assert_ok(post_safe_compute(&model, &s, range, 0.2, &safe));
-  assert_true(safe.n_families >= 3 && safe.n_families <= 6);
-  assert_int_equal(safe.n_driven, 2); /* harmonics 1 and 2 of the load */
-  for (int d = 0; d <= s.blades / 2; d++) {
-    assert_ok(mhb_stuck_frequencies(&model, &s, d, safe.n_families, f));
-    for (int i = 0; i < safe.n_families; i++) {
-      assert_near(safe.stuck[d * safe.n_families + i], f[i], 1e-12);
-      assert_near(safe.open[d * safe.n_families + i], model.frequency[i], 0);
-      assert_true(f[i] > model.frequency[i] * (1 - 1e-12)); /* springs only stiffen */
-    }
+  int                diameter[] = {0, 1, 3};
+  double             open[3][4], stuck[3][4], frequency[] = {100, 200, 300, 900};
+  const modal_model  model    = {.n_modes = 4, .frequency = frequency};
+  const mhb_response response = {.blades = 7, .engine_order = 2};
+  const mhb_diagrams d        = {.known       = true,
+                                 .n_families  = 4,
+                                 .n_diameters = 3,
+                                 .diameter    = diameter,
+                                 .open        = *open,
+                                 .stuck       = *stuck,
+                                 .n_driven    = 2,
+                                 .driven      = {1, 2}};
+  post_safe          safe;
+  post_buffer        html = {0}, data = {0};
+  for (int i = 0; i < 12; i++) {
+    open[i / 4][i % 4]  = frequency[i % 4];
+    stuck[i / 4][i % 4] = frequency[i % 4] + 1 + i / 4;
   }
+  post_safe_create(&d, &model, &response, (const double[]){90, 120}, 0.2, &safe);
+  assert_int_equal(safe.n_families, 3);
+  assert_near(safe.stuck[3 * 3 + 1], 203, 0);
+  assert_true(isnan(safe.open[2 * 3]) && isnan(safe.stuck[2 * 3 + 2]));
   post_safe_table(&safe, &html);
   post_safe_data(&safe, &data);
-  assert_non_null(strstr(html.text, "<td>stuck</td>"));
-  assert_non_null(strstr(data.text, "\"driven\":[1,2],\"open\":[["));
-  post_buffer_free(&data);
+  assert_has(html.text, "<th scope=\"row\">4</th><td>3</td><td>stuck</td><td>103.00</td>");
+  assert_has(data.text, "\"driven\":[1,2],\"open\":[[100,200,300],[100,200,300],[null,null,null],");
   post_buffer_free(&html);
+  post_buffer_free(&data);
   post_safe_free(&safe);
-  s.to_ground = true;
-  assert_ok(post_safe_compute(&model, &s, range, 0, &safe));
+  post_safe_create(&d, &model, &response, (const double[]){90, 700}, 0.2, &safe);
+  assert_int_equal(safe.n_families, 4);
+  post_safe_free(&safe);
+}
+
+/* Of a file without families nothing is shown, and one of an older version says so. */
+static void nothing_is_shown_without_families(void **state) {
+  (void)state;
+  const modal_model  model    = {0};
+  const mhb_response response = {.blades = 7};
+  const mhb_diagrams old      = {0};
+  post_safe          safe;
+  post_buffer        html = {0};
+  post_safe_create(&old, &model, &response, (const double[]){90, 120}, 0, &safe);
   post_safe_table(&safe, &html);
-  post_safe_data(&safe, &data);
-  assert_true(safe.n_families == 0 && html.length == 0 && data.length == 0);
-  modal_model_free(&model);
+  post_safe_data(&safe, &html);
+  assert_true(html.length == 0 && !safe.known);
+  post_safe_free(&safe);
 }
 
 int main(void) {
   const struct CMUnitTest tests[] = {cmocka_unit_test(diameters_of_orders),
-                                     cmocka_unit_test(families_are_those_of_the_ring)};
+                                     cmocka_unit_test(families_in_the_range_are_shown),
+                                     cmocka_unit_test(nothing_is_shown_without_families)};
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

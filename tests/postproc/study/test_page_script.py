@@ -92,6 +92,7 @@ ACTIONS = """
     $("free").click();
     seen.free = $("count").textContent;
   }
+  for (const type of ["beforeprint", "afterprint"]) window.dispatchEvent(new Event(type));
   if ($("all")) $("all").click();
   seen.all = document.querySelectorAll("#rows tr").length;
   const kept = [], made = URL.createObjectURL;
