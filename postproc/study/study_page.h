@@ -8,7 +8,7 @@
 #include "postproc/draw/text_buffer.h"
 #include "postproc/study/design_study.h"
 
-extern const char post_study_css[], post_study_js[]; /* built in, as in report/page.h */
+extern const char post_study_css[], post_study_html[], post_study_js[]; /* as in report/page.h */
 
 /* Put the page. Errors: SHB_ERR_IO no memory. */
 shb_status study_page(const design_study *study, post_buffer *out);
