@@ -44,8 +44,8 @@ static shb_status make(mhb_disc_speeds *s) {
   s->at                   = calloc(n, sizeof(mhb_speed_model *));
   s->used                 = calloc(n, sizeof *s->used);
   SHB_CHECK(s->at && s->used, SHB_ERR_IO, "out of memory for the disc");
-  SHB_TRY(modal_nodal_diameters_create(d->blades, d->n, &s->now));
-  SHB_TRY(modal_nodal_diameters_create(d->blades, d->n, &s->slope));
+  modal_nodal_diameters_create(d->blades, d->n, &s->now);
+  modal_nodal_diameters_create(d->blades, d->n, &s->slope);
   s->used[0] = true;
   for (int i = 0; i < d->n; i++) {
     s->now.diameter[i] = s->slope.diameter[i] = d->diameter[i];

@@ -298,7 +298,7 @@ static shb_status fill(mhb_speed_table *r, int from, double *work) {
     memcpy(r->first_entry, r->entries, r->size * sizeof *r->first_entry);
     for (size_t i = 0; i < (size_t)r->n * r->size; i++)
       r->entries[i] -= r->first_entry[i % r->size];
-    status = modal_spline_create(r->n, square, &r->spline);
+    modal_spline_create(r->n, square, &r->spline);
   }
   free(square);
   free(V);

@@ -159,7 +159,8 @@ static shb_status read_face(const char *file, modal_model *model, mhb_settings *
   SHB_TRY(modal_model_read(file, model));
   SHB_TRY(mhb_receptance_create(model, s, 0, alike));
   s->alike = *alike;
-  return modal_model_release_terms(model, 0);
+  modal_model_release_terms(model, 0);
+  return SHB_OK;
 }
 
 static shb_status run_face(const char *file, face_row *row) {
