@@ -420,8 +420,9 @@ static shb_status worker_attach(worker *k, const modal_model *model) {
 static shb_status worker_create(const sweep *s, int harmonics, worker *k) {
   *k                 = (worker){.settings = *s->settings, .harmonics = harmonics};
   k->settings.run_up = NULL;
-  return s->settings->run_up ? mhb_speed_model_create(s->settings->run_up, &k->at)
-                             : worker_attach(k, s->model);
+  if (!s->settings->run_up) return worker_attach(k, s->model);
+  k->at = mhb_speed_model_create(s->settings->run_up);
+  return SHB_OK;
 }
 
 static shb_status worker_set_frequency(worker *k, double hz) {

@@ -242,10 +242,10 @@ static shb_status make(mhb_receptance *r, const modal_model *model, const mhb_se
     SHB_TRY(mhb_ring_receptance_create(settings, r->n_harmonics, &r->ring));
     r->model = &settings->ring->whole;
   } else if (settings->disc_run_up) {
-    SHB_TRY(mhb_disc_speeds_create(settings->disc_run_up, &r->disc));
-    r->at = r->disc->at[0];
+    r->disc = mhb_disc_speeds_create(settings->disc_run_up);
+    r->at   = r->disc->at[0];
   } else if (settings->run_up) {
-    SHB_TRY(mhb_speed_model_create(settings->run_up, &r->at));
+    r->at = mhb_speed_model_create(settings->run_up);
   }
   if (r->at) {
     mhb_speed_model_set(r->at, 0);
