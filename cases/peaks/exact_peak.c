@@ -194,15 +194,11 @@ static shb_status describe(const work *w, mhb_response *response, int branch, in
 
 /* Numbers at the solution that the matcher found last. */
 static shb_status describe_solution(const work *w, const maximum *m, exact_peak *peak) {
-  mhb_response *one = mhb_response_like(w->response);
-  int           index;
-  SHB_CHECK(one, SHB_ERR_IO, "out of memory");
-  shb_status status = mhb_response_branch(one, MHB_BRANCH_NONLINEAR, &index);
-  if (status == SHB_OK) {
-    one->branch[index].order       = m->fine->branch->order;
-    one->branch[index].n_harmonics = m->harmonics;
-    status                         = point_matcher_record(m->matcher, one, index);
-  }
+  mhb_response *one              = mhb_response_like(w->response);
+  const int     index            = mhb_response_branch(one, MHB_BRANCH_NONLINEAR);
+  one->branch[index].order       = m->fine->branch->order;
+  one->branch[index].n_harmonics = m->harmonics;
+  shb_status status              = point_matcher_record(m->matcher, one, index);
   if (status == SHB_OK) status = describe(w, one, index, 0, peak);
   mhb_response_destroy(one);
   return status;

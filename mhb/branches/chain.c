@@ -71,9 +71,9 @@ shb_status mhb_chain_join(const mhb_chain *chain, const mhb_response *store, mhb
     if (points_of(link, store) == 0) continue;
     if (!link->joins || b->n_points == 0) begins[(*n_begins)++] = b->n_points;
     if (link->reversed)
-      SHB_TRY(mhb_response_copy_points(response, branch, store, link->segment, n - 1 - drop, 0));
+      mhb_response_copy_points(response, branch, store, link->segment, n - 1 - drop, 0);
     else
-      SHB_TRY(mhb_response_copy_points(response, branch, store, link->segment, drop, n - 1));
+      mhb_response_copy_points(response, branch, store, link->segment, drop, n - 1);
   }
   return SHB_OK;
 }

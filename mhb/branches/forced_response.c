@@ -57,8 +57,7 @@ static void take(mhb_branch *to, mhb_branch *from) {
 
 /* Append a branch beside a main one. Its arrays stay those of the preload. */
 static shb_status append_branch(mhb_response *response, const mhb_branch *branch, int main) {
-  int index;
-  SHB_TRY(mhb_response_branch(response, MHB_BRANCH_NONLINEAR, &index));
+  const int index              = mhb_response_branch(response, MHB_BRANCH_NONLINEAR);
   response->branch[index]      = *branch;
   response->branch[index].main = main;
   return SHB_OK;
@@ -70,8 +69,7 @@ static shb_status gather(sweep *s) {
   mhb_response *r      = s->response;
   shb_status    status = SHB_OK;
   for (int i = 0; i < s->settings->n_preloads; i++) {
-    int index;
-    SHB_TRY(mhb_response_branch(r, MHB_BRANCH_NONLINEAR, &index));
+    const int index = mhb_response_branch(r, MHB_BRANCH_NONLINEAR);
     if (!s->preload[i].handed) continue;
     r->branch[index]      = s->preload[i].handed->branch[0];
     r->branch[index].main = index;
@@ -99,7 +97,7 @@ static shb_status copy_curves(const mhb_response *own, mhb_response **out) {
     const mhb_branch *from = &own->branch[k];
     int               index;
     if (k > 0 && from->n_points == 0) continue; /* under way, or not there */
-    status = mhb_response_branch(copy, from->kind, &index);
+    index = mhb_response_branch(copy, from->kind);
     if (status != SHB_OK) break;
     mhb_branch *to     = &copy->branch[index];
     to->origin         = from->origin;
@@ -110,15 +108,14 @@ static shb_status copy_curves(const mhb_response *own, mhb_response **out) {
     to->flips_untraced = from->flips_untraced;
     to->complete       = from->complete;
     for (int i = 0; i < from->n_searches && status == SHB_OK; i++)
-      status = mhb_response_note_search(to, &from->search[i]);
+      mhb_response_note_search(to, &from->search[i]);
     to->reason = from->reason ? strdup(from->reason) : NULL;
-    if (status == SHB_OK) status = mhb_response_copy_lasting(to, from);
+    if (status == SHB_OK) mhb_response_copy_lasting(to, from);
     const mhb_unfinished *under_way = from->unfinished;
     if (status == SHB_OK && under_way)
-      status =
-          mhb_unfinished_copy(under_way->segments, under_way->n, under_way->state, &to->unfinished);
+      to->unfinished = mhb_unfinished_copy(under_way->segments, under_way->n, under_way->state);
     if (status == SHB_OK && from->n_points > 0)
-      status = mhb_response_copy_points(copy, index, own, k, 0, from->n_points - 1);
+      mhb_response_copy_points(copy, index, own, k, 0, from->n_points - 1);
   }
   if (status != SHB_OK) {
     mhb_response_destroy(copy);
@@ -223,8 +220,7 @@ static shb_status linear_limits(const modal_model *model, const mhb_settings *se
   mhb_balance_set_parameter(balance, settings->parameter);
   shb_status status = mhb_stiffness_check(balance->receptance, settings);
   for (int stuck = 0; stuck < 2 && status == SHB_OK; stuck++) {
-    int branch;
-    status = mhb_response_branch(response, stuck ? MHB_BRANCH_STUCK : MHB_BRANCH_OPEN, &branch);
+    const int branch = mhb_response_branch(response, stuck ? MHB_BRANCH_STUCK : MHB_BRANCH_OPEN);
     if (status == SHB_OK && !settings->outline) /* an outline is of the curves between them */
       status = mhb_linear_limits(balance, response, branch);
   }
@@ -347,7 +343,7 @@ static shb_status take_beside(preload_curves *p, mhb_response *old, int main, bo
     if (b->main != main) continue;
     if (no_searches && b->origin == MHB_FROM_SEARCH) break;
     if (!(first->searched || b->origin == MHB_FROM_DETACHED)) continue;
-    SHB_TRY(mhb_response_branch(p->own, MHB_BRANCH_NONLINEAR, &index));
+    index = mhb_response_branch(p->own, MHB_BRANCH_NONLINEAR);
     first = &p->own->branch[0];
     take(&p->own->branch[index], b);
     p->own->branch[index].main = 0;
@@ -359,12 +355,11 @@ static shb_status take_beside(preload_curves *p, mhb_response *old, int main, bo
  * there. */
 static shb_status take_unfinished(preload_curves *p, mhb_branch *old) {
   const mhb_unfinished *u = old->unfinished;
-  int                   index;
   if (p->handed) return SHB_OK;
-  SHB_TRY(mhb_unfinished_copy(u->segments, u->n, u->state, &p->own->branch[0].unfinished));
-  p->handed = mhb_response_like(p->own);
+  p->own->branch[0].unfinished = mhb_unfinished_copy(u->segments, u->n, u->state);
+  p->handed                    = mhb_response_like(p->own);
   SHB_CHECK(p->handed, SHB_ERR_IO, "out of memory");
-  SHB_TRY(mhb_response_branch(p->handed, MHB_BRANCH_NONLINEAR, &index));
+  mhb_response_branch(p->handed, MHB_BRANCH_NONLINEAR);
   take(&p->handed->branch[0], old);
   p->handed->branch[0].main = 0;
   return SHB_OK;
@@ -407,10 +402,9 @@ static shb_status all_preloads(sweep *s, const modal_model *model) {
   int n = s->settings->n_preloads;
   for (int i = 0; i < n; i++) {
     preload_curves *p = &s->preload[i];
-    int             index;
-    p->own = mhb_response_like(s->response);
+    p->own            = mhb_response_like(s->response);
     SHB_CHECK(p->own, SHB_ERR_IO, "out of memory");
-    SHB_TRY(mhb_response_branch(p->own, MHB_BRANCH_NONLINEAR, &index));
+    mhb_response_branch(p->own, MHB_BRANCH_NONLINEAR);
     p->own->branch[0].searched    = !mhb_secondary_branches_wanted(s->settings);
     p->own->branch[0].n_harmonics = s->response->n_harmonics;
   }
@@ -491,8 +485,7 @@ static shb_status take_curves(sweep *s) {
 static shb_status widen_all(mhb_response *r) {
   for (int i = 0; i < r->n_branches; i++)
     if (r->branch[i].n_harmonics > r->n_harmonics) r->n_harmonics = r->branch[i].n_harmonics;
-  for (int i = 0; i < r->n_branches; i++)
-    SHB_TRY(mhb_response_widen(r, &r->branch[i], r->n_harmonics));
+  for (int i = 0; i < r->n_branches; i++) mhb_response_widen(r, &r->branch[i], r->n_harmonics);
   return SHB_OK;
 }
 

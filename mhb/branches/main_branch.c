@@ -345,7 +345,7 @@ static shb_status complete(main_branch *m, mhb_end end, int stable_at) {
   for (int i = 0; i < m->n_detached; i++) {
     int            index;
     mhb_completion detached = {.end = own.interrupted ? MHB_END_INTERRUPTED : m->detached_end[i]};
-    SHB_TRY(mhb_response_branch(m->response, MHB_BRANCH_NONLINEAR, &index));
+    index                   = mhb_response_branch(m->response, MHB_BRANCH_NONLINEAR);
     m->response->branch[index].origin = MHB_FROM_DETACHED;
     m->response->branch[index].main   = 0;
     SHB_TRY(mhb_branch_complete(m->tracer, &m->detached[i], m->response, index, &detached));

@@ -94,8 +94,8 @@ shb_status mhb_record(mhb_response *response, int index, mhb_balance *b,
                       const mhb_curve_point *point, int special, double seconds) {
   int at;
   mhb_balance_use(b, point->evaluation);
-  SHB_TRY(mhb_response_widen(response, &response->branch[index], b->m));
-  SHB_TRY(mhb_response_point(response, index, &at));
+  mhb_response_widen(response, &response->branch[index], b->m);
+  at                    = mhb_response_point(response, index);
   mhb_branch *branch    = &response->branch[index];
   branch->frequency[at] = b->eval->at.omega / SHB_TWO_PI;
   branch->n0[at]        = b->eval->at.n0;

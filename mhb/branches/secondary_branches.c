@@ -177,7 +177,7 @@ static shb_status collect_known(const branch_search *h, subharmonic_problem *s, 
 
 static shb_status append(branch_search *h, const subharmonic_problem *s, mhb_origin origin,
                          int *index) {
-  SHB_TRY(mhb_response_branch(h->response, MHB_BRANCH_NONLINEAR, index));
+  *index         = mhb_response_branch(h->response, MHB_BRANCH_NONLINEAR);
   mhb_branch *b  = branch_at(h, *index);
   b->origin      = origin;
   b->order       = s->order;
@@ -428,7 +428,8 @@ static shb_status search_at(branch_search *h, subharmonic_problem *s, double val
                      .seed     = seeded,
                      .found    = n_branches(h) - before,
                      .untraced = h->untraced - untraced};
-  return mhb_response_note_search(branch_at(h, 0), &made);
+  mhb_response_note_search(branch_at(h, 0), &made);
+  return SHB_OK;
 }
 
 /* Value number i of the search: given, or even over the range. */

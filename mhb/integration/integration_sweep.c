@@ -306,9 +306,9 @@ static bool has_undetermined_friction(const sweep *s, const mhb_response *respon
 
 static shb_status record_point(const sweep *s, mhb_response *response, const sweep_point *c) {
   int    at, K = response->n_harmonics + 1;
-  size_t n3 = 3 * (size_t)response->n_pairs * (size_t)K,
-         q  = 3 * (size_t)response->n_probes * (size_t)K;
-  SHB_TRY(mhb_response_point(response, c->branch, &at));
+  size_t n3         = 3 * (size_t)response->n_pairs * (size_t)K,
+         q          = 3 * (size_t)response->n_probes * (size_t)K;
+  at                = mhb_response_point(response, c->branch);
   mhb_branch *b     = &response->branch[c->branch];
   size_t      pairs = (size_t)response->n_pairs;
   b->frequency[at]  = c->hz;
@@ -350,8 +350,7 @@ static shb_status fill(const sweep *s, mhb_response *response) {
   response->n_multipliers = 0;
   response->n_lines       = MHB_SPECTRUM_LINES;
   for (int i = 0; i < s->n_branches; i++) {
-    int branch;
-    SHB_TRY(mhb_response_branch(response, MHB_BRANCH_INTEGRATION, &branch));
+    const int branch                  = mhb_response_branch(response, MHB_BRANCH_INTEGRATION);
     response->branch[branch].complete = true;
     response->branch[branch].reason   = strdup(name_of(s, i));
     SHB_CHECK(response->branch[branch].reason, SHB_ERR_IO, "out of memory");

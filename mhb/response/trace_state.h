@@ -14,7 +14,7 @@ typedef struct {
   double *number; /* [n] */
   size_t  n, room, at;
   bool    reads;  /* the numbers go to the addresses, else they come from there */
-  bool    failed; /* no memory, or other numbers than the reader wants */
+  bool    failed; /* other numbers than the reader wants */
 } mhb_trace_state;
 
 void mhb_trace_state_free(mhb_trace_state *state); /* it is empty then: zeroed */

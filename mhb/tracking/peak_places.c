@@ -103,7 +103,7 @@ static shb_status trace_half(tracer *t, mhb_peak_place from, int direction, mhb_
   double              range = tracking->high - tracking->low, step = range / (2 * LEAST_PARTS);
   double              edge = direction > 0 ? tracking->high : tracking->low;
   bool                balanced;
-  SHB_TRY(mhb_response_branch(t->store, MHB_BRANCH_TRACKED, &t->segment));
+  t->segment = mhb_response_branch(t->store, MHB_BRANCH_TRACKED);
   SHB_TRY(record(t, &from, MHB_ORDINARY, &balanced));
   *end = balanced ? MHB_END_NONE : MHB_END_NO_START;
   while (*end == MHB_END_NONE) {

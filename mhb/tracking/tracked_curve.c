@@ -355,11 +355,11 @@ static shb_status trace_half(tracer *t, const double *z, double value, int direc
                             .value      = value,
                             .direction  = direction,
                             .skip_first = false};
-  SHB_TRY(mhb_response_branch(t->store, MHB_BRANCH_TRACKED, segment));
-  t->segment         = *segment;
-  t->direction       = direction;
-  t->clock           = shb_seconds();
-  t->host.max_points = t->tracking->max_points;
+  *segment               = mhb_response_branch(t->store, MHB_BRANCH_TRACKED);
+  t->segment             = *segment;
+  t->direction           = direction;
+  t->clock               = shb_seconds();
+  t->host.max_points     = t->tracking->max_points;
   if (by_multiplier(t->tracking) &&
       mhb_peak_system_choose(curve, z, mhb_peak_system_omega(curve, z), value) != NULL)
     return SHB_OK;
@@ -382,9 +382,8 @@ shb_status mhb_join_halves(mhb_response *response, int branch, const mhb_respons
                            int high) {
   const int below = store->branch[low].n_points, above = store->branch[high].n_points;
   const int first = below > 0 ? 1 : 0;
-  if (below > 0) SHB_TRY(mhb_response_copy_points(response, branch, store, low, below - 1, 0));
-  if (above > first)
-    SHB_TRY(mhb_response_copy_points(response, branch, store, high, first, above - 1));
+  if (below > 0) mhb_response_copy_points(response, branch, store, low, below - 1, 0);
+  if (above > first) mhb_response_copy_points(response, branch, store, high, first, above - 1);
   return SHB_OK;
 }
 
@@ -418,8 +417,9 @@ static shb_status trace_both(tracer *t, const mhb_tracking_seed *seed, double *z
   if (end->low == MHB_END_CLOSED) { /* the other way round it is the same curve */
     end->high = MHB_END_CLOSED;
     *found    = true;
-    return mhb_response_copy_points(response, branch, t->store, down, 0,
-                                    t->store->branch[down].n_points - 1);
+    mhb_response_copy_points(response, branch, t->store, down, 0,
+                             t->store->branch[down].n_points - 1);
+    return SHB_OK;
   }
   SHB_TRY(trace_half(t, z, seed->value, 1, &up, &end->high));
   SHB_TRY(mhb_join_halves(response, branch, t->store, down, up));

@@ -308,7 +308,7 @@ static shb_status follow_with(tracking_run *run, const mhb_sweep_peak *peak, dou
   *found                    = false;
   settings.harmonics        = m;
   tracking.tolerance        = judge && m < MOST_HARMONICS ? run->asked->motion_tolerance : 0;
-  SHB_TRY(mhb_response_branch(run->response, MHB_BRANCH_TRACKED, &index));
+  index                     = mhb_response_branch(run->response, MHB_BRANCH_TRACKED);
   run->response->branch[index].n_harmonics = m;
   SHB_TRY(mhb_balance_create(run->model, &settings, &balance));
   const int  n      = balance->n;
@@ -470,24 +470,19 @@ static bool goes_on(const tracking_run *run, int b, int point, double value) {
  * begins or ends. Where a corner ends it is a smooth or stuck peak. */
 static shb_status follow_from_end(tracking_run *run, int b, int point, double value) {
   mhb_response *store = mhb_response_like(run->response);
-  int           index;
   bool          unused;
-  SHB_CHECK(store, SHB_ERR_IO, "out of memory");
   store->n_harmonics = run->response->branch[b].n_harmonics;
-  shb_status status  = mhb_response_branch(store, MHB_BRANCH_TRACKED, &index);
-  if (status == SHB_OK)
-    status = mhb_response_copy_points(store, index, run->response, b, point, point);
-  if (status == SHB_OK) {
-    const mhb_branch    *end  = &store->branch[index];
-    const mhb_sweep_peak peak = {
-        .branch    = end,
-        .frequency = end->frequency[0],
-        .amplitude = mhb_response_amplitude(store, end, 0, run->tracking.output),
-        .reach     = BESIDE_END,
-        .weight    = {0, 1, 0},
-        .sticks    = true};
-    status = follow(run, &peak, value, &unused);
-  }
+  const int index    = mhb_response_branch(store, MHB_BRANCH_TRACKED);
+  mhb_response_copy_points(store, index, run->response, b, point, point);
+  const mhb_branch    *end  = &store->branch[index];
+  const mhb_sweep_peak peak = {
+      .branch    = end,
+      .frequency = end->frequency[0],
+      .amplitude = mhb_response_amplitude(store, end, 0, run->tracking.output),
+      .reach     = BESIDE_END,
+      .weight    = {0, 1, 0},
+      .sticks    = true};
+  const shb_status status = follow(run, &peak, value, &unused);
   mhb_response_destroy(store);
   return status;
 }

@@ -90,8 +90,7 @@ static void check_halves(mhb_balance *balance, const mhb_tracking *tracking, mhb
   mhb_response           *store = mhb_response_like(r);
   mhb_tracking_end        end;
   bool                    found;
-  int                     index;
-  assert_ok(mhb_response_branch(store, MHB_BRANCH_TRACKED, &index));
+  const int               index = mhb_response_branch(store, MHB_BRANCH_TRACKED);
   assert_ok(mhb_trace_kink(balance, tracking, &seed, store, index, &found, &end));
   const mhb_branch *b = &store->branch[index];
   assert_true(found);
