@@ -38,8 +38,8 @@ shb_status mhb_monodromy_create(const mhb_modal_structure     *s,
   if (d->arena.failed)
     status = shb_fail(SHB_ERR_IO, __FILE__, __LINE__,
                       "out of memory for the stability of %d states", capacity);
-  if (status == SHB_OK && condensed) status = mhb_stuck_springs_create(s, &d->springs);
-  if (status == SHB_OK) status = mhb_variational_create(s, d->springs, capacity, &d->variational);
+  if (status == SHB_OK && condensed) d->springs = mhb_stuck_springs_create(s);
+  if (status == SHB_OK) d->variational = mhb_variational_create(s, d->springs, capacity);
   if (status == SHB_OK)
     status = mhb_orbit_contacts_create(s, schedule, contact, m, steps + pieces + 1, &d->orbit);
   if (status != SHB_OK) {

@@ -37,8 +37,8 @@ shb_status mhb_orbit_contacts_create(const mhb_modal_structure     *s,
   d->elastic_feedback = shb_arena_take(arena, n, sizeof(double));
   d->basis            = shb_arena_take(arena, 2 * (size_t)d->nb, sizeof(double));
   const int groups    = mhb_modal_structure_groups(s);
-  if (!mhb_ring_band_create(groups, 3 * s->contacts / groups, &d->band) || arena->failed ||
-      !d->sample) {
+  mhb_ring_band_create(groups, 3 * s->contacts / groups, &d->band);
+  if (arena->failed || !d->sample) {
     mhb_orbit_contacts_destroy(d);
     SHB_FAIL(SHB_ERR_IO, "out of memory for the stability of %d contacts", s->contacts);
   }
