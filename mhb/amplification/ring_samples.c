@@ -66,13 +66,10 @@ static shb_status trace(const mhb_settings *settings, double n0, mhb_ring_peak *
   mhb_response      *response =
       mhb_response_create(whole->n_pairs, whole->n_probes, mhb_harmonic_levels_usual(n, m));
   first.harmonics   = m[0];
-  shb_status status = response ? SHB_OK : shb_fail(SHB_ERR_IO, __FILE__, __LINE__, "out of memory");
+  response->ring    = settings->ring->blades;
+  shb_status status = mhb_balance_create(whole, &first, &balance);
   if (status == SHB_OK) {
-    response->ring = settings->ring->blades;
-    status         = mhb_balance_create(whole, &first, &balance);
-  }
-  if (status == SHB_OK) mhb_response_branch(response, MHB_BRANCH_NONLINEAR);
-  if (status == SHB_OK) {
+    mhb_response_branch(response, MHB_BRANCH_NONLINEAR);
     mhb_balance_set_preload(balance, n0);
     mhb_balance_set_parameter(balance, settings->parameter);
     status = mhb_trace_main_branch(balance, response, &monitor);
