@@ -39,9 +39,10 @@ static shb_status make(const modal_model *model, point_matcher *matcher) {
   matcher->motion = calloc(3 * (size_t)model->n_probes + 1, sizeof *matcher->motion);
   bool good       = matcher->x && matcher->normal && matcher->force && matcher->motion;
   SHB_CHECK(good && matcher->last && matcher->start, SHB_ERR_IO, "out of memory");
-  SHB_TRY(mhb_newton_create(matcher->balance->n, &matcher->newton));
+  matcher->newton = mhb_newton_create(matcher->balance->n);
   /* short memory is told here; later it would pass for a place without a solution */
-  return mhb_newton_bind(matcher->newton, matcher->balance);
+  mhb_newton_bind(matcher->newton, matcher->balance);
+  return SHB_OK;
 }
 
 shb_status point_matcher_create(const modal_model *model, const mhb_settings *settings,

@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "mesh/base/constants.h"
+#include "mesh/base/memory.h"
 #include "mhb/numerics/fourier.h"
 #include "mhb/numerics/tail.h"
 #include "mhb/numerics/vector.h"
@@ -54,10 +55,9 @@ int mhb_truncation_highest(int m) {
 }
 
 shb_status mhb_truncation_create(const mhb_balance *balance, mhb_truncation **out) {
-  mhb_truncation *t = calloc(1, sizeof *t);
-  SHB_CHECK(t, SHB_ERR_IO, "out of memory");
-  int m   = balance->m;
-  int top = mhb_truncation_highest(m);
+  mhb_truncation *t   = shb_alloc_zeroed(1, sizeof *t);
+  int             m   = balance->m;
+  int             top = mhb_truncation_highest(m);
   if (balance->receptance->ring) top = 2 * m;
   t->balance            = balance;
   t->settings           = *balance->settings;
@@ -80,17 +80,16 @@ shb_status mhb_truncation_create(const mhb_balance *balance, mhb_truncation **ou
     t->basis  = shb_arena_take(&t->arena, times * (size_t)t->doubled->nb, sizeof(double));
     t->motion = shb_arena_take(&t->arena, times * 3 * (size_t)balance->n_pairs, sizeof(double));
     t->force  = shb_arena_take(&t->arena, 3 * (size_t)mhb_real_size(top), sizeof(double));
-    if (t->arena.failed) status = shb_fail(SHB_ERR_IO, __FILE__, __LINE__, "out of memory");
   }
   if (status == SHB_OK && !balance->receptance->ring)
     status = mhb_higher_harmonics_create(t->doubled, t->receptance, &t->higher);
-  if (status == SHB_OK)
-    status = mhb_condensation_create_within(t->doubled, MHB_MOST_DOUBLED, &t->system);
-  if (status == SHB_OK && balance->receptance->ring)
-    status = mhb_doubled_ring_create(balance, t->doubled, &t->ring);
-  if (status == SHB_OK && !balance->receptance->ring &&
-      (t->system->low_rank || t->doubled->n >= WORTH_BROYDEN))
-    status = mhb_truncation_step_create(balance, t->doubled, t->system->low_rank, &t->broyden);
+  if (status == SHB_OK) {
+    t->system = mhb_condensation_create_within(t->doubled, MHB_MOST_DOUBLED);
+    if (balance->receptance->ring)
+      t->ring = mhb_doubled_ring_create(balance, t->doubled);
+    else if (t->system->low_rank || t->doubled->n >= WORTH_BROYDEN)
+      t->broyden = mhb_truncation_step_create(balance, t->doubled, t->system->low_rank);
+  }
   if (status == SHB_OK && t->system->low_rank)
     status = mhb_contact_evaluator_create(m, top, balance->settings->tolerance, &t->contact);
   if (status != SHB_OK) {

@@ -92,7 +92,8 @@ static shb_status problem_fill(branch_search *h, subharmonic_problem *s) {
   SHB_TRY(mhb_balance_create(h->model, &s->settings, &s->balance));
   mhb_balance_set_preload(s->balance, branch_at(h, 0)->n0[0]);
   mhb_balance_set_parameter(s->balance, asked->parameter);
-  return mhb_newton_create(s->balance->n, &s->newton);
+  s->newton = mhb_newton_create(s->balance->n);
+  return SHB_OK;
 }
 
 /* *out: NULL if there is no such wave. */

@@ -33,7 +33,8 @@ static void destroy(mhb_curve_system *system) {
 }
 
 static shb_status evaluation_create(mhb_curve_system *system, mhb_evaluation **evaluation) {
-  return mhb_evaluation_create(of(system)->balance, evaluation);
+  *evaluation = mhb_evaluation_create(of(system)->balance);
+  return SHB_OK;
 }
 
 static void evaluation_destroy(mhb_curve_system *system, mhb_evaluation *evaluation) {
@@ -176,9 +177,10 @@ shb_status mhb_balance_curve_create(mhb_balance *b, double low, double high, mhb
     s->base.resonance_skipped    = resonance_skipped;
   }
   if (b->parameter == MHB_IN_N0) s->base.unit_of_value = unit_of_preload;
-  shb_status status = mhb_newton_create(b->n, &s->newton);
-  if (status == SHB_OK) status = mhb_newton_bind(s->newton, b);
-  if (status == SHB_OK && !b->receptance->ring) status = mhb_linear_corrector_create(b, &s->linear);
+  s->newton = mhb_newton_create(b->n);
+  mhb_newton_bind(s->newton, b);
+  shb_status status = SHB_OK;
+  if (!b->receptance->ring) status = mhb_linear_corrector_create(b, &s->linear);
   if (status == SHB_OK && !b->receptance->ring)
     status = mhb_resonances_create(b, low, high, &s->resonances);
   if (status != SHB_OK) {

@@ -220,7 +220,8 @@ static void released_destroy(mhb_curve_system *system) {
 }
 
 static shb_status released_evaluation(mhb_curve_system *system, mhb_evaluation **evaluation) {
-  return mhb_evaluation_create(released(system)->search->b, evaluation);
+  *evaluation = mhb_evaluation_create(released(system)->search->b);
+  return SHB_OK;
 }
 
 static void released_discard(mhb_curve_system *system, mhb_evaluation *evaluation) {
@@ -292,7 +293,8 @@ static shb_status released_create(const search *s, double omega, mhb_arclength *
   w->search = s;
   w->omega  = omega;
   w->start  = calloc((size_t)s->b->n, sizeof(double));
-  if (!w->start || mhb_newton_bind(s->newton, s->b) != SHB_OK) {
+  mhb_newton_bind(s->newton, s->b);
+  if (!w->start) {
     released_destroy(&w->base);
     SHB_FAIL(SHB_ERR_IO, "out of memory");
   }
@@ -344,7 +346,7 @@ static shb_status smaller_create(const search *s, int m, smaller_balance **out) 
   search *own           = &w->search;
   *own = (search){.tolerance = s->tolerance, .iterations = &w->iterations, .watcher = s->watcher};
   shb_status status = mhb_balance_create_on(s->b->receptance, &w->settings, &own->b);
-  if (status == SHB_OK) status = mhb_newton_create(own->b->n, &own->newton);
+  if (status == SHB_OK) own->newton = mhb_newton_create(own->b->n);
   if (status == SHB_OK) own->x = calloc((size_t)own->b->n, sizeof *own->x);
   if (status == SHB_OK && !own->x) status = shb_fail(SHB_ERR_IO, __FILE__, __LINE__, "no memory");
   if (status != SHB_OK) {

@@ -82,7 +82,7 @@ shb_status mhb_multistart_once(mhb_newton *w, mhb_balance *b, double value, doub
                                bool *is_new) {
   int iterations;
   *is_new = false;
-  SHB_TRY(mhb_newton_bind(w, b));
+  mhb_newton_bind(w, b);
   set->n = b->n;
   start_at(b, size, set, seed, x);
   if (!descend(w, b, value, size, x)) return SHB_OK;

@@ -428,17 +428,15 @@ shb_status mhb_corner_create(mhb_balance *balance, const mhb_tracking *tracking,
                         &c->by_value, &c->by_x, &c->onset_by_x};
   for (size_t i = 0; i < sizeof vectors / sizeof *vectors; i++)
     *vectors[i] = shb_arena_take(&c->arena, n, sizeof(double));
-  c->jacobian       = shb_arena_take(&c->arena, n * n, sizeof(double));
-  c->pivot          = shb_arena_take(&c->arena, n, sizeof *c->pivot);
-  c->weight         = shb_arena_take(&c->arena, mhb_amplitude_weights(balance), sizeof *c->weight);
-  c->touching       = shb_arena_take(&c->arena, pairs, sizeof *c->touching);
-  c->closed         = shb_arena_take(&c->arena, pairs, sizeof *c->closed);
-  shb_status status = c->arena.failed ? shb_fail(SHB_ERR_IO, __FILE__, __LINE__, "out of memory")
-                                      : mhb_newton_create((int)n, &c->newton);
-  if (status == SHB_OK) status = mhb_newton_bind(c->newton, balance);
-  if (status != SHB_OK) mhb_corner_destroy(c);
-  if (status == SHB_OK) *corner = c;
-  return status;
+  c->jacobian = shb_arena_take(&c->arena, n * n, sizeof(double));
+  c->pivot    = shb_arena_take(&c->arena, n, sizeof *c->pivot);
+  c->weight   = shb_arena_take(&c->arena, mhb_amplitude_weights(balance), sizeof *c->weight);
+  c->touching = shb_arena_take(&c->arena, pairs, sizeof *c->touching);
+  c->closed   = shb_arena_take(&c->arena, pairs, sizeof *c->closed);
+  c->newton   = mhb_newton_create((int)n);
+  mhb_newton_bind(c->newton, balance);
+  *corner = c;
+  return SHB_OK;
 }
 
 void mhb_corner_destroy(mhb_corner *c) {

@@ -59,9 +59,8 @@ shb_status mhb_multiplier_condition_create(mhb_balance *b, mhb_parameter paramet
                         &c->last.weight, &c->moved,           &c->r};
   for (size_t i = 0; i < sizeof vectors / sizeof *vectors; i++)
     *vectors[i] = shb_arena_take(&c->arena, one, sizeof(double));
-  shb_status status = c->arena.failed ? shb_fail(SHB_ERR_IO, __FILE__, __LINE__, "out of memory")
-                                      : mhb_evaluation_create(b, &c->displaced);
-  if (status == SHB_OK) status = mhb_branch_floquet_create(b, &c->floquet);
+  c->displaced      = mhb_evaluation_create(b);
+  shb_status status = mhb_branch_floquet_create(b, &c->floquet);
   if (status != SHB_OK) {
     mhb_multiplier_condition_destroy(c);
     return status;

@@ -154,7 +154,8 @@ static shb_status make(tracer *t, const mhb_response *response, int branch) {
   SHB_CHECK(t->point.x && t->point.r && t->store, SHB_ERR_IO, "out of memory");
   t->store->n_harmonics = response->branch[branch].n_harmonics;
   SHB_TRY(mhb_truncation_create(t->family->balance, &t->truncation));
-  return mhb_evaluation_create(t->family->balance, &t->point.evaluation);
+  t->point.evaluation = mhb_evaluation_create(t->family->balance);
+  return SHB_OK;
 }
 
 shb_status mhb_trace_peak_places(mhb_peak_family *family, const mhb_peak_place *first,

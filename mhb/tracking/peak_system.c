@@ -400,7 +400,8 @@ static mhb_reason solve_at_value(mhb_curve_system *system, double tolerance,
 /* ---- creation ---- */
 
 static shb_status evaluation_create(mhb_curve_system *system, mhb_evaluation **evaluation) {
-  return mhb_evaluation_create(of(system)->balance, evaluation);
+  *evaluation = mhb_evaluation_create(of(system)->balance);
+  return SHB_OK;
 }
 
 static void evaluation_destroy(mhb_curve_system *system, mhb_evaluation *evaluation) {
@@ -449,7 +450,8 @@ static shb_status fill(mhb_peak_system *s) {
   if (s->kind == MHB_TRACK_FLIP || s->kind == MHB_TRACK_NEIMARK_SACKER)
     return mhb_multiplier_condition_create(s->balance, s->parameter, s->kind == MHB_TRACK_FLIP,
                                            s->rate, &s->condition);
-  return mhb_evaluation_create(s->balance, &s->displaced);
+  s->displaced = mhb_evaluation_create(s->balance);
+  return SHB_OK;
 }
 
 shb_status mhb_peak_system_create(mhb_balance *balance, mhb_tracked_point kind, int output,

@@ -103,9 +103,8 @@ static row balance(const scene *s, int harmonics, double tolerance) {
   mhb_newton  *newton;
   double       seconds[MAX_POINTS], worst = 0;
   settings.harmonics = harmonics;
-  if (mhb_balance_create(&s->model, &settings, &b) != SHB_OK ||
-      mhb_newton_create(b->n, &newton) != SHB_OK)
-    return (row){NAN, NAN};
+  if (mhb_balance_create(&s->model, &settings, &b) != SHB_OK) return (row){NAN, NAN};
+  newton = mhb_newton_create(b->n);
   mhb_balance_set_preload(b, settings.n0[0]);
   double *x = calloc((size_t)b->n, sizeof *x);
   for (int i = 0; x && i < s->n; i++) {

@@ -35,8 +35,8 @@ static void solve(solved *s) {
   if (mhb_balance_create(&s->model, &s->settings, &s->balance) != SHB_OK)
     fail_msg("%s", shb_message());
   mhb_balance_set_preload(s->balance, s->settings.n0[0]);
-  assert_int_equal(mhb_newton_create(s->balance->n, &s->newton), SHB_OK);
-  s->x = calloc((size_t)s->balance->n, sizeof *s->x);
+  s->newton = mhb_newton_create(s->balance->n);
+  s->x      = calloc((size_t)s->balance->n, sizeof *s->x);
   assert_int_equal(mhb_first_solution(s->newton, s->balance, s->omega, 1e-12, s->x, &iterations),
                    MHB_CONVERGED);
 }

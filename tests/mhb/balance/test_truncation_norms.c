@@ -51,7 +51,7 @@ static void solution_create(const modal_model *model, const mhb_settings *s, dou
   *out                    = (solution){.settings = *s, .omega = omega};
   out->settings.harmonics = m;
   assert_ok(mhb_balance_create(model, &out->settings, &out->b));
-  assert_ok(mhb_newton_create(out->b->n, &out->newton));
+  out->newton = mhb_newton_create(out->b->n);
   assert_ok(mhb_truncation_create(out->b, &out->truncation));
   out->x = calloc((size_t)out->b->n, sizeof(double));
   assert_non_null(out->x);

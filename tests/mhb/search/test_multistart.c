@@ -88,7 +88,7 @@ static void set_up(fixture *f, double n0) {
   one_degree_model(0.02, 0, 0.1, &f->model);
   f->settings = ground_settings(0.3, 5, 1, n0, 3);
   assert_ok(mhb_balance_create(&f->model, &f->settings, &f->balance));
-  assert_ok(mhb_newton_create(f->balance->n, &f->newton));
+  f->newton = mhb_newton_create(f->balance->n);
   mhb_balance_set_preload(f->balance, n0);
 }
 
