@@ -99,8 +99,7 @@ static shb_status level_create(const mhb_harmonic_levels *h, int m, mhb_balance 
   if (status == SHB_OK) status = mhb_truncation_create(level->balance, &level->truncation);
   if (status == SHB_OK && h->settings->other_pairs && !h->settings->outline)
     status = mhb_spatial_error_create(level->balance, &level->spatial);
-  if (status == SHB_OK)
-    status = mhb_balance_curve_create(level->balance, h->low, h->high, &level->curve);
+  if (status == SHB_OK) level->curve = mhb_balance_curve_create(level->balance, h->low, h->high);
   if (status != SHB_OK) {
     level_destroy(level);
     return status;

@@ -113,7 +113,7 @@ static shb_status make_grid(const sampler *s, grid *g, double *narrowest) {
   const int          n    = first_grid(b);
   mhb_resonances     all;
   *narrowest = INFINITY;
-  SHB_TRY(mhb_resonances_of_limit(b, s->stuck, from, to, &all));
+  mhb_resonances_of_limit(b, s->stuck, from, to, &all);
   g->at = malloc((size_t)(n + 1 + 3 * all.n) * sizeof *g->at);
   g->n  = 0;
   for (int i = 0; g->at && i <= n; i++) g->at[g->n++] = i == n ? to : from + i * ((to - from) / n);

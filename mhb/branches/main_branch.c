@@ -230,8 +230,7 @@ static shb_status go_beyond(main_branch *m, mhb_end *end, bool *over) {
   } else if (n_points(m) > 0) {
     note_gap(m, mhb_end_text(*end), curve->current.value);
     if (m->n_gaps > MAX_GAPS) return SHB_OK;
-    SHB_TRY(
-        mhb_curve_place_note(&lost, curve->system, &curve->current, mhb_tracer_same(m->tracer)));
+    mhb_curve_place_note(&lost, curve->system, &curve->current, mhb_tracer_same(m->tracer));
     mhb_curve_place_turn(&lost);
   }
   shb_status status = SHB_OK;

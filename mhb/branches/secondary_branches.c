@@ -147,8 +147,10 @@ static shb_status add_crossing(const branch_search *h, const mhb_branch *b, int 
   int          iterations;
   for (int k = 0; k < 3; k++) {
     interpolate(h, b, i, shares[k], s, x);
-    if (mhb_newton_solve(s->newton, s->balance, value, TOLERANCE, x, &iterations) == MHB_CONVERGED)
-      return mhb_solution_set_add_copies(&s->known, s->balance, x);
+    if (mhb_newton_solve(s->newton, s->balance, value, TOLERANCE, x, &iterations) != MHB_CONVERGED)
+      continue;
+    mhb_solution_set_add_copies(&s->known, s->balance, x);
+    return SHB_OK;
   }
   return SHB_OK;
 }
@@ -415,13 +417,13 @@ static shb_status search_at(branch_search *h, subharmonic_problem *s, double val
   for (; size > 0 && done < starts && go_on_searching(h, value, share); done++) {
     bool is_new;
     SHB_TRY(publish(h));
-    SHB_TRY(mhb_multistart_once(s->newton, s->balance, value, size * sizes[done % 4], &seed,
-                                &s->known, x, &is_new));
+    mhb_multistart_once(s->newton, s->balance, value, size * sizes[done % 4], &seed, &s->known, x,
+                        &is_new);
     if (!is_new) continue;
     SHB_TRY(trace_found(h, s, x, value));
     SHB_TRY(collect_known(h, s, value, -1));
     /* whether it was traced or not */
-    SHB_TRY(mhb_solution_set_add_copies(&s->known, s->balance, x));
+    mhb_solution_set_add_copies(&s->known, s->balance, x);
   }
   mhb_search made = {.value    = mhb_parameter_shown(h->settings->parameter, value),
                      .order    = s->order,

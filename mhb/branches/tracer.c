@@ -66,7 +66,7 @@ static void return_to(mhb_tracer *t, const mhb_curve_place *place) {
 /* The curve starts at its current point, and ends where it comes back. */
 static shb_status note_start(mhb_tracer *t) {
   mhb_arclength *curve = t->host.curve;
-  SHB_TRY(mhb_curve_place_note(&t->start, curve->system, &curve->current, mhb_tracer_same(t)));
+  mhb_curve_place_note(&t->start, curve->system, &curve->current, mhb_tracer_same(t));
   return_to(t, &t->start);
   return SHB_OK;
 }

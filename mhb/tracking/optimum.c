@@ -136,18 +136,16 @@ static shb_status smooth_at(const search *s, mhb_balance *balance, const double 
       s->tracking->frequency[1] - s->tracking->frequency[0], mhb_norm(x, balance->n), &system));
   mhb_curve_system *base = mhb_peak_system_base(system);
   mhb_peak_system_measure(base, s->tracking->size);
-  shb_status status = mhb_curve_point_create(base, &point);
-  if (status == SHB_OK) {
-    mhb_peak_system_pack(base, x, SHB_TWO_PI * at->frequency, point.x);
-    point.value = at->value;
-    if (base->solve_at_value(base, 1e-10, &point) == MHB_CONVERGED) {
-      at->amplitude = mhb_peak_system_report(base, &point).amplitude;
-      at->frequency = mhb_peak_system_omega(base, point.x) / SHB_TWO_PI;
-    }
-    mhb_curve_point_destroy(base, &point);
+  mhb_curve_point_create(base, &point);
+  mhb_peak_system_pack(base, x, SHB_TWO_PI * at->frequency, point.x);
+  point.value = at->value;
+  if (base->solve_at_value(base, 1e-10, &point) == MHB_CONVERGED) {
+    at->amplitude = mhb_peak_system_report(base, &point).amplitude;
+    at->frequency = mhb_peak_system_omega(base, point.x) / SHB_TWO_PI;
   }
+  mhb_curve_point_destroy(base, &point);
   base->destroy(base);
-  return status;
+  return SHB_OK;
 }
 
 /* The same of a peak on a kink. */

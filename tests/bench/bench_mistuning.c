@@ -244,8 +244,8 @@ static double memory_of(const mhb_mistuned_ring *ring, const mhb_settings *s) {
   mhb_truncation *t     = NULL;
   mhb_arclength  *curve = NULL;
   if (mhb_balance_create(&ring->whole, s, &b) != SHB_OK) return taken;
-  if (mhb_truncation_create(b, &t) == SHB_OK &&
-      mhb_balance_curve_create(b, s->frequency[0], s->frequency[1], &curve) == SHB_OK) {
+  if (mhb_truncation_create(b, &t) == SHB_OK) {
+    curve = mhb_balance_curve_create(b, s->frequency[0], s->frequency[1]);
     taken = allocated() - before;
     mhb_arclength_destroy(curve);
   }

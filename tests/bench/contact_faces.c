@@ -178,7 +178,7 @@ static shb_status run_face(const char *file, face_row *row) {
   SHB_TRY(read_face(file, &model, &s, &alike));
   SHB_TRY(mhb_balance_create(&model, &s, &b));
   mhb_balance_set_preload(b, s.n0[0]);
-  SHB_TRY(mhb_balance_curve_create(b, low, SHB_TWO_PI * s.frequency[1], &path));
+  path = mhb_balance_curve_create(b, low, SHB_TWO_PI * s.frequency[1]);
   SHB_TRY(mhb_truncation_create(b, &truncation));
   *row      = (face_row){.pairs = b->n_pairs};
   double *x = calloc((size_t)b->n, sizeof(double));

@@ -256,9 +256,7 @@ static void walk(const modal_model *model, const mhb_settings *s, double start, 
   int            iterations, moved = 0;
   assert_int_equal(mhb_balance_create(model, s, &b), SHB_OK);
   mhb_balance_set_preload(b, s->n0[0]);
-  assert_int_equal(mhb_balance_curve_create(b, SHB_TWO_PI * s->frequency[0],
-                                            SHB_TWO_PI * s->frequency[1], &path),
-                   SHB_OK);
+  path = mhb_balance_curve_create(b, SHB_TWO_PI * s->frequency[0], SHB_TWO_PI * s->frequency[1]);
   double *x = calloc((size_t)b->n, sizeof(double));
   assert_int_equal(mhb_first_solution(mhb_balance_curve_of(path)->newton, b, start, path->tolerance,
                                       x, &iterations),

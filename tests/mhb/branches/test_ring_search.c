@@ -226,7 +226,7 @@ static void a_turned_motion_counts_once(void **state) {
     const double omega = SHB_TWO_PI * c->frequency[p];
     assert_int_equal(mhb_newton_solve(newton, b, omega, 1e-10, x, &iterations), MHB_CONVERGED);
     set.n_solutions = 0;
-    assert_ok(mhb_solution_set_add_copies(&set, b, x));
+    mhb_solution_set_add_copies(&set, b, x);
     assert_true(set.n_solutions > 1 && N % set.n_solutions == 0); /* 3: it repeats half way round */
     for (int j = 0; j < set.n_solutions; j++) { /* each of its copies is a solution */
       double r_of[b->n];

@@ -66,7 +66,7 @@ static walked walk(mhb_balance *residual, double low, double high, int direction
   mhb_newton    *newton;
   int            iterations;
   double         x[residual->n], start = direction > 0 ? low : high, at;
-  assert_int_equal(mhb_balance_curve_create(residual, low, high, &path), SHB_OK);
+  path   = mhb_balance_curve_create(residual, low, high);
   newton = mhb_newton_create(residual->n);
   assert_int_equal(mhb_first_solution(newton, residual, start, 1e-11, x, &iterations),
                    MHB_CONVERGED);
