@@ -5,6 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "mesh/base/memory.h"
 #include "mesh/base/root.h"
 #include "mhb/contact/slip_onset.h"
 #include "mhb/numerics/vector.h"
@@ -417,11 +418,9 @@ bool mhb_corner_solve(mhb_corner *c, double value, int sense, double *omega) {
 
 /* ---- creation ---- */
 
-shb_status mhb_corner_create(mhb_balance *balance, const mhb_tracking *tracking,
-                             mhb_corner **corner) {
-  mhb_corner  *c = calloc(1, sizeof *c);
+mhb_corner *mhb_corner_create(mhb_balance *balance, const mhb_tracking *tracking) {
+  mhb_corner  *c = shb_alloc_zeroed(1, sizeof *c);
   const size_t n = (size_t)balance->n, pairs = (size_t)balance->n_pairs;
-  SHB_CHECK(c, SHB_ERR_IO, "out of memory");
   c->balance         = balance;
   c->tracking        = tracking;
   double **vectors[] = {&c->x,        &c->r,    &c->kept,      &c->by_omega,
@@ -435,8 +434,7 @@ shb_status mhb_corner_create(mhb_balance *balance, const mhb_tracking *tracking,
   c->closed   = shb_arena_take(&c->arena, pairs, sizeof *c->closed);
   c->newton   = mhb_newton_create((int)n);
   mhb_newton_bind(c->newton, balance);
-  *corner = c;
-  return SHB_OK;
+  return c;
 }
 
 void mhb_corner_destroy(mhb_corner *c) {

@@ -4,6 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "mesh/base/memory.h"
 #include "mhb/branches/branch_stability.h"
 #include "mhb/numerics/vector.h"
 
@@ -47,8 +48,7 @@ struct mhb_multiplier_condition {
 
 shb_status mhb_multiplier_condition_create(mhb_balance *b, mhb_parameter parameter, bool flip,
                                            double rate, mhb_multiplier_condition **out) {
-  mhb_multiplier_condition *c = calloc(1, sizeof *c);
-  SHB_CHECK(c, SHB_ERR_IO, "out of memory");
+  mhb_multiplier_condition *c = shb_alloc_zeroed(1, sizeof *c);
   size_t one         = (size_t)b->n + 1;
   c->balance         = b;
   c->parameter       = parameter;

@@ -4,6 +4,7 @@
 #include <stdlib.h>
 
 #include "mesh/base/clock.h"
+#include "mesh/base/memory.h"
 #include "mesh/base/progress.h"
 #include "mesh/base/root.h"
 #include "mhb/balance/truncation_error.h"
@@ -143,15 +144,15 @@ static shb_status trace_both(tracer *t, const mhb_peak_place *first, mhb_respons
   int down = t->segment;
   SHB_TRY(trace_half(t, *first, 1, &end->high));
   *found = t->store->branch[down].n_points > 0;
-  return *found ? mhb_join_halves(response, branch, t->store, down, t->segment) : SHB_OK;
+  if (*found) mhb_join_halves(response, branch, t->store, down, t->segment);
+  return SHB_OK;
 }
 
 static shb_status make(tracer *t, const mhb_response *response, int branch) {
-  size_t n   = (size_t)t->family->balance->n;
-  t->point.x = calloc(n, sizeof(double));
-  t->point.r = calloc(n, sizeof(double));
-  t->store   = mhb_response_like(response);
-  SHB_CHECK(t->point.x && t->point.r && t->store, SHB_ERR_IO, "out of memory");
+  size_t n              = (size_t)t->family->balance->n;
+  t->point.x            = shb_alloc_zeroed(n, sizeof(double));
+  t->point.r            = shb_alloc_zeroed(n, sizeof(double));
+  t->store              = mhb_response_like(response);
   t->store->n_harmonics = response->branch[branch].n_harmonics;
   SHB_TRY(mhb_truncation_create(t->family->balance, &t->truncation));
   t->point.evaluation = mhb_evaluation_create(t->family->balance);

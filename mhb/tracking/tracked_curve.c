@@ -6,6 +6,7 @@
 
 #include "mesh/base/clock.h"
 #include "mesh/base/constants.h"
+#include "mesh/base/memory.h"
 #include "mesh/base/progress.h"
 #include "mhb/balance/truncation_error.h"
 #include "mhb/branches/record.h"
@@ -379,13 +380,12 @@ static shb_status trace_half(tracer *t, const double *z, double value, int direc
   return SHB_OK;
 }
 
-shb_status mhb_join_halves(mhb_response *response, int branch, const mhb_response *store, int low,
-                           int high) {
+void mhb_join_halves(mhb_response *response, int branch, const mhb_response *store, int low,
+                     int high) {
   const int below = store->branch[low].n_points, above = store->branch[high].n_points;
   const int first = below > 0 ? 1 : 0;
   if (below > 0) mhb_response_copy_points(response, branch, store, low, below - 1, 0);
   if (above > first) mhb_response_copy_points(response, branch, store, high, first, above - 1);
-  return SHB_OK;
 }
 
 bool mhb_is_seeded(const mhb_tracking_seed *seed, double omega, double amplitude) {
@@ -423,7 +423,7 @@ static shb_status trace_both(tracer *t, const mhb_tracking_seed *seed, double *z
     return SHB_OK;
   }
   SHB_TRY(trace_half(t, z, seed->value, 1, &up, &end->high));
-  SHB_TRY(mhb_join_halves(response, branch, t->store, down, up));
+  mhb_join_halves(response, branch, t->store, down, up);
   *found = response->branch[branch].n_points > 0;
   return SHB_OK;
 }
@@ -450,24 +450,22 @@ shb_status mhb_trace_tracked(mhb_balance *balance, const mhb_tracking *tracking,
                              const mhb_tracking_seed *seed, mhb_response *response, int branch,
                              bool *found, mhb_tracking_end *end) {
   mhb_event_test test[MOST_TESTS];
-  tracer         t = {.balance = balance, .tracking = tracking, .store = NULL};
-  double        *z = calloc((size_t)balance->n + 1, sizeof *z);
-  *end             = (mhb_tracking_end){MHB_END_NO_START, MHB_END_NO_START};
-  *found           = false;
-  t.host           = (mhb_segment_host){.estimate       = estimate,
-                                        .estimate_event = estimate_event,
-                                        .accept         = accept,
-                                        .started        = started,
-                                        .record         = record,
-                                        .test           = test,
-                                        .events         = &t.events};
-  t.host.n_tests   = make_tests(&t, test);
-  t.store          = mhb_response_like(response);
-  t.stuck          = calloc((size_t)balance->n_pairs, sizeof *t.stuck);
-  shb_status status =
-      z && t.store && t.stuck ? SHB_OK : shb_fail(SHB_ERR_IO, __FILE__, __LINE__, "out of memory");
-  if (status == SHB_OK) t.store->n_harmonics = response->branch[branch].n_harmonics;
-  if (status == SHB_OK) status = make_curve(&t, mhb_norm(seed->x, balance->n));
+  tracer         t     = {.balance = balance, .tracking = tracking, .store = NULL};
+  double        *z     = shb_alloc_zeroed((size_t)balance->n + 1, sizeof *z);
+  *end                 = (mhb_tracking_end){MHB_END_NO_START, MHB_END_NO_START};
+  *found               = false;
+  t.host               = (mhb_segment_host){.estimate       = estimate,
+                                            .estimate_event = estimate_event,
+                                            .accept         = accept,
+                                            .started        = started,
+                                            .record         = record,
+                                            .test           = test,
+                                            .events         = &t.events};
+  t.host.n_tests       = make_tests(&t, test);
+  t.store              = mhb_response_like(response);
+  t.stuck              = shb_alloc_zeroed((size_t)balance->n_pairs, sizeof *t.stuck);
+  t.store->n_harmonics = response->branch[branch].n_harmonics;
+  shb_status status    = make_curve(&t, mhb_norm(seed->x, balance->n));
   if (status == SHB_OK) status = trace_both(&t, seed, z, response, branch, found, end);
   mhb_events_destroy(&t.events);
   mhb_curve_place_free(&t.start);

@@ -125,7 +125,7 @@ static void check_at(const case_model *model, mhb_response *r, int point) {
   mhb_kink      *kink;
   mhb_end        why;
   assert_ok(mhb_balance_create(&model->model, &settings, &balance));
-  assert_ok(mhb_kink_create(balance, &tracking, &kink));
+  kink = mhb_kink_create(balance, &tracking);
   double x[balance->n], there[balance->n], by[MHB_PEAK_PARAMETERS];
   mhb_recorded_motion(branch, point, balance, x);
   assert_true(mhb_kink_start(kink, x, &at, &why));

@@ -31,7 +31,7 @@ static void set_up(fixture *f, mhb_parameter parameter, double value) {
                                             .frequency  = {0.9, 1.8},
                                             .max_points = 200};
   assert_ok(mhb_balance_create(&f->model, &f->settings, &f->balance));
-  assert_ok(mhb_kink_create(f->balance, &f->tracking, &f->kink));
+  f->kink = mhb_kink_create(f->balance, &f->tracking);
 }
 
 static void tear_down(fixture *f) {
