@@ -6,6 +6,7 @@
 
 #include "mesh/base/arena.h"
 #include "mesh/base/constants.h"
+#include "mesh/base/memory.h"
 #include "mhb/floquet/bloch.h"
 #include "mhb/floquet/linear_exponents.h"
 
@@ -120,27 +121,26 @@ static shb_status fill(mhb_floquet *s, const mhb_receptance *receptance,
   const mhb_modal_structure *all_modes = &s->structure;
   int                        m         = settings->harmonics,
       all = 2 * (all_modes->modes * all_modes->blades + all_modes->contacts);
-  SHB_TRY(mhb_transition_schedule_create(all_modes->blades, all_modes->pairs, all_modes->wave,
-                                         all_modes->mistuned, &s->schedule));
+  mhb_transition_schedule_create(all_modes->blades, all_modes->pairs, all_modes->wave,
+                                 all_modes->mistuned, &s->schedule);
   SHB_TRY(mhb_contact_evaluator_create(m, m, settings->tolerance, &s->contact));
   if (modes_of(s) > 0) {
     SHB_TRY(mhb_modal_structure_create(receptance, settings, modes_of(s), MHB_STRUCTURE_WHOLE,
                                        &s->reduced));
-    SHB_TRY(mhb_monodromy_create(&s->reduced, &s->schedule, s->contact, m, (substeps + 1) / 2,
-                                 FINEST, is_condensed(&s->reduced), &s->monodromy));
-    int cells  = mhb_floquet_cells(s),
-        states = 2 * s->schedule.cell * (s->reduced.modes + all_modes->pairs);
-    SHB_TRY(mhb_bloch_create(cells, states, &s->bloch));
+    s->monodromy = mhb_monodromy_create(&s->reduced, &s->schedule, s->contact, m,
+                                        (substeps + 1) / 2, FINEST, is_condensed(&s->reduced));
+    int cells    = mhb_floquet_cells(s),
+        states   = 2 * s->schedule.cell * (s->reduced.modes + all_modes->pairs);
+    mhb_bloch_create(cells, states, &s->bloch);
     s->coarse = shb_arena_take(&s->arena, (size_t)cells * (size_t)states * (size_t)states,
                                sizeof *s->coarse);
   }
   const mhb_modal_structure *linear = all_modes->mistuned && s->monodromy ? &s->reduced : all_modes;
-  SHB_TRY(mhb_linear_exponents_create(linear, &s->exponents));
+  mhb_linear_exponents_create(linear, &s->exponents);
   note_statical(s);
   s->nu         = settings->subharmonics;
   s->state      = shb_arena_take(&s->arena, (size_t)s->schedule.orbits, sizeof(int));
   s->multiplier = shb_arena_take(&s->arena, (size_t)all, sizeof(double complex));
-  SHB_CHECK(!s->arena.failed, SHB_ERR_IO, "out of memory for the stability of %d states", all);
   return SHB_OK;
 }
 
@@ -148,8 +148,7 @@ shb_status mhb_floquet_create(const mhb_receptance *receptance, const mhb_settin
                               int substeps, int max_states, mhb_floquet **out) {
   SHB_CHECK(substeps >= 1, SHB_ERR_INPUT, "stability needs at least one sub-step a period, not %d",
             substeps);
-  mhb_floquet *s = calloc(1, sizeof *s);
-  SHB_CHECK(s, SHB_ERR_IO, "out of memory");
+  mhb_floquet *s    = shb_alloc_zeroed(1, sizeof *s);
   s->max_states     = max_states > 0 ? max_states : MAX_STATES;
   s->highest        = SHB_TWO_PI * fmax(settings->frequency[0], settings->frequency[1]);
   shb_status status = fill(s, receptance, settings, substeps);

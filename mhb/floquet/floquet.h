@@ -50,7 +50,7 @@ typedef struct mhb_floquet mhb_floquet; /* workspace; one a thread */
  *   substeps    in  of a period of the fundamental, to begin with
  *   max_states  in  0: 600. In a mistuned ring it bounds the states of linear motions too
  * The receptance must outlive it.
- * Errors: SHB_ERR_INPUT substeps < 1; SHB_ERR_IO no memory. */
+ * Errors: SHB_ERR_INPUT substeps < 1; SHB_ERR_IO no memory for a contact evaluator. */
 shb_status mhb_floquet_create(const mhb_receptance *receptance, const mhb_settings *settings,
                               int substeps, int max_states, mhb_floquet **floquet);
 void       mhb_floquet_destroy(mhb_floquet *floquet);

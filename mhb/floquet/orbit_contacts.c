@@ -6,18 +6,18 @@
 #include <string.h>
 
 #include "mesh/base/constants.h"
+#include "mesh/base/memory.h"
 #include "mhb/contact/slip.h"
 #include "mhb/numerics/fourier.h"
 
 /* Distance from an opening, in periods, at which the direction of friction is sampled. */
 static const double NEAR = 1e-8;
 
-shb_status mhb_orbit_contacts_create(const mhb_modal_structure     *s,
-                                     const mhb_transition_schedule *schedule,
-                                     mhb_contact_evaluator *contact, int m, int n_samples,
-                                     mhb_orbit_contacts **out) {
-  mhb_orbit_contacts *d = calloc(1, sizeof *d);
-  SHB_CHECK(d, SHB_ERR_IO, "out of memory");
+mhb_orbit_contacts *mhb_orbit_contacts_create(const mhb_modal_structure     *s,
+                                              const mhb_transition_schedule *schedule,
+                                              mhb_contact_evaluator *contact, int m,
+                                              int n_samples) {
+  mhb_orbit_contacts *d = shb_alloc_zeroed(1, sizeof *d);
   size_t contacts = (size_t)s->contacts, n = 3 * contacts, orbits = (size_t)schedule->orbits;
   d->structure        = s;
   d->schedule         = schedule;
@@ -28,7 +28,7 @@ shb_status mhb_orbit_contacts_create(const mhb_modal_structure     *s,
   shb_arena *arena    = &d->arena;
   d->own              = shb_arena_take(arena, 3 * orbits * (size_t)d->nb, sizeof(double));
   d->motion           = shb_arena_take(arena, 3 * orbits * (size_t)d->nb, sizeof(double));
-  d->sample           = calloc(orbits * (size_t)d->capacity, sizeof *d->sample);
+  d->sample           = shb_alloc_zeroed(orbits * (size_t)d->capacity, sizeof *d->sample);
   d->n_taken          = shb_arena_take(arena, orbits, sizeof(int));
   d->point            = shb_arena_take(arena, contacts, sizeof *d->point);
   d->solution_columns = shb_arena_take(arena, 2 * n, sizeof(mhb_columns));
@@ -38,12 +38,7 @@ shb_status mhb_orbit_contacts_create(const mhb_modal_structure     *s,
   d->basis            = shb_arena_take(arena, 2 * (size_t)d->nb, sizeof(double));
   const int groups    = mhb_modal_structure_groups(s);
   mhb_ring_band_create(groups, 3 * s->contacts / groups, &d->band);
-  if (arena->failed || !d->sample) {
-    mhb_orbit_contacts_destroy(d);
-    SHB_FAIL(SHB_ERR_IO, "out of memory for the stability of %d contacts", s->contacts);
-  }
-  *out = d;
-  return SHB_OK;
+  return d;
 }
 
 void mhb_orbit_contacts_destroy(mhb_orbit_contacts *d) {
