@@ -268,7 +268,8 @@ shb_status point_matcher_change(point_matcher *matcher, const matched_solution *
 shb_status point_matcher_record(point_matcher *matcher, mhb_response *response, int branch) {
   mhb_curve_point point = {
       .x = matcher->x, .value = matcher->omega, .evaluation = matcher->balance->eval};
-  return mhb_record(response, branch, matcher->balance, &point, MHB_PEAK, 0);
+  mhb_record(response, branch, matcher->balance, &point, MHB_PEAK, 0);
+  return SHB_OK;
 }
 
 shb_status point_matcher_judge(point_matcher *matcher, int *stable) {

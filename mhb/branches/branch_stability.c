@@ -4,6 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "mesh/base/memory.h"
 #include "mesh/base/progress.h"
 #include "mhb/branches/record.h"
 #include "mhb/continuation/corrector.h"
@@ -89,15 +90,12 @@ double mhb_branch_floquet_bytes(int blades, int pairs, int modes, bool mistuned)
 }
 
 shb_status mhb_branch_stability_create(mhb_balance *b, mhb_branch_stability **out) {
-  mhb_branch_stability *w = calloc(1, sizeof *w);
-  SHB_CHECK(w, SHB_ERR_IO, "out of memory");
-  w->balance = b;
-  w->states  = count_states(b);
-  w->x       = calloc((size_t)b->n, sizeof(double));
-  w->r       = calloc((size_t)b->n, sizeof(double));
-  shb_status status =
-      w->x && w->r ? SHB_OK : shb_fail(SHB_ERR_IO, __FILE__, __LINE__, "out of memory");
-  if (status == SHB_OK) status = mhb_branch_floquet_create(b, &w->floquet);
+  mhb_branch_stability *w = shb_alloc_zeroed(1, sizeof *w);
+  w->balance              = b;
+  w->states               = count_states(b);
+  w->x                    = shb_alloc_zeroed((size_t)b->n, sizeof(double));
+  w->r                    = shb_alloc_zeroed((size_t)b->n, sizeof(double));
+  shb_status status       = mhb_branch_floquet_create(b, &w->floquet);
   if (status != SHB_OK) {
     mhb_branch_stability_destroy(w);
     return status;
@@ -279,9 +277,8 @@ static shb_status judge_points(mhb_branch_stability *w, bool *finished) {
   for (int i = 0; i < w->n && go_on; i++)
     if (all || is_linear_point(w, i)) go_on = judge_point(w, i);
   if (!all && go_on) {
-    mhb_curve_verdict *verdict = calloc((size_t)w->n + 1, sizeof *verdict);
-    SHB_CHECK(verdict, SHB_ERR_IO, "out of memory");
-    go_on = judge_some(w, verdict);
+    mhb_curve_verdict *verdict = shb_alloc_zeroed((size_t)w->n + 1, sizeof *verdict);
+    go_on                      = judge_some(w, verdict);
     free(verdict);
   }
   *finished = go_on;
@@ -335,7 +332,7 @@ static shb_status locate(mhb_branch_stability *w, int i) {
       !(fabs(s.at.complex_excess) < ON_CIRCLE))
     return SHB_OK;
   mhb_harmonic_levels_errors(w->tracer->levels, &curve->trial);
-  SHB_TRY(mhb_record(w->response, w->branch, w->balance, &curve->trial, s.at.bifurcation, 0));
+  mhb_record(w->response, w->branch, w->balance, &curve->trial, s.at.bifurcation, 0);
   mhb_response_place(w->response, w->branch, i);
   put(w, i, &s.last);
   memmove(w->at + i + 1, w->at + i, sizeof *w->at * (size_t)(w->n - i));
@@ -508,24 +505,22 @@ static void forget(mhb_branch *branch) {
   }
 }
 
-/* begins[point] and a further array of flags, all false but for the beginnings; NULL: no memory.
+/* begins[point] and a further array of flags, all false but for the beginnings.
  * room: points. */
 static bool *flags(const int *begins, int n_begins, size_t room) {
-  bool *flag = calloc(2 * room + 1, sizeof *flag);
-  for (int k = 0; flag && k < n_begins; k++) flag[begins[k]] = begins[k] > 0;
+  bool *flag = shb_alloc_zeroed(2 * room, sizeof *flag);
+  for (int k = 0; k < n_begins; k++) flag[begins[k]] = begins[k] > 0;
   return flag;
 }
 
-shb_status mhb_branch_stability_by_folds(mhb_branch *branch, const int *begins, int n_begins,
-                                         int stable_at) {
-  size_t n    = (size_t)branch->n_points;
-  bool  *flag = flags(begins, n_begins, n + 1);
-  SHB_CHECK(flag, SHB_ERR_IO, "out of memory");
+void mhb_branch_stability_by_folds(mhb_branch *branch, const int *begins, int n_begins,
+                                   int stable_at) {
+  size_t n                        = (size_t)branch->n_points;
+  bool  *flag                     = flags(begins, n_begins, n + 1);
   flag[n + 1 + (size_t)stable_at] = true;
   forget(branch);
   decide_by_folds(branch, flag, flag + n + 1);
   free(flag);
-  return SHB_OK;
 }
 
 /* Verdicts of the points judged, of those that their neighbours decide, and by folds. stable: an
@@ -548,15 +543,12 @@ shb_status mhb_branch_stability_judge(mhb_branch_stability *w, mhb_tracer *trace
   w->branch    = index;
   w->n         = branch_of(w)->n_points;
   size_t room  = (size_t)w->n + MAX_LOCATED;
-  w->at        = calloc(room, sizeof *w->at);
-  w->decided   = calloc(room, sizeof *w->decided);
+  w->at        = shb_alloc_zeroed(room, sizeof *w->at);
+  w->decided   = shb_alloc_zeroed(room, sizeof *w->decided);
   w->begins    = flags(begins, n_begins, room);
   w->published = SHB_OK;
   forget(branch_of(w));
-  shb_status status = w->at && w->decided && w->begins
-                          ? SHB_OK
-                          : shb_fail(SHB_ERR_IO, __FILE__, __LINE__, "out of memory");
-  if (status == SHB_OK) status = judge_points(w, finished);
+  shb_status status = judge_points(w, finished);
   if (status == SHB_OK && *finished) status = mark_bifurcations(w);
   if (status == SHB_OK) decide_all(w, w->begins + room);
   free(w->at);

@@ -4,6 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "mesh/base/memory.h"
 #include "mhb/numerics/fourier.h"
 
 /* Parts of the tolerance: an estimate that is accepted, and one that a lower level must keep. */
@@ -84,8 +85,7 @@ static void level_destroy(mhb_harmonic_level *level) {
 /* balance: NULL, or the one to use. */
 static shb_status level_create(const mhb_harmonic_levels *h, int m, mhb_balance *balance,
                                mhb_harmonic_level **out) {
-  mhb_harmonic_level *level = calloc(1, sizeof *level);
-  SHB_CHECK(level, SHB_ERR_IO, "out of memory");
+  mhb_harmonic_level *level = shb_alloc_zeroed(1, sizeof *level);
   level->settings           = *h->settings;
   level->settings.harmonics = m;
   level->balance            = balance;
@@ -116,8 +116,7 @@ int mhb_harmonic_levels_of(const mhb_harmonic_levels *h, int m) {
 }
 
 shb_status mhb_harmonic_levels_create(mhb_balance *balance, mhb_harmonic_levels **out) {
-  mhb_harmonic_levels *h = calloc(1, sizeof *h);
-  SHB_CHECK(h, SHB_ERR_IO, "out of memory");
+  mhb_harmonic_levels *h = shb_alloc_zeroed(1, sizeof *h);
   h->settings  = balance->settings;
   h->model     = balance->receptance->model;
   h->at_start  = balance->eval->at;

@@ -59,7 +59,7 @@ int mhb_harmonic_levels_ladder(const modal_model *model, const mhb_settings *set
 int mhb_harmonic_levels_usual(int n, const int *m);
 
 /* Starts at the given balance, which must outlive it, with its settings, operating point and
- * parameter. SHB_ERR_IO: no memory. */
+ * parameter. */
 shb_status mhb_harmonic_levels_create(mhb_balance *balance, mhb_harmonic_levels **levels);
 void       mhb_harmonic_levels_destroy(mhb_harmonic_levels *levels);
 

@@ -90,8 +90,8 @@ static void record_ring(const mhb_response *response, mhb_branch *branch, int po
       mhb_ring_kind_of(branch->ring_participation[point], wave[0], branch->ring_standing[point]);
 }
 
-shb_status mhb_record(mhb_response *response, int index, mhb_balance *b,
-                      const mhb_curve_point *point, int special, double seconds) {
+void mhb_record(mhb_response *response, int index, mhb_balance *b, const mhb_curve_point *point,
+                int special, double seconds) {
   int at;
   mhb_balance_use(b, point->evaluation);
   mhb_response_widen(response, &response->branch[index], b->m);
@@ -117,7 +117,6 @@ shb_status mhb_record(mhb_response *response, int index, mhb_balance *b,
   branch->error_modal[at] = point->modal;
   branch->mark[at]        = mark_of(b, point);
   if (branch->ring_kind) record_ring(response, branch, at, b);
-  return SHB_OK;
 }
 
 void mhb_recorded_motion(const mhb_branch *branch, int point, const mhb_balance *b, double *x) {

@@ -44,7 +44,7 @@ static shb_status record(tracer *t, const mhb_peak_place *at, int special, bool 
   t->point.truncation      = mhb_truncation_error(t->truncation, t->point.x);
   t->point.truncation_kind = (int)t->truncation->kind;
   mhb_balance_set_parameter(b, t->family->tracking->parameter);
-  SHB_TRY(mhb_record(t->store, t->segment, b, &t->point, special, now - t->clock));
+  mhb_record(t->store, t->segment, b, &t->point, special, now - t->clock);
   t->clock = now;
   return SHB_OK;
 }

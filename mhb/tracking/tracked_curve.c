@@ -163,7 +163,7 @@ static shb_status record(mhb_segment_host *host, mhb_curve_point *point, int spe
   double  now = shb_seconds();
   mhb_balance_use(t->balance, point->evaluation);
   mhb_balance_set_parameter(t->balance, t->tracking->parameter);
-  SHB_TRY(mhb_record(t->store, t->segment, t->balance, point, special, now - t->clock));
+  mhb_record(t->store, t->segment, t->balance, point, special, now - t->clock);
   if (by_multiplier(t->tracking)) record_multiplier(t, point);
   t->clock = now;
   /* the whole curve is followed again with more harmonics */
