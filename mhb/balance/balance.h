@@ -86,7 +86,7 @@ void       mhb_balance_destroy(mhb_balance *balance);
 mhb_receptance_product *mhb_balance_product(const mhb_balance *balance, mhb_receptance *receptance,
                                             int first, int m);
 
-/* An evaluation for this balance, at the balance's operating point; its results are not made yet. */
+/* An evaluation for this balance, at its operating point; the results are not made yet. */
 mhb_evaluation *mhb_evaluation_create(const mhb_balance *balance);
 void            mhb_evaluation_destroy(mhb_evaluation *evaluation);
 

@@ -117,15 +117,15 @@ int mhb_harmonic_levels_of(const mhb_harmonic_levels *h, int m) {
 
 shb_status mhb_harmonic_levels_create(mhb_balance *balance, mhb_harmonic_levels **out) {
   mhb_harmonic_levels *h = shb_alloc_zeroed(1, sizeof *h);
-  h->settings  = balance->settings;
-  h->model     = balance->receptance->model;
-  h->at_start  = balance->eval->at;
-  h->parameter = balance->parameter;
-  h->low       = mhb_parameter_end(h->settings, h->parameter, 0);
-  h->high      = mhb_parameter_end(h->settings, h->parameter, 1);
-  h->n         = mhb_harmonic_levels_ladder(h->model, h->settings, h->m);
-  h->at        = mhb_harmonic_levels_of(h, balance->m);
-  h->m[h->at]  = balance->m;
+  h->settings            = balance->settings;
+  h->model               = balance->receptance->model;
+  h->at_start            = balance->eval->at;
+  h->parameter           = balance->parameter;
+  h->low                 = mhb_parameter_end(h->settings, h->parameter, 0);
+  h->high                = mhb_parameter_end(h->settings, h->parameter, 1);
+  h->n                   = mhb_harmonic_levels_ladder(h->model, h->settings, h->m);
+  h->at                  = mhb_harmonic_levels_of(h, balance->m);
+  h->m[h->at]            = balance->m;
   h->highest = h->wanted = h->at;
   shb_status status      = level_create(h, balance->m, balance, &h->level[h->at]);
   if (status != SHB_OK) {

@@ -5,7 +5,8 @@
 #include "mhb/continuation/curve.h"
 #include "mhb/response/response.h"
 
-/* Append a point of a balance's curve to a branch. special: MHB_ORDINARY ...; seconds: spent on it. */
+/* Append a point of a balance's curve to a branch. special: MHB_ORDINARY ...; seconds: spent on
+ * it. */
 void mhb_record(mhb_response *response, int branch, mhb_balance *balance,
                 const mhb_curve_point *point, int special, double seconds);
 

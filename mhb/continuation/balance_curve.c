@@ -149,27 +149,28 @@ mhb_arclength *mhb_balance_curve_create(mhb_balance *b, double low, double high)
   mhb_balance_curve *s         = shb_alloc_zeroed(1, sizeof *s);
   bool               frequency = b->parameter == MHB_IN_FREQUENCY;
   s->balance                   = b;
-  s->base                      = (mhb_curve_system){.n                  = b->n,
-                                                    .least              = mhb_parameter_least(b->parameter),
-                                                    .relative           = frequency,
-                                                    .smooth             = b->settings->tolerance <= SMOOTH,
-                                                    .costly             = b->receptance->ring != NULL,
-                                                    .bends              = b->receptance->ring || b->product,
-                                                    .brief_events       = b->receptance->ring != NULL,
-                                                    .row_length         = b->nb,
-                                                    .copies             = mhb_motion_copies(b),
-                                                    .copy               = copy,
-                                                    .destroy            = destroy,
-                                                    .evaluation_create  = evaluation_create,
-                                                    .evaluation_destroy = evaluation_destroy,
-                                                    .linearise          = linearise,
-                                                    .evaluate           = evaluate,
-                                                    .factor             = factor,
-                                                    .solve              = solve,
-                                                    .sign               = sign,
-                                                    .solve_at_value     = solve_at_value,
-                                                    .start_of_newton    = start_of_newton,
-                                                    .is_linear          = is_linear};
+
+  s->base = (mhb_curve_system){.n                  = b->n,
+                               .least              = mhb_parameter_least(b->parameter),
+                               .relative           = frequency,
+                               .smooth             = b->settings->tolerance <= SMOOTH,
+                               .costly             = b->receptance->ring != NULL,
+                               .bends              = b->receptance->ring || b->product,
+                               .brief_events       = b->receptance->ring != NULL,
+                               .row_length         = b->nb,
+                               .copies             = mhb_motion_copies(b),
+                               .copy               = copy,
+                               .destroy            = destroy,
+                               .evaluation_create  = evaluation_create,
+                               .evaluation_destroy = evaluation_destroy,
+                               .linearise          = linearise,
+                               .evaluate           = evaluate,
+                               .factor             = factor,
+                               .solve              = solve,
+                               .sign               = sign,
+                               .solve_at_value     = solve_at_value,
+                               .start_of_newton    = start_of_newton,
+                               .is_linear          = is_linear};
   if (frequency && !b->receptance->ring) {
     s->base.correct_linear       = correct_linear;
     s->base.resonance_step_limit = resonance_step_limit;

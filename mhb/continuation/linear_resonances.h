@@ -28,7 +28,7 @@ typedef struct {
   int            n, capacity;
 } mhb_resonances;
 
-/* Those of harmonics 1..m between low and high, rad/s. None unless the frequency is the parameter. */
+/* Those of harmonics 1..m between low and high, rad/s; none unless the frequency is followed. */
 void mhb_resonances_create(const mhb_balance *balance, double low, double high,
                            mhb_resonances *resonances);
 /* Those of one linear limit at the harmonics of the load: free modes, or stuck ones with R near

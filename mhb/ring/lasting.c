@@ -339,8 +339,8 @@ static void carry(settling *w) {
 static void run(settling *w, const int steps[2]) {
   const size_t most  = (size_t)(MHB_START_BLOCKS * MHB_START_BLOCK) * (size_t)w->model->blades;
   shb_arena    arena = {0};
-  w->peaks          = shb_arena_take(&arena, most / 2 * (size_t)w->model->copies, sizeof *w->peaks);
-  w->group          = shb_arena_take(&arena, MHB_LASTING_MOTIONS, sizeof *w->group);
+  w->peaks   = shb_arena_take(&arena, most / 2 * (size_t)w->model->copies, sizeof *w->peaks);
+  w->group   = shb_arena_take(&arena, MHB_LASTING_MOTIONS, sizeof *w->group);
   w->highest = set_pattern(&w->starts, w->wave);
   if (w->how->from)
     carry(w);

@@ -32,7 +32,7 @@ static mhb_speed_parts parts_of(const modal_speeds *s, int i) {
   return (mhb_speed_parts){&s->model[i], &s->imaginary[i], &s->backward[i]};
 }
 
-/* Doubles of an array in an entry, an even number as complex ones may follow; 0: it is not there. */
+/* Doubles of an array in an entry, an even number as complex ones follow; 0: it is not there. */
 static size_t doubles_of(const mhb_speed_table *r, const modal_dataset *row, const modal_model *m) {
   if (!m || !modal_dataset_is_residual(row) || !modal_dataset_get(row, m)) return 0;
   const size_t n = modal_dataset_count(row, r->common) * modal_dataset_width(row) / sizeof(double);

@@ -29,7 +29,8 @@ typedef struct {
 } mhb_speed_parts;
 
 /* An entry: K, Z and, with Coriolis terms, C [m][m], rows [rows][m], of width doubles each
- * (unitary.h); terms and tails, which do not depend on the modes. Threads may share a table. */
+ * (unitary.h). Then terms and tails, which do not depend on the modes. Threads may share a
+ * table. */
 typedef struct mhb_speed_table {
   int                width;                    /* 1: real; 2: complex */
   int                n, n_modes, engine_order; /* n: speeds used */

@@ -48,15 +48,15 @@ struct mhb_multiplier_condition {
 
 shb_status mhb_multiplier_condition_create(mhb_balance *b, mhb_parameter parameter, bool flip,
                                            double rate, mhb_multiplier_condition **out) {
-  mhb_multiplier_condition *c = shb_alloc_zeroed(1, sizeof *c);
-  size_t one         = (size_t)b->n + 1;
-  c->balance         = b;
-  c->parameter       = parameter;
-  c->flip            = flip;
-  c->rate            = rate;
-  c->n               = b->n;
-  double **vectors[] = {&c->accepted.z,  &c->accepted.weight, &c->last.z,
-                        &c->last.weight, &c->moved,           &c->r};
+  mhb_multiplier_condition *c   = shb_alloc_zeroed(1, sizeof *c);
+  size_t                    one = (size_t)b->n + 1;
+  c->balance                    = b;
+  c->parameter                  = parameter;
+  c->flip                       = flip;
+  c->rate                       = rate;
+  c->n                          = b->n;
+  double **vectors[]            = {&c->accepted.z,  &c->accepted.weight, &c->last.z,
+                                   &c->last.weight, &c->moved,           &c->r};
   for (size_t i = 0; i < sizeof vectors / sizeof *vectors; i++)
     *vectors[i] = shb_arena_take(&c->arena, one, sizeof(double));
   c->displaced      = mhb_evaluation_create(b);

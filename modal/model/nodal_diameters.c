@@ -10,12 +10,11 @@ enum { MOST_BLADES = 10000, NAME = 32, LABEL = 1024 };
 
 void modal_nodal_diameters_create(int blades, int n, modal_nodal_diameters *d) {
   const size_t count = (size_t)n;
-  *d                 = (modal_nodal_diameters){.blades    = blades,
-                                               .n         = n,
-                                               .diameter  = shb_alloc_zeroed(count, sizeof *d->diameter),
-                                               .model     = shb_alloc_zeroed(count, sizeof *d->model),
-                                               .imaginary = shb_alloc_zeroed(count, sizeof *d->imaginary),
-                                               .backward  = shb_alloc_zeroed(count, sizeof *d->backward)};
+  *d                 = (modal_nodal_diameters){.blades = blades, .n = n};
+  d->diameter        = shb_alloc_zeroed(count, sizeof *d->diameter);
+  d->model           = shb_alloc_zeroed(count, sizeof *d->model);
+  d->imaginary       = shb_alloc_zeroed(count, sizeof *d->imaginary);
+  d->backward        = shb_alloc_zeroed(count, sizeof *d->backward);
 }
 
 void modal_nodal_diameters_free(modal_nodal_diameters *d) {

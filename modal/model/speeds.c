@@ -180,16 +180,15 @@ static shb_status read_overlap(hid_t at, const char *path, modal_speeds *s) {
     SHB_TRY(h5_read_double(at, "speeds/overlap", &all, &s->overlap));
     return check_overlap(path, s);
   }
-  double complex *z      = NULL;
-  shb_status      status = h5_read_complex(at, "speeds/overlap", &all, &z);
-  const size_t    n      = h5_count(all);
-  if (status == SHB_OK) s->overlap = shb_alloc(n, sizeof *s->overlap);
-  for (size_t i = 0; s->overlap && i < n; i++) {
+  double complex *z = NULL;
+  SHB_TRY(h5_read_complex(at, "speeds/overlap", &all, &z));
+  const size_t n = h5_count(all);
+  s->overlap     = shb_alloc(n, sizeof *s->overlap);
+  for (size_t i = 0; i < n; i++) {
     s->overlap[i]           = creal(z[i]);
     s->overlap_imaginary[i] = cimag(z[i]);
   }
   free(z);
-  SHB_TRY(status);
   return check_overlap(path, s);
 }
 
