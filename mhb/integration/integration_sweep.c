@@ -10,6 +10,7 @@
 #include "mhb/integration/steady_state.h"
 #include "mhb/problem/interfaces.h"
 #include "mhb/problem/parameter.h"
+#include "mhb/problem/wave.h"
 #include "mhb/response/describe.h"
 #include "mhb/response/publisher.h"
 
@@ -73,11 +74,9 @@ static shb_status add_point(sweep *s, int branch, double n0, double hz, sweep_po
 
 /* Turn of a wave over n sectors, where the model has more of them than the balance. */
 static double complex lag(const mhb_response *balance, long n) {
-  const mhb_settings of   = {.engine_order = balance->engine_order,
-                             .blades       = balance->blades,
-                             .subharmonics = balance->subharmonics};
-  const long         wave = (of.engine_order + of.blades * mhb_wave_shift(&of)) / of.subharmonics;
-  return n ? cexp(-I * SHB_TWO_PI * (double)(n * wave % of.blades) / of.blades) : 1;
+  const long wave = mhb_driven_wave_number(mhb_driven_wave_of(
+      balance->engine_order, balance->turns_right, balance->blades, balance->subharmonics));
+  return n ? cexp(-I * SHB_TWO_PI * (double)(n * wave % balance->blades) / balance->blades) : 1;
 }
 
 /* A point that starts between points p and p + 1 of a branch of the balance, unless both are

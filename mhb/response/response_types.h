@@ -256,6 +256,7 @@ typedef struct {
   int     n_modes;
   double *mode_frequency, *mode_damping, *eigen_residual; /* [m]; eigen_residual may be NULL */
   int     engine_order, blades;
+  bool    turns_right; /* the rotor; the wave is then that of N - E (mhb/problem/wave.h) */
   int     ring; /* number of different blades: pairs and probes of blade 0 come first; 0: a wave */
   bool    unfinished;      /* the run that makes it has more to do */
   bool    lacks_diameters; /* of its disc, without which stability cannot be judged */

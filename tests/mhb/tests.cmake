@@ -7,7 +7,7 @@ shb_test(mhb/numerics UNIT block_cyclic extent fourier lu tail thin_product
 shb_test(mhb/contact UNIT transitions slip slip_onset static_friction slider sensitivity
   dense_output time_history INTEGRATION contact reference_law accuracy continuity random
   LIBRARIES tests_motions)
-shb_test(mhb/problem INTEGRATION interfaces parameter LIBRARIES tests_models)
+shb_test(mhb/problem UNIT wave INTEGRATION interfaces parameter LIBRARIES tests_models)
 shb_test(mhb/mistuning UNIT deviation_table deviations mistuned_ring LIBRARIES tests_models)
 shb_test(mhb/structure UNIT cyclic_flexibility gyroscopic nodal_diameters receptance ring_receptance
   speed_model LIBRARIES tests_models)

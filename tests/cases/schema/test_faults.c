@@ -255,6 +255,14 @@ static void numbers_and_ranges(void **state) {
        "c.yaml:12:45: error: rotor.coriolis: needs rotor.speed above 0; at rest there are no "
        "Coriolis forces",
        1},
+      {"2900 rpm", "2900 rpm, turns: right, coriolis: left",
+       "c.yaml:12:62: error: rotor.coriolis: is of the other sense than rotor.turns; write "
+       "coriolis: yes",
+       1},
+      {"2900 rpm", "2900 rpm, turns: round",
+       "c.yaml:12:45: error: rotor.turns: 'round' is not known; expected one of left, "
+       "right",
+       1},
       {"2900 rpm", "[]", "c.yaml:12:28: error: rotor.speed: 0 speeds; there may be 1 to 256", 1},
       {"2900 rpm", "[1 rpm, -3 rpm]",
        "c.yaml:12:36: error: rotor.speed[1]: is -0.314159 rad/s, must be 0 to 100000 rad/s", 1},
