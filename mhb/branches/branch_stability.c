@@ -35,6 +35,8 @@ static const double SECONDS_MISTUNED = 5e-7;
 /* Distances of a modulus from 1: the margin outside that counts as unstable, the accuracy of a
  * located bifurcation, and the end of the search. It is COARSE above DEAR states. A search takes
  * MOST_TRIALS multipliers at most: a test function that jumps is not followed further. */
+static const double SENSITIVE = 10;
+
 static const double MARGIN = 1e-3, ON_CIRCLE = 1e-3, NEAR_ENOUGH = 1e-6, COARSE = 5e-4;
 enum { MAX_LOCATED = 32, MOST_TRIALS = 24, MOST_TRIALS_DEAR = 4 };
 
@@ -44,6 +46,7 @@ typedef struct {
   int    verdict;        /* mhb_verdict */
   int    loss;           /* MHB_LOSS_FOLD ... */
   double excess;         /* of the largest modulus over 1 */
+  double error;          /* of it, by the harmonics left out */
   int    leaves_complex; /* the largest that is not on the positive axis is outside by the margin */
   double complex_excess; /* its modulus, less 1; NAN: undecided */
   int    bifurcation;    /* where it crosses the circle: MHB_FLIP, MHB_NEIMARK_SACKER */
@@ -72,16 +75,41 @@ static int count_states(const mhb_balance *b) {
 }
 
 shb_status mhb_branch_floquet_create(mhb_balance *b, mhb_floquet **floquet) {
-  return mhb_floquet_create(b->receptance, b->settings,
+  mhb_settings settings = *b->settings;
+  settings.harmonics    = 2 * b->m; /* of the solution that tells the error */
+  return mhb_floquet_create(b->receptance, &settings,
                             count_states(b) > DEAR ? SUBSTEPS_DEAR : SUBSTEPS, MAX_STATES, floquet);
+}
+
+/* x[n] of the last evaluation of the balance. */
+static mhb_solution solution_of(mhb_floquet *floquet, const mhb_balance *b, const double *x) {
+  const mhb_evaluation *e = b->eval;
+  if (b->settings->run_up) mhb_floquet_move(floquet, b->receptance);
+  return (mhb_solution){e->at.omega, b->law, e->info, x, e->p, b->m};
 }
 
 void mhb_branch_floquet_evaluate(mhb_floquet *floquet, const mhb_balance *b, const double *x,
                                  mhb_multipliers *out) {
-  const mhb_evaluation *e        = b->eval;
-  mhb_solution          solution = {e->at.omega, b->law, e->info, x, e->p};
-  if (b->settings->run_up) mhb_floquet_move(floquet, b->receptance);
+  const mhb_solution solution = solution_of(floquet, b, x);
   mhb_floquet_evaluate(floquet, &solution, out);
+}
+
+void mhb_branch_floquet_judge(mhb_floquet *floquet, mhb_balance *b, mhb_truncation *t, double value,
+                              const double *x, double error, mhb_multipliers *out) {
+  const mhb_balance *better = t->doubled;
+  mhb_branch_floquet_evaluate(floquet, b, x, out);
+  if (out->reason || mhb_balance_is_linear(b)) return;
+  if (mhb_floquet_distance(out) > SENSITIVE * error) {
+    mhb_floquet_set_error(SENSITIVE * error, out);
+    return;
+  }
+  if (b->product || b->receptance->ring) mhb_balance_linearise(b, x, value, t->r, NULL);
+  if (!mhb_truncation_correct(t, x, value)) {
+    mhb_floquet_set_error(INFINITY, out);
+    return;
+  }
+  const mhb_solution corrected = solution_of(floquet, better, t->x);
+  mhb_floquet_judge_error(floquet, &corrected, t->remaining, out);
 }
 
 double mhb_branch_floquet_bytes(int blades, int pairs, int modes, bool mistuned) {
@@ -141,9 +169,10 @@ static point_stability stability_of(const mhb_multipliers *m) {
                              .verdict        = (int)m->verdict,
                              .loss           = loss[m->crossing],
                              .excess         = m->largest - 1,
+                             .error          = m->error,
                              .complex_excess = NAN};
   int              i      = largest_complex(m);
-  if (m->verdict == MHB_UNDECIDED) return out;
+  if (m->reason) return out;
   if (m->n_fold > 0) out.loss = MHB_LOSS_FOLD;
   out.complex_excess = i < 0 ? -1 : cabs(m->multiplier[i]) - 1;
   out.bifurcation    = i < 0 || cimag(m->multiplier[i]) != 0 ? MHB_NEIMARK_SACKER : MHB_FLIP;
@@ -153,13 +182,21 @@ static point_stability stability_of(const mhb_multipliers *m) {
 
 /* Write the multipliers of a point into the branch. */
 static void put(const mhb_branch_stability *w, int point, const mhb_multipliers *m) {
-  static const int judged[] = {MHB_BY_MULTIPLIERS, MHB_JUDGED_MARGINAL, MHB_BY_MULTIPLIERS,
-                               MHB_JUDGED_UNDECIDED};
-  mhb_branch      *branch   = branch_of(w);
-  int              kept     = w->response->n_multipliers;
-  branch->judged[point]     = judged[m->verdict];
-  for (int i = 0; i < kept && m->verdict != MHB_UNDECIDED; i++)
+  static const int judged[]       = {MHB_BY_MULTIPLIERS, MHB_JUDGED_MARGINAL, MHB_BY_MULTIPLIERS,
+                                     MHB_JUDGED_UNDECIDED};
+  mhb_branch      *branch         = branch_of(w);
+  int              kept           = w->response->n_multipliers;
+  branch->judged[point]           = judged[m->verdict];
+  branch->error_multiplier[point] = !m->reason && isfinite(m->error) ? m->error : -1;
+  for (int i = 0; i < kept && !m->reason; i++)
     branch->multipliers[(size_t)point * (size_t)kept + (size_t)i] = i < m->n ? m->multiplier[i] : 0;
+}
+
+/* Multipliers of a recorded point, at which the balance was evaluated last, with their error. */
+static void judge(mhb_branch_stability *w, int point, double value, mhb_multipliers *m) {
+  mhb_truncation *t     = mhb_harmonic_levels_current(w->tracer->levels)->truncation;
+  const double    error = branch_of(w)->error_truncation[point];
+  mhb_branch_floquet_judge(w->floquet, w->balance, t, value, w->x, error, m);
 }
 
 /* Judge a point by its multipliers. false: the monitor stops the work, or publication fails. */
@@ -170,7 +207,7 @@ static bool judge_point(mhb_branch_stability *w, int point) {
   mhb_balance_use(w->balance, NULL);
   mhb_recorded_motion(branch_of(w), point, w->balance, w->x);
   mhb_balance_evaluate(w->balance, w->x, value, w->r, NULL, NULL);
-  evaluate(w, w->x, &m);
+  judge(w, point, value, &m);
   w->at[point] = stability_of(&m);
   put(w, point, &m);
   branch_of(w)->seconds[point] += shb_seconds() - started;
@@ -335,6 +372,7 @@ static shb_status locate(mhb_branch_stability *w, int i) {
       !(fabs(s.at.complex_excess) < ON_CIRCLE))
     return SHB_OK;
   mhb_harmonic_levels_errors(w->tracer->levels, &curve->trial);
+  mhb_harmonic_levels_settle(w->tracer->levels, &curve->trial);
   SHB_TRY(mhb_record(w->response, w->branch, w->balance, &curve->trial, s.at.bifurcation, 0));
   mhb_response_place(w->response, w->branch, i);
   put(w, i, &s.last);
