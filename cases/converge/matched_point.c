@@ -277,8 +277,8 @@ shb_status point_matcher_judge(point_matcher *matcher, int *stable) {
   shb_status      status     = mhb_truncation_create(matcher->balance, &truncation);
   if (status == SHB_OK) status = mhb_branch_floquet_create(matcher->balance, &floquet);
   if (status == SHB_OK) {
-    mhb_branch_floquet_judge(floquet, matcher->balance, truncation, matcher->omega, matcher->x, NAN,
-                             &multipliers);
+    const mhb_judged_point at = {matcher->x, matcher->omega, INFINITY};
+    mhb_branch_floquet_judge(floquet, matcher->balance, truncation, &at, &multipliers);
     *stable = multipliers.verdict == MHB_UNSTABLE ? 0 : multipliers.verdict == MHB_STABLE ? 1 : -1;
   }
   mhb_floquet_destroy(floquet);

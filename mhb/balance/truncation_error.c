@@ -402,31 +402,31 @@ double mhb_truncation_across(mhb_truncation *t, double value, double *shift) {
   return error;
 }
 
-/* t->step <- the correction of the solution x. Returns the change of the value, relative; NAN: not
+/* Whether t->step is short enough for the linearisation. */
+static bool is_short(const mhb_truncation *t) {
+  return mhb_norm(t->step, t->doubled->n) <= FAR * mhb_balance_vibration(t->doubled, t->x);
+}
+
+/* t->step <- to the nearest point of the curve. Returns the relative change of the value; NAN: not
  * known. */
-static double correct(mhb_truncation *t, const double *x, double value) {
-  const int n = t->doubled->n;
-  double    change[n + 1];
-  change[n] = 0;
-  if (!takes_border(t)) {
-    mhb_truncation_error(t, x);
-    return t->kind == MHB_TRUNCATION_NEWTON ? 0 : NAN;
-  }
-  begin(t, x);
+static double step_across(mhb_truncation *t, double value) {
+  const int    n    = t->doubled->n;
   const double unit = mhb_norm(t->x, n);
-  if (!(unit > 0) || !find_nearest(t, value, unit, change)) return NAN;
-  t->kind = MHB_TRUNCATION_NEWTON;
+  double       change[n + 1];
+  if (!takes_border(t) || !(unit > 0) || !find_nearest(t, value, unit, change)) return NAN;
   for (int i = 0; i < n; i++) t->step[i] = unit * change[i];
+  t->kind = MHB_TRUNCATION_NEWTON;
   set_order(t);
   return change[n];
 }
 
 bool mhb_truncation_correct(mhb_truncation *t, const double *x, double value) {
   mhb_balance  *b         = t->doubled;
-  const double  shift     = correct(t, x, value);
   mhb_parameter parameter = b->parameter;
-  if (!(mhb_norm(t->step, b->n) <= FAR * mhb_balance_vibration(b, t->x)) || isnan(shift))
-    return false;
+  double        shift     = 0;
+  mhb_truncation_error(t, x);
+  if (t->kind == MHB_TRUNCATION_FIRST_ORDER || !is_short(t)) shift = step_across(t, value);
+  if (isnan(shift) || !is_short(t)) return false;
   for (int i = 0; i < b->n; i++) t->x[i] += t->step[i];
   mhb_balance_set_parameter(b, t->balance->parameter);
   mhb_balance_evaluate(b, t->x, value + shift * fabs(value), t->r, NULL, NULL);

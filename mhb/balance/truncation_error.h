@@ -102,12 +102,12 @@ bool mhb_truncation_linearise(mhb_truncation *truncation);
  * INFINITY: not known (many pairs, a ring). */
 double mhb_truncation_across(mhb_truncation *truncation, double value, double *shift);
 
-/* Correct a solution x[n] by the harmonics left out, to first order. `x` of the truncation is then
- * the point of the curve of 2m harmonics that is nearest; with many pairs and in a ring that of the
- * same value. The doubled balance is evaluated there. `remaining` is the part of the error left.
- * The balance's evaluation in use is of x; with many pairs and in a ring linearised there.
- *   value    of the balance's parameter
- * false: not known, or farther than a tenth of the vibration. */
+/* Correct a solution x[n] by the harmonics left out, to first order, at the same value. Where that
+ * is farther than a tenth of the vibration, as beside a fold, the nearest point of their curve is
+ * taken. `x` of the truncation becomes the corrected solution, at which the doubled balance is
+ * evaluated. `remaining` is the part of the error left.
+ *   value    of the balance's parameter; the balance is linearised there
+ * false: not known, or farther than that. */
 bool mhb_truncation_correct(mhb_truncation *truncation, const double *x, double value);
 
 /* How much of a change of the solution, step[doubled->n], is left by the curvature of the residual:

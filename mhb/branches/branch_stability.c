@@ -35,7 +35,14 @@ static const double SECONDS_MISTUNED = 5e-7;
 /* Distances of a modulus from 1: the margin outside that counts as unstable, the accuracy of a
  * located bifurcation, and the end of the search. It is COARSE above DEAR states. A search takes
  * MOST_TRIALS multipliers at most: a test function that jumps is not followed further. */
+/* The largest modulus changes by less than SENSITIVE times the relative change of the motion, where
+ * no contact gains or loses a transition: ten times the most seen, 0.9, at 60 points of the last
+ * example in docs/theory/stability.md, "Error of the multipliers". */
 static const double SENSITIVE = 10;
+
+/* Where one appears it jumps, seen by 0.014: nearer to the circle than this the
+ * transitions are compared. */
+static const double JUMP = 0.05;
 
 static const double MARGIN = 1e-3, ON_CIRCLE = 1e-3, NEAR_ENOUGH = 1e-6, COARSE = 5e-4;
 enum { MAX_LOCATED = 32, MOST_TRIALS = 24, MOST_TRIALS_DEAR = 4 };
@@ -94,21 +101,34 @@ void mhb_branch_floquet_evaluate(mhb_floquet *floquet, const mhb_balance *b, con
   mhb_floquet_evaluate(floquet, &solution, out);
 }
 
-void mhb_branch_floquet_judge(mhb_floquet *floquet, mhb_balance *b, mhb_truncation *t, double value,
-                              const double *x, double error, mhb_multipliers *out) {
-  const mhb_balance *better = t->doubled;
-  mhb_branch_floquet_evaluate(floquet, b, x, out);
-  if (out->reason || mhb_balance_is_linear(b)) return;
-  if (mhb_floquet_distance(out) > SENSITIVE * error) {
-    mhb_floquet_set_error(SENSITIVE * error, out);
+/* Whether the contacts of both pass the same number of transitions. */
+static bool has_same_events(const mhb_balance *a, const mhb_balance *b) {
+  for (int i = 0; i < a->n_pairs; i++)
+    if (a->eval->info[i].n_transitions != b->eval->info[i].n_transitions) return false;
+  return true;
+}
+
+void mhb_branch_floquet_judge(mhb_floquet *floquet, mhb_balance *b, mhb_truncation *t,
+                              const mhb_judged_point *at, mhb_multipliers *out) {
+  const double foreseen = SENSITIVE * at->error;
+  mhb_branch_floquet_evaluate(floquet, b, at->x, out);
+  if (out->reason) return;
+  if (mhb_balance_is_linear(b) || mhb_floquet_distance(out) > fmax(foreseen, JUMP)) {
+    mhb_floquet_set_error(mhb_balance_is_linear(b) ? 0 : fmax(foreseen, JUMP), out);
     return;
   }
-  if (b->product || b->receptance->ring) mhb_balance_linearise(b, x, value, t->r, NULL);
-  if (!mhb_truncation_correct(t, x, value)) {
+  mhb_balance_linearise(b, at->x, at->value, t->r, NULL);
+  if (!mhb_truncation_correct(t, at->x, at->value)) {
     mhb_floquet_set_error(INFINITY, out);
     return;
   }
-  const mhb_solution corrected = solution_of(floquet, better, t->x);
+  const double part = mhb_norm(t->step, t->doubled->n) / mhb_balance_vibration(b, at->x);
+  const double most = SENSITIVE * part / (1 - t->remaining);
+  if (has_same_events(b, t->doubled) && mhb_floquet_distance(out) > most) {
+    mhb_floquet_set_error(most, out);
+    return;
+  }
+  const mhb_solution corrected = solution_of(floquet, t->doubled, t->x);
   mhb_floquet_judge_error(floquet, &corrected, t->remaining, out);
 }
 
@@ -187,16 +207,9 @@ static void put(const mhb_branch_stability *w, int point, const mhb_multipliers 
   mhb_branch      *branch         = branch_of(w);
   int              kept           = w->response->n_multipliers;
   branch->judged[point]           = judged[m->verdict];
-  branch->error_multiplier[point] = !m->reason && isfinite(m->error) ? m->error : -1;
+  branch->error_multiplier[point] = isfinite(m->error) ? m->error : -1;
   for (int i = 0; i < kept && !m->reason; i++)
     branch->multipliers[(size_t)point * (size_t)kept + (size_t)i] = i < m->n ? m->multiplier[i] : 0;
-}
-
-/* Multipliers of a recorded point, at which the balance was evaluated last, with their error. */
-static void judge(mhb_branch_stability *w, int point, double value, mhb_multipliers *m) {
-  mhb_truncation *t     = mhb_harmonic_levels_current(w->tracer->levels)->truncation;
-  const double    error = branch_of(w)->error_truncation[point];
-  mhb_branch_floquet_judge(w->floquet, w->balance, t, value, w->x, error, m);
 }
 
 /* Judge a point by its multipliers. false: the monitor stops the work, or publication fails. */
@@ -207,7 +220,9 @@ static bool judge_point(mhb_branch_stability *w, int point) {
   mhb_balance_use(w->balance, NULL);
   mhb_recorded_motion(branch_of(w), point, w->balance, w->x);
   mhb_balance_evaluate(w->balance, w->x, value, w->r, NULL, NULL);
-  judge(w, point, value, &m);
+  const mhb_judged_point at = {w->x, value, branch_of(w)->error_truncation[point]};
+  mhb_truncation        *t  = mhb_harmonic_levels_current(w->tracer->levels)->truncation;
+  mhb_branch_floquet_judge(w->floquet, w->balance, t, &at, &m);
   w->at[point] = stability_of(&m);
   put(w, point, &m);
   branch_of(w)->seconds[point] += shb_seconds() - started;

@@ -396,7 +396,7 @@ static void set_verdict(mhb_multipliers *out) {
 
 void mhb_floquet_evaluate(mhb_floquet *s, const mhb_solution *solution, mhb_multipliers *out) {
   double omega  = solution->omega / s->nu;
-  *out          = (mhb_multipliers){.change = -1};
+  *out          = (mhb_multipliers){.change = -1, .error = -1};
   s->refinement = 0;
   if (!mhb_transition_schedule_set(&s->schedule, solution->info)) {
     out->reason = "the contact law lost its way, or has too many transitions";

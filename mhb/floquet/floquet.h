@@ -41,7 +41,7 @@ typedef struct {
   int                   modes; /* with dynamics; fewer than the model's if max_states was reached */
   double                largest; /* modulus of the first */
   double                change;  /* of largest by the last halving of the sub-steps; -1: none */
-  double                error;   /* of largest by the harmonics left out; 0 before it is judged */
+  double                error;   /* of largest by the harmonics left out; -1 before it is judged */
   const char           *reason;  /* why there are no multipliers, else NULL */
 } mhb_multipliers;
 
