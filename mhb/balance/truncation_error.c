@@ -351,8 +351,8 @@ bool mhb_truncation_solve(mhb_truncation *t, double *change) {
   return mhb_condensation_solve(t->system, change);
 }
 
-/* change[n + 1] <- from t->x to the nearest point of the curve of 2m harmonics, to first order: the
- * motion in units of `unit`, the value in its own. Of all solutions c + a y of the linearised
+/* change[n + 1] <- from t->x to the nearest point of the curve of 2m harmonics, to first order. The
+ * motion is in units of `unit`, the value in its own. Of all solutions c + a y of the linearised
  * balance, y along the curve, the shortest is taken. false: singular, or too large. */
 static bool find_nearest(mhb_truncation *t, double value, double unit, double *change) {
   mhb_balance  *b = t->doubled;

@@ -32,18 +32,15 @@ static const double BUDGET = 0.8, SECONDS_A_CUBE = 1.5e-9, SECONDS_A_STATE = 1e-
  * blade squared takes this on top. */
 static const double SECONDS_MISTUNED = 5e-7;
 
+/* The largest modulus changes by less than SENSITIVE times the relative change of the motion while
+ * contacts keep their transitions. That is ten times the most seen, 0.9 at 60 points of a ring of
+ * 96 blades. Where a transition appears it jumps, there by 0.014. Nearer to the border than JUMP the
+ * transitions are compared. */
+static const double SENSITIVE = 10, JUMP = 0.05;
+
 /* Distances of a modulus from 1: the margin outside that counts as unstable, the accuracy of a
  * located bifurcation, and the end of the search. It is COARSE above DEAR states. A search takes
  * MOST_TRIALS multipliers at most: a test function that jumps is not followed further. */
-/* The largest modulus changes by less than SENSITIVE times the relative change of the motion, where
- * no contact gains or loses a transition: ten times the most seen, 0.9, at 60 points of the last
- * example in docs/theory/stability.md, "Error of the multipliers". */
-static const double SENSITIVE = 10;
-
-/* Where one appears it jumps, seen by 0.014: nearer to the circle than this the
- * transitions are compared. */
-static const double JUMP = 0.05;
-
 static const double MARGIN = 1e-3, ON_CIRCLE = 1e-3, NEAR_ENOUGH = 1e-6, COARSE = 5e-4;
 enum { MAX_LOCATED = 32, MOST_TRIALS = 24, MOST_TRIALS_DEAR = 4 };
 

@@ -12,8 +12,8 @@ static const double SAFETY = 0.7, DOWNWARD_MARGIN = 0.35;
 /* Factor on an estimate of first order, which can be several times too small. */
 static const double FIRST_ORDER = 3;
 
-/* Without a tolerance the curve is looked at from this error on: a hundred times the default one, by
- * far less than beside a fold. */
+/* Without a tolerance the curve is looked at from this error on: a hundred times the default
+ * tolerance. Beside a fold the error is far more. */
 static const double WITHOUT_TOLERANCE = 1e-2;
 
 /* Share of the period that is nearly all of it. */

@@ -95,8 +95,8 @@ void mhb_harmonic_levels_estimate(mhb_harmonic_levels *levels, mhb_curve_point *
 /* Look at the curve where the truncation error of a point is above the tolerance, the errors being
  * those estimated last. Beside a fold the curve with twice the harmonics may pass near by where its
  * solution at the same value is far off. There the error told is the distance of the curve: the
- * motion, or how far it is moved along the parameter. A frequency is compared with the least damping
- * ratio: no linear resonance is steeper. */
+ * motion, or how far it is moved along the parameter. A frequency is compared with the least
+ * damping ratio: no linear resonance is steeper. */
 void mhb_harmonic_levels_settle(mhb_harmonic_levels *levels, mhb_curve_point *point);
 
 /* The level that a point between two others asks for, which only the whole tolerance moves; -1: the
