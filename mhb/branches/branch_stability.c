@@ -34,8 +34,8 @@ static const double SECONDS_MISTUNED = 5e-7;
 
 /* The largest modulus changes by less than SENSITIVE times the relative change of the motion while
  * contacts keep their transitions. That is ten times the most seen, 0.9 at 60 points of a ring of
- * 96 blades. Where a transition appears it jumps, there by 0.014. Nearer to the border than JUMP the
- * transitions are compared. */
+ * 96 blades. Where a transition appears it jumps, there by 0.014. Nearer to the border than JUMP
+ * the transitions are compared. */
 static const double SENSITIVE = 10, JUMP = 0.05;
 
 /* Distances of a modulus from 1: the margin outside that counts as unstable, the accuracy of a
