@@ -38,8 +38,8 @@ shb_test(mhb/continuation UNIT arclength_scalar balance_curve closed_curve corre
 shb_test(mhb/amplification UNIT whitehead INTEGRATION ring_response LIBRARIES tests_models)
 shb_test(mhb/branches UNIT free_body branch_completion chain linear_limits main_branch peak_search
   period_doubling record tracer
-  INTEGRATION branch_stability forced_response harmonic_selection
-  lasting_motion mistuned_sweep run_up secondary_branches ring_search unfinished_curve
+  INTEGRATION branch_stability forced_response harmonic_selection lasting_motion mistuned_sweep
+  multiplier_error run_up secondary_branches ring_search unfinished_curve
   NIGHTLY verdicts LIBRARIES tests_models)
 shb_test(mhb/branches INTEGRATION stiff_disc disc_run_up PROGRAM test_mhb_branches_modal
   LIBRARIES tests_fem tests_box tests_models shb_modal shb_mesh_blade)
