@@ -72,11 +72,9 @@ static void read_limits(reading *r, const case_node *node, bool least) {
     const case_node *one = &node->child[i];
     char             why[CASE_WHY];
     study_limit      limit = {output_of(r, one, one->key), least, 0};
-    if (limit.output < 0) continue;
+    if (limit.output < 0 || one->kind == CASE_BROKEN) continue; /* told */
     const char *unit = r->outputs->output[limit.output].unit;
-    if (one->kind == CASE_BROKEN) { /* told */
-      continue;
-    } else if (one->kind != CASE_SCALAR) {
+    if (one->kind != CASE_SCALAR) {
       fault(r, one, "a limit is a number with its unit");
     } else if (!case_quantity(one->text, strcmp(unit, "-") == 0 ? "" : unit, &limit.value, why)) {
       case_issue_add(r->issues, one->line, one->column, "optimise", "%s: %s", one->key, why);

@@ -13,7 +13,7 @@ typedef enum {
   SHB_ERR_INPUT     = 2,   /* bad input: case file, mesh, contents of a data file */
   SHB_NOT_CONVERGED = 3,   /* an outcome; results are published */
   SHB_ERR_IO        = 4,   /* cannot open, read, write, rename; no memory */
-  SHB_INTERRUPTED   = 130, /* SIGINT or SIGTERM; results so far are published */
+  SHB_INTERRUPTED   = 130, /* SIGINT, SIGTERM, SIGHUP; results so far are published */
 } shb_status;
 
 enum { SHB_NO_CHARACTER = 0xFFFD }; /* Unicode's own word for it */
