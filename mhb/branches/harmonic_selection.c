@@ -315,6 +315,11 @@ int mhb_harmonic_levels_higher(const mhb_harmonic_levels *h) {
   return h->wanted > h->at ? h->wanted : -1;
 }
 
+int mhb_harmonic_levels_needed(const mhb_harmonic_levels *h) {
+  const int usual = mhb_harmonic_levels_of(h, MHB_USUAL_HARMONICS);
+  return h->wanted < usual ? h->wanted : usual;
+}
+
 void mhb_harmonic_levels_accept(mhb_harmonic_levels *h) {
   h->from_linear = h->linear;
 }

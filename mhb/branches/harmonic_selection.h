@@ -106,6 +106,11 @@ int mhb_harmonic_levels_of_event(mhb_harmonic_levels *levels, mhb_curve_point *p
 /* The level above the one in use that the last estimate asks for; -1: the one in use suffices. */
 int mhb_harmonic_levels_higher(const mhb_harmonic_levels *levels);
 
+/* The least level of another attempt at a curve that ended because the one asked for was out of
+ * reach. It is a usual one: a whole curve of more takes a hundred times as long, and those are for
+ * the points that need them. */
+int mhb_harmonic_levels_needed(const mhb_harmonic_levels *levels);
+
 /* The last estimate was that of an accepted point. */
 void mhb_harmonic_levels_accept(mhb_harmonic_levels *levels);
 
