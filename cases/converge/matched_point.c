@@ -274,12 +274,18 @@ shb_status point_matcher_record(point_matcher *matcher, mhb_response *response, 
 
 shb_status point_matcher_judge(point_matcher *matcher, int *stable) {
   mhb_multipliers multipliers;
-  mhb_floquet    *floquet = NULL;
-  SHB_TRY(mhb_branch_floquet_create(matcher->balance, &floquet));
-  mhb_branch_floquet_evaluate(floquet, matcher->balance, matcher->x, &multipliers);
-  *stable = multipliers.verdict == MHB_UNSTABLE ? 0 : multipliers.verdict == MHB_STABLE ? 1 : -1;
+  mhb_floquet    *floquet    = NULL;
+  mhb_truncation *truncation = NULL;
+  shb_status      status     = mhb_truncation_create(matcher->balance, &truncation);
+  if (status == SHB_OK) status = mhb_branch_floquet_create(matcher->balance, &floquet);
+  if (status == SHB_OK) {
+    const mhb_judged_point at = {matcher->x, matcher->omega, INFINITY};
+    mhb_branch_floquet_judge(floquet, matcher->balance, truncation, &at, &multipliers);
+    *stable = multipliers.verdict == MHB_UNSTABLE ? 0 : multipliers.verdict == MHB_STABLE ? 1 : -1;
+  }
   mhb_floquet_destroy(floquet);
-  return SHB_OK;
+  mhb_truncation_destroy(truncation);
+  return status;
 }
 
 shb_status point_matcher_peak(point_matcher *matcher, mhb_peak_near near,

@@ -542,7 +542,9 @@ static shb_status choose(const work *w, const fine_maxima *maxima, candidate *c,
   if (best >= 0 && w->asked.solution) give_solution(w, &maxima->list[best], &c[best]);
   if (best >= 0) SHB_TRY(add_asked(w, &maxima->list[best], &c[best], peak));
   if (!peak->found) SHB_TRY(describe_coarse(w, peak));
-  peak->missed = maxima->missed;
+  peak->missed  = maxima->missed;
+  peak->high[0] = maxima->high[0];
+  peak->high[1] = maxima->high[1];
   if (maxima->missed > (peak->walked ? 1 : MISSED) * peak->amplitude) peak->doubt = true;
   return SHB_OK;
 }

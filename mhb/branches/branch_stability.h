@@ -33,6 +33,19 @@ shb_status mhb_branch_floquet_create(mhb_balance *balance, mhb_floquet **floquet
 void mhb_branch_floquet_evaluate(mhb_floquet *floquet, const mhb_balance *balance, const double *x,
                                  mhb_multipliers *multipliers);
 
+/* A solution to be judged. */
+typedef struct {
+  const double *x;     /* [n] */
+  double        value; /* of the balance's parameter */
+  double        error; /* its truncation error; INFINITY: not known */
+} mhb_judged_point;
+
+/* The same with the error of the largest modulus by the harmonics left out, and a verdict that is
+ * undecided within it. One routine for branches and studies. truncation: of the balance. */
+void mhb_branch_floquet_judge(mhb_floquet *floquet, mhb_balance *balance,
+                              mhb_truncation *truncation, const mhb_judged_point *at,
+                              mhb_multipliers *multipliers);
+
 /* Bytes of that workspace (mhb_floquet_bytes). */
 double mhb_branch_floquet_bytes(int blades, int pairs, int modes, bool mistuned);
 

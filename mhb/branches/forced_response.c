@@ -175,7 +175,8 @@ static bool searching(mhb_monitor *monitor, mhb_sought what, double n0, double v
 static bool is_due(mhb_monitor *monitor, const mhb_response *own) {
   sweep          *s = (sweep *)monitor;
   preload_curves *p = preload_of(s, own);
-  return s->publisher.path && p && shb_seconds() - p->handed_at > PUBLISH_EVERY;
+  return s->publisher.path && p &&
+         shb_seconds() - p->handed_at > mhb_publisher_pause(&s->publisher, PUBLISH_EVERY);
 }
 
 /* Hand over a copy of a preload's curves, and write the file if it is old. */

@@ -60,7 +60,7 @@ static shb_status trace(main_branch *m, const mhb_segment_plan *plan, int *segme
   mhb_segment_plan next = *plan;
   next.recorded         = n_points(m);
   SHB_TRY(mhb_tracer_trace(m->tracer, &next, segment, end));
-  if (*end == MHB_END_HARMONICS) m->needed = m->tracer->levels->wanted;
+  if (*end == MHB_END_HARMONICS) m->needed = mhb_harmonic_levels_needed(m->tracer->levels);
   if (*end == MHB_END_INTERRUPTED || *end == MHB_END_HARMONICS) m->stopped = true;
   return SHB_OK;
 }

@@ -251,8 +251,9 @@ static shb_status trace_with_enough(branch_search *h, const subharmonic_problem 
     tracer->levels->least = least;
     const shb_status status =
         trace_both_ways(tracer, seed, h->response, index, shortened, none, interrupted);
-    again = tracer->host.out_of_reach && tracer->levels->wanted > least;
-    least = tracer->levels->wanted;
+    const int needed = mhb_harmonic_levels_needed(tracer->levels);
+    again            = tracer->host.out_of_reach && needed > least;
+    least            = needed;
     mhb_tracer_destroy(tracer);
     SHB_TRY(status);
   }

@@ -82,14 +82,15 @@ static shb_status estimate(mhb_segment_host *host, mhb_curve_point *point, bool 
   if (higher < 0) return SHB_OK;
   SHB_TRY(mhb_harmonic_levels_move(t->levels, higher, is_start, raised));
   use_level(t);
-  if (!*raised) mhb_harmonic_levels_miss(t->levels, point);
+  if (!*raised) mhb_harmonic_levels_settle(t->levels, point);
   host->out_of_reach = !*raised && !t->accepts_all && !mhb_harmonic_levels_all_usual(t->levels) &&
-                       !(point->miss <= t->levels->settings->motion_tolerance);
+                       !(point->truncation <= t->levels->settings->motion_tolerance);
   return *raised && is_start && t->returns_to_start ? note_start(t) : SHB_OK;
 }
 
 static void estimate_event(mhb_segment_host *host, mhb_curve_point *point) {
   mhb_harmonic_levels_errors(of(host)->levels, point);
+  mhb_harmonic_levels_settle(of(host)->levels, point);
 }
 
 static shb_status estimate_between(mhb_segment_host *host, mhb_curve_point *point, bool *raised) {
@@ -349,7 +350,6 @@ static void pass_current(mhb_trace_state *s, mhb_arclength *curve) {
   mhb_trace_state_whole(s, &p->iterations);
   mhb_trace_state_numbers(s, &p->residual, 1);
   mhb_trace_state_numbers(s, &p->truncation, 1);
-  mhb_trace_state_numbers(s, &p->miss, 1);
   mhb_trace_state_numbers(s, &p->truncation_max, 1);
   mhb_trace_state_numbers(s, &p->modal, 1);
   mhb_trace_state_whole(s, &p->truncation_kind);

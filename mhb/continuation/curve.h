@@ -21,8 +21,7 @@ typedef struct {
   int             iterations;  /* corrections that led here */
   bool            near;        /* x is near that of the last evaluation, which may help the next */
   double          residual;    /* |r|/|x| */
-  double          truncation;  /* relative error of the harmonics left out */
-  double          miss;        /* the same, beside a fold the distance to the curve itself */
+  double          truncation;  /* relative error of the harmonics left out, of the kind below */
   double          truncation_max;  /* the largest within the period, over the same amplitude */
   double          modal;           /* relative error of the modes left out */
   int             truncation_kind; /* mhb_truncation_kind */

@@ -13,7 +13,7 @@
 enum { MAX_STAGES = 200, STAGES_A_PAIR = 10 };
 
 /* Linearisations after which a search is given up. The hardest of the tests, 20 pairs with stiff
- * contact, takes 3018; one pair of rigid friction with 31 to 63 harmonics 20 to 2800. */
+ * contact, takes 3018; one pair of rigid friction with 31 to 63 harmonics 20 to 370. */
 enum { MOST_LINEARISED = 4000, LINEARISED_A_PAIR = 800 };
 
 /* Steps of a released balance, the shortest that is tried first, and the length below which they

@@ -360,6 +360,7 @@ shb_status mhb_stuck_frequencies(const modal_model *model, const mhb_settings *s
   mhb_balance *balance = NULL;
   stuck_modes  w       = {0};
   one.engine_order     = diameter;
+  one.turns_right      = false;
   one.harmonics = one.subharmonics = 1;
   one.motion_tolerance             = 0;
   one.run_up                       = NULL;

@@ -52,6 +52,7 @@ struct mhb_floquet {
   double          statical;   /* rad/s, the lowest mode without dynamics; INFINITY: all have */
   int            *state;      /* [pair] */
   double complex *multiplier; /* [states] */
+  double complex *kept;       /* [states] while those of another solution are computed */
   shb_arena       arena;      /* of coarse too, which changes places with the monodromy's M */
 };
 
@@ -141,6 +142,7 @@ static shb_status fill(mhb_floquet *s, const mhb_receptance *receptance,
   s->nu         = settings->subharmonics;
   s->state      = shb_arena_take(&s->arena, (size_t)s->schedule.orbits, sizeof(int));
   s->multiplier = shb_arena_take(&s->arena, (size_t)all, sizeof(double complex));
+  s->kept       = shb_arena_take(&s->arena, (size_t)all, sizeof(double complex));
   return SHB_OK;
 }
 
@@ -375,8 +377,12 @@ static void count_left_out(const mhb_floquet *s, const mhb_solution *solution,
   }
 }
 
+static double margin_of(const mhb_multipliers *m) {
+  return 1 + fmax(MARGIN, m->change);
+}
+
 static void set_verdict(mhb_multipliers *out) {
-  double margin = 1 + fmax(MARGIN, out->change);
+  const double margin = margin_of(out);
   for (int i = 0; i < out->n; i++) out->n_unstable += cabs(out->multiplier[i]) > margin;
   if (out->reason) {
     out->verdict = MHB_UNDECIDED;
@@ -389,7 +395,7 @@ static void set_verdict(mhb_multipliers *out) {
 
 void mhb_floquet_evaluate(mhb_floquet *s, const mhb_solution *solution, mhb_multipliers *out) {
   double omega  = solution->omega / s->nu;
-  *out          = (mhb_multipliers){.change = -1};
+  *out          = (mhb_multipliers){.change = -1, .error = -1};
   s->refinement = 0;
   if (!mhb_transition_schedule_set(&s->schedule, solution->info)) {
     out->reason = "the contact law lost its way, or has too many transitions";
@@ -401,7 +407,28 @@ void mhb_floquet_evaluate(mhb_floquet *s, const mhb_solution *solution, mhb_mult
   if (!out->reason) count_left_out(s, solution, out);
   set_verdict(out);
   for (int i = 0; out->verdict == MHB_UNSTABLE && i < s->bloch.n_aligned; i++)
-    out->n_fold += s->bloch.aligned[i] > 1 + fmax(MARGIN, out->change);
+    out->n_fold += s->bloch.aligned[i] > margin_of(out);
+}
+
+double mhb_floquet_distance(const mhb_multipliers *m) {
+  return fabs(m->largest - margin_of(m));
+}
+
+void mhb_floquet_set_error(double error, mhb_multipliers *m) {
+  m->error = error;
+  if (!(error < mhb_floquet_distance(m))) m->verdict = MHB_UNDECIDED;
+}
+
+void mhb_floquet_judge_error(mhb_floquet *s, const mhb_solution *better, double remaining,
+                             mhb_multipliers *m) {
+  double complex *own = s->multiplier;
+  mhb_multipliers of_better;
+  s->multiplier = s->kept;
+  mhb_floquet_evaluate(s, better, &of_better);
+  s->kept             = s->multiplier;
+  s->multiplier       = own;
+  const double change = of_better.reason ? INFINITY : fabs(of_better.largest - m->largest);
+  mhb_floquet_set_error(change / (1 - remaining), m);
 }
 
 int mhb_floquet_refinement(const mhb_floquet *s) {

@@ -55,8 +55,10 @@ static int orbit_of(const mhb_orbit_contacts *d, int contact) {
 
 /* ---- the periodic motion ---- */
 
-static double complex harmonic(const double *a, int k) {
-  return k ? CMPLX(a[2 * k - 1], a[2 * k]) : a[0];
+/* Harmonic k of row r of the solution's x or p. */
+static double complex harmonic(const mhb_orbit_contacts *d, const double *x, int r, int k) {
+  const double *a = x + (size_t)r * (size_t)mhb_real_size(d->solution->m);
+  return k > d->solution->m ? 0 : k ? CMPLX(a[2 * k - 1], a[2 * k]) : a[0];
 }
 
 /* Harmonic k of a wave in blade `blade`, by that of blade 0: it lags by k b 2 pi E/N. */
@@ -71,7 +73,7 @@ static double complex flexibility_motion(const mhb_orbit_contacts *d, int k, int
   const int                  n = 3 * s->contacts, given = 3 * d->schedule->orbits;
   double complex             sum = 0;
   for (int c = 0; c < n; c++) {
-    double complex pk = harmonic(d->solution->p + (size_t)(c % given) * (size_t)d->nb, k);
+    double complex pk = harmonic(d, d->solution->p, c % given, k);
     if (c >= given) pk *= lag(d, k, c / given); /* equal blades: p is that of blade 0 */
     sum += s->flexibility[(size_t)r * (size_t)n + (size_t)c] * pk;
   }
@@ -90,7 +92,7 @@ static void put_harmonic(const mhb_orbit_contacts *d, int k, int r, double compl
 static void set_modal_motion(mhb_orbit_contacts *d) {
   for (int r = 0; r < 3 * d->schedule->orbits; r++)
     for (int k = 0; k <= d->m; k++) {
-      double complex u = harmonic(d->solution->x + (size_t)r * (size_t)d->nb, k);
+      double complex u = harmonic(d, d->solution->x, r, k);
       put_harmonic(d, k, r, u, d->own);
       if (d->structure->flexibility) u += flexibility_motion(d, k, r);
       put_harmonic(d, k, r, u, d->motion);

@@ -22,6 +22,7 @@ typedef struct {
   const mhb_contact_info *info;  /* [pair] of mhb_contact_force at x */
   const double           *x;     /* [pair][3][2m+1] relative motion, real form (fourier.h), m */
   const double           *p;     /* [pair][3][2m+1] force, N; used with residual flexibility only */
+  int                     m;     /* harmonics of both, at most the workspace's */
 } mhb_solution;
 
 typedef struct {

@@ -9,8 +9,10 @@
 #include "mhb/integration/integration_memory.h"
 #include "mhb/integration/spectrum.h"
 #include "mhb/integration/steady_state.h"
+#include "mhb/mistuning/mistuned_ring.h"
 #include "mhb/problem/interfaces.h"
 #include "mhb/problem/parameter.h"
+#include "mhb/problem/wave.h"
 #include "mhb/response/describe.h"
 #include "mhb/response/publisher.h"
 
@@ -70,11 +72,9 @@ static sweep_point *add_point(sweep *s, int branch, double n0, double hz) {
 
 /* Turn of a wave over n sectors, where the model has more of them than the balance. */
 static double complex lag(const mhb_response *balance, long n) {
-  const mhb_settings of   = {.engine_order = balance->engine_order,
-                             .blades       = balance->blades,
-                             .subharmonics = balance->subharmonics};
-  const long         wave = (of.engine_order + of.blades * mhb_wave_shift(&of)) / of.subharmonics;
-  return n ? cexp(-I * SHB_TWO_PI * (double)(n * wave % of.blades) / of.blades) : 1;
+  const long wave = mhb_driven_wave_number(mhb_driven_wave_of(
+      balance->engine_order, balance->turns_right, balance->blades, balance->subharmonics));
+  return n ? cexp(-I * SHB_TWO_PI * (double)(n * wave % balance->blades) / balance->blades) : 1;
 }
 
 /* A point that starts between points p and p + 1 of a branch of the balance, unless both are
@@ -273,16 +273,20 @@ static void record_preloads(const sweep *s, int n, mhb_branch *b, int at, double
     b->interface_n0[at * n + i] = mhb_interface_operating_point(&c, s->settings, i).n0;
 }
 
-/* Some pair stuck throughout although it can slip: its mean friction is that of the start. */
+/* The mean friction of a pair that sticks all the time is that of the start. */
 static bool has_undetermined_friction(const sweep *s, const mhb_response *response,
                                       const sweep_point *c) {
-  const mhb_operating_point lead = mhb_operating_point_of(s->settings);
-  for (int a = 0; a < response->n_pairs; a++) {
+  const mhb_operating_point lead       = mhb_operating_point_of(s->settings);
+  const int                 n          = response->n_pairs;
+  const int                 on_contact = s->settings->ring ? s->settings->ring->n_pairs : n;
+  bool                      free_mean[n + 1];
+  for (int a = 0; a < n; a++) {
     const int                 i   = response->interface ? response->interface[a] : 0;
     const mhb_operating_point own = mhb_interface_operating_point(&lead, s->settings, i);
-    if (own.mu > 0 && (own.ku[0] > 0 || own.ku[2] > 0) && c->state[3 * a] == 1) return true;
+    free_mean[a] =
+        own.mu > 0 && (own.ku[0] > 0 || own.ku[2] > 0) && c->state[3 * a + MHB_STICK] == 1;
   }
-  return false;
+  return mhb_friction_loads_others(n, on_contact, free_mean, c->state);
 }
 
 static void record_point(const sweep *s, mhb_response *response, const sweep_point *c) {

@@ -317,7 +317,8 @@ static shb_status read_field(hid_t group, const mhb_response *response, mhb_bran
   if (mhb_field_is_later(f) && !h5_exists(group, f->name)) {
     void *none = shb_alloc_zeroed(h5_count(shape), mhb_field_bytes(f->kind));
     mhb_field_set(branch, f, none);
-    const bool told = none == branch->error_spatial || none == branch->error_truncation_max;
+    const bool told = none == branch->error_spatial || none == branch->error_truncation_max ||
+                      none == branch->error_multiplier;
     for (int i = 0; told && i < branch->n_points; i++) ((double *)none)[i] = -1;
     return SHB_OK;
   }

@@ -6,6 +6,7 @@
 #include "mesh/base/memory.h"
 #include "mhb/mistuning/mistuned_ring.h"
 #include "mhb/problem/interfaces.h"
+#include "mhb/problem/wave.h"
 #include "modal/model/nodal_diameters.h"
 
 /* Interfaces in the order of the case. */
@@ -26,8 +27,8 @@ static const modal_model *shown(const modal_model *model, const mhb_settings *se
   modal_wave wave;
   int        missing;
   if (settings->nodal_diameters &&
-      modal_nodal_diameters_wave(settings->nodal_diameters, settings->engine_order, &wave,
-                                 &missing))
+      modal_nodal_diameters_wave(settings->nodal_diameters, mhb_settings_wave(settings).order,
+                                 &wave, &missing))
     return wave.model;
   return model;
 }
@@ -42,6 +43,7 @@ shb_status mhb_response_describe(mhb_response *response, const modal_model *mode
   response->output_harmonic = settings->output_harmonic;
   response->quantity        = settings->output_quantity;
   response->engine_order    = settings->engine_order;
+  response->turns_right     = settings->turns_right;
   response->blades          = settings->blades;
   response->run_up          = settings->run_up != NULL;
   response->lacks_diameters =

@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "mesh/base/memory.h"
+#include "mhb/contact/law.h"
 #include "mhb/numerics/extent.h"
 #include "mhb/response/face_wear.h"
 #include "mhb/response/response_fields.h"
@@ -365,6 +366,23 @@ mhb_unfinished *mhb_unfinished_copy(const mhb_response *segments, int n,
   u->state          = shb_alloc_zeroed((size_t)n, sizeof *u->state);
   for (int i = 0; i < n; i++) copy_segment(u, segments, i, &state[i]);
   return u;
+}
+
+bool mhb_friction_loads_others(int n_pairs, int on_contact, const bool *free_mean,
+                               const double *share) {
+  bool sticks = false, moves = false, shares = false;
+  for (int first = 0; first < n_pairs; first += on_contact) {
+    int touch = 0, stuck = 0;
+    for (int a = first; a < first + on_contact; a++) {
+      const double *of = share + 3 * a;
+      touch += of[MHB_SEPARATE] < 1;
+      stuck += free_mean[a];
+      moves = moves || (of[MHB_SEPARATE] < 1 && of[MHB_STICK] < 1);
+    }
+    sticks = sticks || stuck > 0;
+    shares = shares || (stuck > 0 && touch > 1);
+  }
+  return shares || (sticks && moves);
 }
 
 bool mhb_branch_marked(const mhb_branch *branch, int point) {

@@ -92,6 +92,15 @@ typedef struct {
 
 mhb_marks mhb_response_marks(const mhb_response *response);
 
+/* Whether a mean friction that nothing determines loads others: a pair that moves, or pairs that
+ * touch on the same contact. Alone on its contact, with all others stuck or open, it changes no
+ * motion. The rule of MHB_TRACTION_UNDETERMINED.
+ *   on_contact  in  pairs of one contact, n_pairs is a multiple
+ *   free_mean   in  [n_pairs] the pair sticks all the time although it can slip
+ *   share       in  [n_pairs][3] of the period: stuck, slipping, open */
+bool mhb_friction_loads_others(int n_pairs, int on_contact, const bool *free_mean,
+                               const double *share);
+
 /* Whether the error of a point is above the tolerance: it is no result. */
 bool mhb_branch_marked(const mhb_branch *branch, int point);
 

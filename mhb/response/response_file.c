@@ -145,6 +145,7 @@ static shb_status write_root(hid_t file, const mhb_response *response) {
   SHB_TRY(h5_write_attribute_int(file, "/", "branches", response->n_branches));
   SHB_TRY(h5_write_attribute_int(file, "/", "engine_order", response->engine_order));
   SHB_TRY(h5_write_attribute_int(file, "/", "blades", response->blades));
+  if (response->turns_right) SHB_TRY(h5_write_attribute_text(file, "/", "rotor_turns", "right"));
   SHB_TRY(h5_write_attribute_int(file, "/", "subharmonics", response->subharmonics));
   if (response->run_up) SHB_TRY(h5_write_attribute_int(file, "/", "run_up", 1));
   if (response->ring) {
@@ -263,6 +264,17 @@ static shb_status read_interfaces(hid_t file, const char *path, mhb_response *re
   return SHB_OK;
 }
 
+/* Files say nothing of a rotor that turns to the left. */
+static shb_status read_turning(hid_t file, const char *path, mhb_response *response) {
+  char *side = NULL;
+  SHB_TRY(h5_read_attribute_text(file, "/", "rotor_turns", &side));
+  response->turns_right = side && strcmp(side, "right") == 0;
+  const bool known      = !side || response->turns_right || strcmp(side, "left") == 0;
+  free(side);
+  SHB_CHECK(known, SHB_ERR_INPUT, "%s: rotor_turns must be left or right", path);
+  return SHB_OK;
+}
+
 /* Sizes, probe names and root attributes. */
 static shb_status read_root(hid_t file, const char *path, mhb_response **out) {
   int    n_pairs = 0, n_harmonics = 0, n_probes = 0;
@@ -274,6 +286,7 @@ static shb_status read_root(hid_t file, const char *path, mhb_response **out) {
   free(name);
   SHB_TRY(h5_read_attribute_int(file, "/", "engine_order", 0, &response->engine_order));
   SHB_TRY(h5_read_attribute_int(file, "/", "blades", 0, &response->blades));
+  SHB_TRY(read_turning(file, path, response));
   SHB_TRY(h5_read_attribute_int(file, "/", "subharmonics", 1, &response->subharmonics));
   SHB_TRY(h5_read_attribute_int(file, "/", "ring", 0, &response->ring));
   SHB_CHECK(

@@ -6,7 +6,7 @@
 #include <stddef.h>
 
 /* Changes with the meaning of the numbers. States of another version are not used. */
-enum { MHB_TRACE_STATE_VERSION = 4 };
+enum { MHB_TRACE_STATE_VERSION = 5 };
 
 /* A list of numbers that is written or read from its front to its back. One function that passes
  * all numbers of an object, each by its address, then does both. */

@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include "mesh/base/constants.h"
+#include "mhb/problem/wave.h"
 #include "mhb/ring/side_waves.h"
 
 enum {
@@ -117,7 +118,7 @@ static void leave_wave(const mhb_ring_model *m, double *y) {
   for (int i = 0; i < n * MHB_START_LINES; i++) {
     const int    b = i % m->blades, axis = i / m->blades % 3, at = i % n / (3 * m->blades);
     const double phase = SHB_TWO_PI * (at + 1) / MHB_SIDE_SAMPLES -
-                         SHB_TWO_PI * m->settings.engine_order * b / m->blades;
+                         SHB_TWO_PI * mhb_settings_wave(&m->settings).order * b / m->blades;
     y[i] += (axis ? 0 : size * cos(phase)) - mean[i % n];
   }
 }
@@ -134,8 +135,8 @@ static void find_side_wave(const mhb_ring_model *m, const mhb_start *s, mhb_last
   memcpy(y, x + (size_t)now * part, sizeof *y * (size - (size_t)now * part));
   memcpy(y + size - (size_t)now * part, x, sizeof *y * (size_t)now * part);
   if (m->ring) leave_wave(m, y);
-  mhb_side_waves_find(y, periods, m->blades, m->settings.to_ground ? 0 : m->settings.engine_order,
-                      &found);
+  mhb_side_waves_find(y, periods, m->blades,
+                      m->settings.to_ground ? 0 : mhb_settings_wave(&m->settings).order, &found);
   shb_arena_free(&arena);
   result->diameter = found.wave[0].diameter;
   result->offset   = found.wave[0].offset;

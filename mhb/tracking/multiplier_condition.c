@@ -80,7 +80,7 @@ void mhb_multiplier_condition_destroy(mhb_multiplier_condition *c) {
 /* The solution that an evaluation is of. */
 static mhb_solution solution_of(mhb_multiplier_condition *c, mhb_evaluation *e, const double *x) {
   mhb_balance_use(c->balance, e);
-  return (mhb_solution){e->at.omega, c->balance->law, e->info, x, e->p};
+  return (mhb_solution){e->at.omega, c->balance->law, e->info, x, e->p, c->balance->m};
 }
 
 /* The contacts at a solution z, q; its residual is of no interest. */

@@ -30,7 +30,7 @@ void periodic_create(const modal_model *model, const mhb_settings *settings, dou
   }
   mhb_balance_evaluate(b, p->x, omega, newton->r, NULL, NULL);
   mhb_newton_destroy(newton);
-  p->solution = (mhb_solution){omega, b->law, b->eval->info, p->x, b->eval->p};
+  p->solution = (mhb_solution){omega, b->law, b->eval->info, p->x, b->eval->p, b->m};
 }
 
 void periodic_destroy(periodic *p) {

@@ -98,7 +98,7 @@ static void a_point_is_marked_for_what_it_is_not_worth(void **state) {
     fixture f;
     set_up(&f, MHB_IN_FREQUENCY, 1.3, H);
     f.settings.motion_tolerance = rows[i].tolerance;
-    f.point.truncation = f.point.miss = rows[i].truncation;
+    f.point.truncation          = rows[i].truncation;
     for (int a = 0; a < PAIRS; a++) {
       f.balance->law[a].mu                  = rows[i].mu;
       f.balance->eval->info[a].undetermined = rows[i].sticks && a == 1;
@@ -137,22 +137,6 @@ static void a_stuck_pair_that_loads_no_other_is_not_marked(void **state) {
     assert_int_equal(f.response->branch[0].mark[0], rows[i].mark);
     tear_down(&f);
   }
-}
-
-/* Beside a fold the distance of the curve counts, and the estimate is told as it is. */
-static void beside_a_fold_the_distance_counts(void **state) {
-  (void)state;
-  fixture f;
-  set_up(&f, MHB_IN_FREQUENCY, 1.3, H);
-  f.settings.motion_tolerance = 1e-3;
-  f.point.truncation          = 5e-2;
-  for (int i = 0; i < 2; i++) {
-    f.point.miss = i ? 5e-3 : 5e-4;
-    mhb_record(f.response, 0, f.balance, &f.point, MHB_FOLD, 0);
-    assert_true(f.response->branch[0].error_truncation[i] == 5e-2);
-    assert_int_equal(f.response->branch[0].mark[i] & MHB_ABOVE_TOLERANCE, i);
-  }
-  tear_down(&f);
 }
 
 static void another_parameter_has_its_own_value(void **state) {
@@ -279,7 +263,6 @@ int main(void) {
       cmocka_unit_test(a_point_is_marked_for_what_it_is_not_worth),
       cmocka_unit_test(a_stuck_pair_that_loads_no_other_is_not_marked),
       cmocka_unit_test(curves_are_marked_where_a_stuck_pair_loads_others),
-      cmocka_unit_test(beside_a_fold_the_distance_counts),
       cmocka_unit_test(another_parameter_has_its_own_value),
       cmocka_unit_test(signals_are_those_of_the_balance),
       cmocka_unit_test(motions_come_back),
