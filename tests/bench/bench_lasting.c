@@ -147,7 +147,7 @@ static shb_status other_starts(const modal_model *model, const mhb_settings *s,
   SHB_TRY(mhb_ring_model_create(model, s, wave->n0, wave->omega, &m));
   mhb_ring_steps(m, wave->omega, STEPS[1]);
   mhb_starts_create(m, &starts);
-  double *peaks = shb_alloc((size_t)(BLOCK * BLOCKS * m->blades), sizeof *peaks);
+  double *peaks = shb_alloc((size_t)BLOCK * BLOCKS * (size_t)m->blades, sizeof *peaks);
   for (int i = -1; i < OTHERS; i++) {
     mhb_start_begin(&starts, 0);
     mhb_ring_start(&starts.ring, wave->n_harmonics, wave->force);
