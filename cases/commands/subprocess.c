@@ -32,11 +32,15 @@ char *subprocess_program(const char *name) {
   return strdup(name);
 }
 
+/* A blocked signal is delivered though it is ignored, as SIGHUP is by nohup: it is not blocked. */
 static sigset_t waited_signals(void) {
-  sigset_t set;
+  struct sigaction hangup;
+  sigset_t         set;
   sigemptyset(&set);
   sigaddset(&set, SIGINT);
   sigaddset(&set, SIGTERM);
+  if (sigaction(SIGHUP, NULL, &hangup) == 0 && hangup.sa_handler != SIG_IGN)
+    sigaddset(&set, SIGHUP);
   sigaddset(&set, SIGCHLD);
   return set;
 }
@@ -60,7 +64,7 @@ static int spawn(char *const argv[], const sigset_t *mask, int out, int err, pid
   return why;
 }
 
-/* Waits for the child and passes signals on. A SIGINT from the terminal reaches the whole
+/* Waits for the child and passes signals on. SIGINT and SIGHUP of the terminal reach the whole
  * foreground process group, the child included. */
 static bool wait_for(pid_t child, const sigset_t *signals, int *status, struct rusage *usage) {
   bool  interrupted = false;
@@ -68,7 +72,7 @@ static bool wait_for(pid_t child, const sigset_t *signals, int *status, struct r
   while ((ended = wait4(child, status, WNOHANG, usage)) == 0) {
     siginfo_t info;
     int       number = sigwaitinfo(signals, &info);
-    if (number != SIGINT && number != SIGTERM) continue;
+    if (number != SIGINT && number != SIGTERM && number != SIGHUP) continue;
     interrupted = true;
     if (info.si_code != SI_KERNEL) kill(child, number);
   }

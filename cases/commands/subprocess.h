@@ -16,8 +16,8 @@ typedef struct {
 /* Path of a program beside this one, else its bare name, for which PATH is searched; malloc'ed. */
 char *subprocess_program(const char *name);
 
-/* Run argv to its end; argv[0] is from subprocess_program. SIGINT and SIGTERM are passed on to the
- * child. It then publishes its finished results, and the code of the result is 130.
+/* Run argv to its end; argv[0] is from subprocess_program. SIGINT, SIGTERM and SIGHUP are passed on
+ * to the child. It then publishes its finished results, and the code of the result is 130.
  *
  * Errors: SHB_ERR_IO if the child cannot be started, or was killed by a signal. */
 shb_status subprocess_run(char *const argv[], subprocess_result *result);

@@ -70,8 +70,8 @@ shb_status mhb_families_over_diameters(const modal_model *model, const mhb_setti
 /* ---------------------------------------------------------------- over the speed */
 
 /* The models of a disc at one speed; only the lists are its own. */
-static shb_status at_speed(const modal_sector_speeds *all, int speed, modal_nodal_diameters *out) {
-  SHB_TRY(modal_nodal_diameters_create(all->blades, all->n, out));
+static void at_speed(const modal_sector_speeds *all, int speed, modal_nodal_diameters *out) {
+  modal_nodal_diameters_create(all->blades, all->n, out);
   for (int i = 0; i < all->n; i++) {
     const modal_speeds *at = &all->at[i];
     out->diameter[i]       = all->diameter[i];
@@ -80,7 +80,6 @@ static shb_status at_speed(const modal_sector_speeds *all, int speed, modal_noda
     out->imaginary[i] = at->imaginary[speed];
     out->backward[i]  = at->backward[speed];
   }
-  return SHB_OK;
 }
 
 static void release(modal_nodal_diameters *d) {
@@ -124,8 +123,9 @@ static shb_status disc_at_speed(const modal_sector_speeds *all, int speed,
                                 const mhb_settings *settings, mhb_diagrams *d) {
   modal_nodal_diameters models = {0};
   mhb_settings          here   = *settings;
-  shb_status            status = at_speed(all, speed, &models);
-  here.nodal_diameters         = &models;
+  shb_status            status = SHB_OK;
+  at_speed(all, speed, &models);
+  here.nodal_diameters = &models;
   for (int w = 0; w < d->n_waves && status == SHB_OK; w++)
     status = mhb_stuck_frequencies(&all->at[0].model[speed], &here, d->wave[w], d->n_stuck,
                                    d->over + (w * d->n_speeds + speed) * d->n_stuck);
