@@ -5,6 +5,7 @@
 #include "mesh/base/constants.h"
 #include "mesh/base/memory.h"
 #include "mhb/continuation/linear_resonances.h"
+#include "mhb/problem/wave.h"
 #include "mhb/structure/gyroscopic.h"
 #include "modal/model/nodal_diameters.h"
 #include "modal/model/sector_speeds.h"
@@ -21,8 +22,13 @@ static const modal_model *model_at(const modal_model *model, const mhb_settings 
   return at < 0 ? NULL : &disc->model[at];
 }
 
+/* The wave in which an excitation of engine order n meets the rotor. */
+static int driven_by(const mhb_settings *settings, int n) {
+  return mhb_driven_wave_of(n, settings->turns_right, settings->blades, 1).order;
+}
+
 /* Frequencies of the open families at a nodal diameter, Hz. With Coriolis terms they are those of
- * the wave that runs to the right, as an excitation of that order does. */
+ * the wave that an excitation of that order drives. */
 static shb_status find_open(const modal_model *own, const mhb_settings *settings, int diameter,
                             int n, double *open) {
   modal_wave     wave;
@@ -31,7 +37,8 @@ static shb_status find_open(const modal_model *own, const mhb_settings *settings
   for (int i = 0; i < n; i++) open[i] = own->frequency[i];
   if (!own->coriolis) return SHB_OK;
   if (!settings->nodal_diameters ||
-      !modal_nodal_diameters_wave(settings->nodal_diameters, diameter, &wave, &missing))
+      !modal_nodal_diameters_wave(settings->nodal_diameters, driven_by(settings, diameter), &wave,
+                                  &missing))
     wave = modal_wave_real(own);
   SHB_TRY(mhb_gyroscopic_of_wave(&wave, &g));
   for (int i = 0; i < n; i++) open[i] = g.omega[g.n + i] / SHB_TWO_PI;
@@ -62,7 +69,7 @@ shb_status mhb_families_over_diameters(const modal_model *model, const mhb_setti
     if (!own) continue;
     d->diameter[d->n_diameters++] = i;
     SHB_TRY(find_open(own, settings, i, n, d->open + at));
-    SHB_TRY(mhb_stuck_frequencies(own, settings, i, n, d->stuck + at));
+    SHB_TRY(mhb_stuck_frequencies(own, settings, driven_by(settings, i), n, d->stuck + at));
   }
   return SHB_OK;
 }
@@ -113,8 +120,8 @@ static shb_status over_speeds(const modal_speeds *s, const mhb_settings *setting
     d->wave[0] = modal_nodal_diameter(settings->engine_order, settings->blades);
   here.nodal_diameters = NULL;
   for (int i = 0; i < s->n; i++)
-    SHB_TRY(mhb_stuck_frequencies(&s->model[i], &here, settings->engine_order, d->n_stuck,
-                                  d->over + i * d->n_stuck));
+    SHB_TRY(mhb_stuck_frequencies(&s->model[i], &here, driven_by(settings, settings->engine_order),
+                                  d->n_stuck, d->over + i * d->n_stuck));
   return SHB_OK;
 }
 
@@ -127,8 +134,8 @@ static shb_status disc_at_speed(const modal_sector_speeds *all, int speed,
   at_speed(all, speed, &models);
   here.nodal_diameters = &models;
   for (int w = 0; w < d->n_waves && status == SHB_OK; w++)
-    status = mhb_stuck_frequencies(&all->at[0].model[speed], &here, d->wave[w], d->n_stuck,
-                                   d->over + (w * d->n_speeds + speed) * d->n_stuck);
+    status = mhb_stuck_frequencies(&all->at[0].model[speed], &here, driven_by(settings, d->wave[w]),
+                                   d->n_stuck, d->over + (w * d->n_speeds + speed) * d->n_stuck);
   release(&models);
   return status;
 }
