@@ -1,13 +1,13 @@
-/* shroudhb-integrate: points of a case by direct time integration. Starts no MPI. */
+/* shroudhb integrate: points of a case by direct time integration. */
 #include <cblas.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <unistd.h>
 
-#include "cases/commands/command.h"
 #include "cases/commands/load_model.h"
 #include "cases/commands/stage.h"
+#include "cases/commands/stages.h"
 #include "cases/commands/up_to_date.h"
 #include "cases/schema/case.h"
 #include "cases/schema/case_paths.h"
@@ -17,17 +17,6 @@
 #include "mhb/integration/integration_sweep.h"
 #include "mhb/mistuning/dense_ring.h"
 #include "mhb/structure/dense_disc.h"
-
-static const char usage[] =
-    "usage: shroudhb-integrate [--quiet] [--verbose] [--force] [--set KEY=VALUE]... [--into "
-    "FOLDER] CASE.yaml\n"
-    "\n"
-    "Integrates CASE.yaml in time, at the frequencies of its block integrate and every preload, "
-    "until\n"
-    "the motion repeats itself, and writes NAME.integration.h5, whose points shroudhb post draws "
-    "as\n"
-    "dots on the curves of NAME.response.h5. Does nothing if that file is up to date (unless "
-    "--force).\n";
 
 /* The keys of the stage and the file of its initial states, as text; malloc'ed. */
 static shb_status settings_of(const case_file *file, const char *modal, const char *balance,
@@ -197,16 +186,13 @@ static shb_status run(const case_file *file, const command_options *options) {
   return status;
 }
 
-int main(int argc, char **argv) {
-  command_options options;
-  int             code = command_parse(argc, argv, usage, &options);
-  if (code >= 0) return code;
+int integrate_command(const command_options *options) {
   case_file  file;
-  shb_status status = command_read(&options, CASE_MHB | CASE_INTEGRATE, &file);
+  shb_status status = command_read(options, CASE_MHB | CASE_INTEGRATE, &file);
   if (status != SHB_OK) return command_finish(status);
   shb_interrupt_catch();
   openblas_set_num_threads(1); /* the points run in parallel, so BLAS uses one thread */
-  status = run(&file, &options);
+  status = run(&file, options);
   case_free(&file);
   return command_finish(status);
 }

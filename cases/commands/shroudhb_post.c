@@ -1,5 +1,4 @@
-/* shroudhb-post: the report of a case from its response file, or the contents of an HDF5 file. No
- * MPI. */
+/* shroudhb post, shroudhb inspect: the report of a case, the contents of an HDF5 file. */
 #include <cblas.h>
 #include <math.h>
 #include <stdio.h>
@@ -7,13 +6,14 @@
 #include <string.h>
 #include <unistd.h>
 
-#include "cases/commands/command.h"
 #include "cases/commands/fatigue_lines.h"
+#include "cases/commands/stages.h"
 #include "cases/commands/up_to_date.h"
 #include "cases/schema/case.h"
 #include "cases/schema/case_paths.h"
 #include "cases/schema/converge_settings.h"
 #include "mesh/base/progress.h"
+#include "mesh/process/report.h"
 #include "postproc/comparison/comparison_page.h"
 #include "postproc/comparison/comparison_text.h"
 #include "postproc/field/contact_section.h"
@@ -29,36 +29,6 @@
 #include "postproc/summary/mode_summary.h"
 #include "postproc/summary/summary.h"
 #include "postproc/summary/table_json.h"
-
-static const char usage[] =
-    "usage: shroudhb-post [--quiet] [--verbose] [--json] [--no-report] [--set KEY=VALUE]...\n"
-    "                     [--into FOLDER] CASE.yaml\n"
-    "       shroudhb-post --summary | --modes | --check | --facts CASE.yaml\n"
-    "       shroudhb-post [--quiet] [--json] CASE.yaml OTHER.yaml\n"
-    "       shroudhb-post [--quiet] [--verbose] NAME.study.h5\n"
-    "       shroudhb-post --inspect [--verbose] FILE.h5 [OTHER.h5]\n"
-    "       shroudhb-post --inspect [--csv | --json] FILE.h5 PATH[SELECTION]\n"
-    "\n"
-    "Makes NAME.html (report), NAME.csv (every point) and NAME.svg (picture) from "
-    "NAME.response.h5;\n"
-    "points of NAME.integration.h5 are drawn as dots;\n"
-    "NAME.stress.csv has the worst places at every peak if material.fatigue is given;\n"
-    "NAME.gauge.csv has the strain at the gauges of the case;\n"
-    "the report has the section Speed against error if NAME.converge.h5 belongs to the case.\n"
-    "NAME.summary.json has the results for scripts; --json prints it, and prints it too with "
-    "--summary\n"
-    "(nothing is written), --modes (of the modal file alone) and --check (name and parts of the "
-    "case).\n"
-    "--facts prints mass, lowest mode and static stress of the modal file.\n"
-    "--no-report leaves out page and picture.\n"
-    "Of two cases, or two response files: NAME.vs.OTHER.html beside the first, and their peaks on\n"
-    "standard output, with --json for scripts.\n"
-    "Of a study file: NAME.study.html, NAME.study.csv and NAME.study.svg.\n"
-    "With --inspect: what an HDF5 file holds; --verbose unfolds everything, case text and settings "
-    "too.\n"
-    "Of two modal files: frequencies side by side, and which mode shapes are alike (MAC).\n"
-    "With a PATH in the file: its values; 'branch_2/motion[peak,0,:,1]' selects; a branch gives a\n"
-    "table of its points; --csv prints all digits.\n";
 
 static shb_status print(const post_buffer *text) {
   bool written = !text->text || fwrite(text->text, 1, text->length, stdout) == text->length;
@@ -287,7 +257,7 @@ static shb_status print_facts(const case_file *file) {
 }
 
 /* --check: what a case in order is called. */
-static shb_status print_check(const case_file *file) {
+shb_status check_print_json(const case_file *file) {
   post_buffer text = {0};
   post_json   json = {.out = &text};
   post_json_object(&json, NULL);
@@ -449,31 +419,29 @@ static shb_status work(const case_file *file, const command_options *options) {
   const char *mode = options->mode ? options->mode : "";
   if (strcmp(mode, "summary") == 0) return print_summary(file, true);
   if (strcmp(mode, "modes") == 0) return print_summary(file, false);
-  if (strcmp(mode, "check") == 0) return print_check(file);
+  if (strcmp(mode, "check") == 0) return check_print_json(file);
   if (strcmp(mode, "facts") == 0) return print_facts(file);
   return publish(file, options);
 }
 
-int main(int argc, char **argv) {
-  command_options options;
-  int             code = command_parse(argc, argv, usage, &options);
-  if (code >= 0) return code;
-  if (options.mode && strcmp(options.mode, "inspect") == 0)
-    return command_finish(inspect(&options));
-  if (options.other && options.mode) {
-    fprintf(stderr, "shroudhb: error: --%s takes one case; unexpected '%s'; see --help\n",
-            options.mode, options.other);
+int inspect_command(const command_options *options) {
+  return command_finish(inspect(options));
+}
+
+int post_command(const command_options *options) {
+  if (options->other && options->mode) {
+    shb_error("--%s takes one case; unexpected '%s'; see --help", options->mode, options->other);
     return SHB_ERR_INPUT;
   }
-  if (options.other) return command_finish(compare_runs(&options));
-  if (study_publish_takes(options.path)) return command_finish(publish_study(&options));
+  if (options->other) return command_finish(compare_runs(options));
+  if (study_publish_takes(options->path)) return command_finish(publish_study(options));
   case_file  file;
-  shb_status status = command_read(&options, CASE_POST, &file);
+  shb_status status = command_read(options, CASE_POST, &file);
   if (status != SHB_OK) return command_finish(status);
   openblas_set_num_threads(1); /* small products: threads would only wait for each other */
   /* the stage takes a fraction of a second: it finishes and leaves no temporary file */
   shb_interrupt_catch();
-  status = work(&file, &options);
+  status = work(&file, options);
   case_free(&file);
   return command_finish(status);
 }

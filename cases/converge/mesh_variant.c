@@ -29,8 +29,8 @@ static char *join(const char *folder, const char *leaf) {
 }
 
 /* Runs a stage. Its exit code is the status; its own message is the only one. */
-static shb_status run_stage(const char *stage, const command_options *options,
-                            subprocess_result *result) {
+static shb_status run_stage(command_id stage, const command_options *options,
+                            shb_child_end *result) {
   SHB_TRY(stage_run(stage, options, result));
   return result->code == 0 ? SHB_OK
                            : shb_fail((shb_status)result->code, __FILE__, __LINE__, "%s", "");
@@ -82,10 +82,10 @@ static struct timespec changed(const char *path) {
 /* Makes mesh and modes of a case, and measures their cost if both had to be made.
  *   options  in  of the stages, with the path of the case */
 static shb_status run_stages(const command_options *options, mesh_variant *v) {
-  subprocess_result mesh, modal;
-  struct timespec   before = changed(v->modal), after;
-  SHB_TRY(run_stage("mesh", options, &mesh));
-  SHB_TRY(run_stage("modal", options, &modal));
+  shb_child_end   mesh, modal;
+  struct timespec before = changed(v->modal), after;
+  SHB_TRY(run_stage(COMMAND_MESH, options, &mesh));
+  SHB_TRY(run_stage(COMMAND_MODAL, options, &modal));
   after       = changed(v->modal);
   bool made   = after.tv_sec != before.tv_sec || after.tv_nsec != before.tv_nsec;
   v->unknowns = unknowns_of(v->modal);

@@ -17,7 +17,7 @@ void rung_words(const rung_setting *s, char words[RUNG_SETTING_WORDS][RUNG_WORD]
   snprintf(words[5], RUNG_WORD, "%d", s->patches);
 }
 
-bool rung_from_words(char *const words[RUNG_SETTING_WORDS], rung_setting *s) {
+bool rung_from_words(const char *const words[RUNG_SETTING_WORDS], rung_setting *s) {
   double value[RUNG_SETTING_WORDS];
   for (int i = 0; i < RUNG_SETTING_WORDS; i++) {
     char *end;

@@ -1,9 +1,10 @@
-/* shroudhb-samples: the balance of a case whose samples of random rings are shared over MPI. */
 #include <cblas.h>
 #include <mpi.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+
+#include "cases/front/shroudhb_samples.h"
 
 #include "cases/commands/balance_run.h"
 #include "cases/commands/load_model.h"
@@ -11,16 +12,7 @@
 #include "cases/schema/case_paths.h"
 #include "cases/study/crew.h"
 #include "mesh/base/progress.h"
-
-static const char usage[] =
-    "usage: mpiexec -n N shroudhb-samples [--quiet] [--verbose] [--force] [--set KEY=VALUE]... "
-    "[--into FOLDER] CASE.yaml\n"
-    "\n"
-    "Does what shroudhb-mhb does, for a case with rotor.mistuning: {deviation, seed, samples}. Of "
-    "N\n"
-    "processes one traces the curves and manages, the others compute samples, one at a time.\n"
-    "Alone it computes samples by its threads. The numbers are the same for any N. What was\n"
-    "stopped goes on where it was.\n";
+#include "mesh/process/report.h"
 
 enum { REQUEST = 2 }; /* sample, preload */
 
@@ -148,17 +140,14 @@ static int work(const command_options *options) {
   return SHB_OK;
 }
 
-int main(int argc, char **argv) {
-  command_options options;
-  int             code = command_parse(argc, argv, usage, &options);
-  if (code >= 0) return code;
-  if (MPI_Init(&argc, &argv) != MPI_SUCCESS) {
-    fputs("shroudhb: error: MPI cannot be started\n", stderr);
+int samples_command(const command_options *options) {
+  if (MPI_Init(NULL, NULL) != MPI_SUCCESS) {
+    shb_error("MPI cannot be started");
     return SHB_ERR_IO;
   }
   shb_interrupt_catch(); /* after MPI_Init, because the launcher sets handlers of its own */
   openblas_set_num_threads(1);
-  code = work(&options);
+  const int code = work(options);
   MPI_Finalize();
   return code;
 }

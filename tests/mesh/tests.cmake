@@ -16,5 +16,5 @@ shb_test(mesh/blade UNIT airfoil section_smoothing INTEGRATION disc hex_sweep sh
 shb_test(mesh/blade UNIT scene LIBRARIES shb_case shb_mesh
   DEFINITIONS SCENE="${PROJECT_SOURCE_DIR}/cases/z_notch_blade/case.yaml")
 shb_shell_test(mesh.blade.command INTEGRATION mesh/blade/test_command.sh
-  $<TARGET_FILE:shroudhb-mesh> ${PROJECT_SOURCE_DIR}/cases/z_notch_blade/case.yaml
+  $<TARGET_FILE_DIR:shroudhb>/shroudhb-mesh ${PROJECT_SOURCE_DIR}/cases/z_notch_blade/case.yaml
   $<BOOL:${SHROUDHB_SANITIZE}>)
