@@ -1,5 +1,5 @@
 # What `cmake --install` copies, and the Debian package that CPack makes of it.
-#   bin                   the programs
+#   bin                   the programs, former ones as links
 #   share/shroudhb        examples and pages, in the folders of the sources: their links hold
 #   share/man             pages made from --help and the key table
 #   share/bash-completion, share/zsh
@@ -7,7 +7,11 @@ include(GNUInstallDirs)
 set(SHARED ${CMAKE_INSTALL_DATADIR}/shroudhb)
 
 get_target_property(PROGRAMS programs MANUALLY_ADDED_DEPENDENCIES)
+get_target_property(FORMER_PROGRAMS programs FORMER)
 install(TARGETS ${PROGRAMS} RUNTIME)
+foreach(command ${FORMER_PROGRAMS})
+  install(FILES $<TARGET_FILE_DIR:shroudhb>/shroudhb-${command} TYPE BIN)
+endforeach()
 
 # ---------------------------------------------------------------- pages made by the programs
 set(PAGES)

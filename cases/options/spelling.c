@@ -1,8 +1,11 @@
 #include "cases/options/spelling.h"
 
-#include <ctype.h>
 #include <limits.h>
 #include <string.h>
+
+static int lower(char c) {
+  return c >= 'A' && c <= 'Z' ? c + ('a' - 'A') : c;
+}
 
 static int smaller(int a, int b) {
   return a < b ? a : b;
@@ -17,10 +20,9 @@ int case_edit_distance(const char *a, const char *b) {
   for (size_t j = 0; j <= m; j++) d[0][j] = (int)j;
   for (size_t i = 1; i <= n; i++) {
     for (size_t j = 1; j <= m; j++) {
-      int p = tolower((unsigned char)a[i - 1]), q = tolower((unsigned char)b[j - 1]);
+      int p = lower(a[i - 1]), q = lower(b[j - 1]);
       d[i][j] = smaller(smaller(d[i - 1][j] + 1, d[i][j - 1] + 1), d[i - 1][j - 1] + (p != q));
-      if (i > 1 && j > 1 && p == tolower((unsigned char)b[j - 2]) &&
-          q == tolower((unsigned char)a[i - 2]))
+      if (i > 1 && j > 1 && p == lower(b[j - 2]) && q == lower(a[i - 2]))
         d[i][j] = smaller(d[i][j], d[i - 2][j - 2] + 1);
     }
   }

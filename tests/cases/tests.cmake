@@ -1,6 +1,7 @@
 set(PROGRAMS_FOLDER $<TARGET_FILE_DIR:shroudhb>)
 set(CASES ${PROJECT_SOURCE_DIR}/cases)
 
+shb_test(cases/options UNIT options command_table LIBRARIES shb_cases_options)
 shb_test(cases/parse UNIT units keys lists LIBRARIES shb_case)
 shb_test(cases/schema UNIT case faults stage_settings motion nodal_diameters LIBRARIES shb_case)
 shb_python_test(cases.schema.key_schema UNIT cases/schema/test_key_schema.py

@@ -1,5 +1,6 @@
 shb_test(mesh/base UNIT alloc arena axes crash_guard phases progress publish root shortest
   INTEGRATION memory LIBRARIES shb_mesh_base)
+shb_test(mesh/process UNIT child report LIBRARIES shb_mesh_process)
 shb_test(mesh/table UNIT csv LIBRARIES shb_mesh_table)
 shb_test(mesh/core UNIT face_match group_checks group_rules jacobian triangle face_pairing
   file_format cyclic_sides LIBRARIES tests_fem)
