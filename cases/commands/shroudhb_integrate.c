@@ -11,6 +11,7 @@
 #include "cases/commands/up_to_date.h"
 #include "cases/schema/case.h"
 #include "cases/schema/case_paths.h"
+#include "mesh/base/memory.h"
 #include "mesh/base/progress.h"
 #include "mesh/base/publish.h"
 #include "mhb/integration/integration_memory.h"
@@ -25,17 +26,10 @@ static shb_status settings_of(const case_file *file, const char *modal, const ch
   SHB_TRY(up_to_date_settings(file, (case_stage)(CASE_MHB | CASE_INTEGRATE), modal, &keys));
   *text = keys;
   if (!balance) return SHB_OK;
-  size_t     size   = strlen(keys) + 64;
-  char      *longer = malloc(size);
-  shb_status status = shb_fingerprint(balance, fingerprint);
-  if (status == SHB_OK && longer) {
-    snprintf(longer, size, "%sresponse.fingerprint = %s\n", keys, fingerprint);
-    *text  = longer;
-    longer = keys;
-  }
-  free(longer);
-  if (status == SHB_OK && *text == keys) SHB_FAIL(SHB_ERR_IO, "out of memory");
-  return status;
+  SHB_TRY(shb_fingerprint(balance, fingerprint));
+  *text = shb_text_of("%sresponse.fingerprint = %s\n", keys, fingerprint);
+  free(keys);
+  return SHB_OK;
 }
 
 /* Does the file at path hold the complete result of these settings? */
@@ -165,9 +159,7 @@ static shb_status run(const case_file *file, const command_options *options) {
   char         *start = case_output(file, ".response.h5"), *settings = NULL;
   mhb_response *balance = NULL;
   bool          needed  = file->integrate.start == MHB_START_FROM_BALANCE;
-  shb_status    status =
-      modal && output && start ? SHB_OK : shb_fail(SHB_ERR_IO, __FILE__, __LINE__, "out of memory");
-  if (status == SHB_OK) status = stage_renew_modes(file, options);
+  shb_status    status  = stage_renew_modes(file, options);
   if (status == SHB_OK && needed) status = read_balance(file, start, modal, &balance);
   if (status == SHB_OK) status = settings_of(file, modal, needed ? start : NULL, &settings);
   if (status == SHB_OK) {

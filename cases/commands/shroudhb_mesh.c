@@ -160,8 +160,7 @@ static shb_status make_at(const case_file *file, const command_options *options,
 static shb_status make(const case_file *file, const command_options *options,
                        shb_progress *progress) {
   char      *settings = NULL, *output = case_output(file, ".msh");
-  shb_status status = output ? up_to_date_mesh_settings(file, &settings)
-                             : shb_fail(SHB_ERR_IO, __FILE__, __LINE__, "out of memory");
+  shb_status status = up_to_date_mesh_settings(file, &settings);
   if (status == SHB_OK) status = make_at(file, options, output, settings, progress);
   free(output);
   free(settings);
@@ -173,14 +172,10 @@ static shb_status write_inp(const case_file *file, shb_progress *progress) {
   char      *source = case_mesh_path(file), *output = case_output(file, ".inp");
   mesh_fe    mesh   = {0};
   shb_status status = SHB_OK;
-  if (!source || !output) {
-    status = shb_fail(SHB_ERR_IO, __FILE__, __LINE__, "out of memory");
-  } else if (strcmp(source, output) == 0) {
+  if (strcmp(source, output) == 0)
     status =
         shb_fail(SHB_ERR_INPUT, __FILE__, __LINE__, "%s is the mesh of the case itself", source);
-  } else {
-    status = read_mesh(file, source, &mesh);
-  }
+  if (status == SHB_OK) status = read_mesh(file, source, &mesh);
   if (status == SHB_OK) status = mesh_inp_write(&mesh, output);
   if (status == SHB_OK) shb_progress_note(progress, "wrote %s", output);
   mesh_fe_free(&mesh);

@@ -13,8 +13,8 @@
 #include "cases/schema/case.h"
 #include "cases/schema/case_paths.h"
 #include "cases/schema/nodal_diameters.h"
+#include "mesh/base/memory.h"
 #include "mesh/base/publish.h"
-#include "mesh/process/report.h"
 #include "modal/common/session.h"
 #include "modal/hdf5/h5.h"
 #include "modal/hdf5/stamp.h"
@@ -27,14 +27,10 @@ typedef struct {
   char **own, **petsc; /* each begins with the program's name and ends with NULL */
 } words;
 
-static bool split_words(int argc, char **argv, words *out) {
+static void split_words(int argc, char **argv, words *out) {
   bool found = false, ended = false;
-  *out = (words){1, 1, calloc((size_t)argc + 1, sizeof(char *)),
-                 calloc((size_t)argc + 1, sizeof(char *))};
-  if (!out->own || !out->petsc) {
-    shb_error("out of memory");
-    return false;
-  }
+  *out        = (words){1, 1, shb_alloc_zeroed((size_t)argc + 1, sizeof(char *)),
+                        shb_alloc_zeroed((size_t)argc + 1, sizeof(char *))};
   out->own[0] = out->petsc[0] = argv[0];
   for (int i = 1; i < argc; i++) {
     bool is_long = strncmp(argv[i], "--", 2) == 0;
@@ -52,7 +48,6 @@ static bool split_words(int argc, char **argv, words *out) {
     found = found || ended || argv[i][0] != '-';
     ended = ended || strcmp(argv[i], "--") == 0;
   }
-  return true;
 }
 
 /* Rank under mpiexec before MPI is initialised; 0 if the launcher does not tell. */
@@ -198,11 +193,8 @@ static shb_status run(const case_file *file, const command_options *options, int
   char          *mesh = case_mesh_path(file), *output = case_output(file, ".modal.h5");
   char          *settings = NULL;
   modal_revision revision;
-  task           what = NOTHING;
-  shb_status     status =
-      mesh && output ? SHB_OK : shb_fail(SHB_ERR_IO, __FILE__, __LINE__, "out of memory");
-  if (status == SHB_OK)
-    status = decide(file, options->force, mesh, output, &settings, &revision, &what);
+  task           what   = NOTHING;
+  shb_status     status = decide(file, options->force, mesh, output, &settings, &revision, &what);
   if (status == SHB_OK && what == NOTHING) shb_progress_note(&progress, "%s is up to date", output);
   if (status == SHB_OK && what == REVISE)
     status = revise(file, settings, output, rank, &revision, &progress);
@@ -237,8 +229,7 @@ static int make_mesh(const case_file *file, const command_options *options) {
   command_options plain  = *options;
   shb_child_end   result = {.code = SHB_OK};
   char           *mesh = case_mesh_path(file), *settings = NULL;
-  shb_status      status = mesh ? up_to_date_mesh_settings(file, &settings)
-                                : shb_fail(SHB_ERR_IO, __FILE__, __LINE__, "out of memory");
+  shb_status      status = up_to_date_mesh_settings(file, &settings);
   plain.force            = false; /* the modes are made again, not what they come from */
   if (status == SHB_OK && !up_to_date_mesh(mesh, settings))
     status = stage_run(COMMAND_MESH, &plain, &result);
@@ -272,13 +263,11 @@ int main(int argc, char **argv) {
   case_file       file;
   int             code = help_answer(command_row_of(COMMAND_MODAL), argc, argv);
   if (code >= 0) return code;
-  code = SHB_ERR_IO;
-  if (split_words(argc, argv, &line)) {
-    code = parse(&line, &options, &file);
-    if (code < 0) {
-      code = work(&line, &file, &options);
-      case_free(&file);
-    }
+  split_words(argc, argv, &line);
+  code = parse(&line, &options, &file);
+  if (code < 0) {
+    code = work(&line, &file, &options);
+    case_free(&file);
   }
   free(line.own);
   free(line.petsc);

@@ -12,6 +12,7 @@
 #include "cases/schema/case.h"
 #include "cases/schema/case_paths.h"
 #include "cases/schema/converge_settings.h"
+#include "mesh/base/memory.h"
 #include "mesh/base/progress.h"
 #include "mesh/process/report.h"
 #include "postproc/comparison/comparison_page.h"
@@ -68,7 +69,7 @@ static shb_status inspect(const command_options *options) {
 /* NAME.converge.h5 if it belongs to the present case; malloc'ed, else NULL. */
 static char *current_convergence(const case_file *file) {
   char *path = case_output(file, ".converge.h5"), *settings = NULL;
-  bool  fresh = path && access(path, R_OK) == 0 && converge_settings(file, &settings) == SHB_OK &&
+  bool  fresh = access(path, R_OK) == 0 && converge_settings(file, &settings) == SHB_OK &&
                up_to_date_with(path, settings);
   free(settings);
   if (fresh) return path;
@@ -93,7 +94,7 @@ static bool has_points(const case_file *file, const char *path, const char *resp
 /* The modal file if it belongs to the present case; malloc'ed, else NULL. */
 static char *current_modal(const case_file *file) {
   char *path  = case_modal_path(file);
-  bool  there = path && access(path, R_OK) == 0;
+  bool  there = access(path, R_OK) == 0;
   if (there && (file->modal_file || up_to_date_keys(file, CASE_MODAL, path))) return path;
   free(path);
   return NULL;
@@ -102,7 +103,7 @@ static char *current_modal(const case_file *file) {
 /* A modal file that is there is the one of the response, whatever the case says now. */
 static shb_status check_modal(const case_file *file, const char *response) {
   char      *path   = case_modal_path(file);
-  shb_status status = path && access(path, R_OK) == 0 && access(response, R_OK) == 0
+  shb_status status = access(path, R_OK) == 0 && access(response, R_OK) == 0
                           ? up_to_date_check_modal(response, path)
                           : SHB_OK;
   free(path);
@@ -150,12 +151,10 @@ static shb_status stress_read(const case_file *file, const char *modal, const ch
  * hundredths of a second. */
 static shb_status stress_publish(const case_file *file, const stress_work *s,
                                  shb_progress *progress) {
-  post_buffer table  = {0};
-  char       *path   = case_output(file, ".stress.csv");
-  shb_status  status = path ? SHB_OK : shb_fail(SHB_ERR_IO, __FILE__, __LINE__, "no memory");
+  post_buffer table = {0};
+  char       *path  = case_output(file, ".stress.csv");
   shb_progress_show(progress, 90, "stress");
-  if (status == SHB_OK)
-    status = post_stress_table(&s->field, s->response, &s->lines.fatigue, &table);
+  shb_status status = post_stress_table(&s->field, s->response, &s->lines.fatigue, &table);
   if (status == SHB_OK) status = post_buffer_publish(&table, path);
   post_buffer_free(&table);
   free(path);
@@ -181,11 +180,10 @@ static shb_status gauge_rows(const case_file *file, const post_blade_field *fiel
 /* Write NAME.gauge.csv: the strain at the gauges of the case. */
 static shb_status gauge_publish(const case_file *file, const char *modal,
                                 const mhb_response *response) {
-  post_blade_field field = {0};
-  post_buffer      table = {0};
-  char            *path  = case_output(file, ".gauge.csv");
-  shb_status status = path ? SHB_OK : shb_fail(SHB_ERR_IO, __FILE__, __LINE__, "out of memory");
-  if (status == SHB_OK) status = post_blade_field_read_motion(modal, &field);
+  post_blade_field field  = {0};
+  post_buffer      table  = {0};
+  char            *path   = case_output(file, ".gauge.csv");
+  shb_status       status = post_blade_field_read_motion(modal, &field);
   if (status == SHB_OK) status = post_blade_field_match(&field, response, modal);
   if (status == SHB_OK) status = gauge_rows(file, &field, response, &table);
   if (status == SHB_OK) status = post_buffer_publish(&table, path);
@@ -212,8 +210,7 @@ static shb_status publish_summary(const case_file *file, const char *response, c
                                   const stress_work *stress, bool shown) {
   post_buffer text   = {0};
   char       *path   = case_output(file, ".summary.json");
-  shb_status  status = path ? summarise(file, response, modal, stress, &text)
-                            : shb_fail(SHB_ERR_IO, __FILE__, __LINE__, "out of memory");
+  shb_status  status = summarise(file, response, modal, stress, &text);
   if (status == SHB_OK) status = post_buffer_publish(&text, path);
   if (status == SHB_OK && shown) status = print(&text);
   post_buffer_free(&text);
@@ -280,33 +277,28 @@ static shb_status publish(const case_file *file, const command_options *options)
   char        *diagram     = case_output(file, ".campbell.svg");
   char        *modal       = current_modal(file);
   stress_work  stress      = {0};
-  shb_status   status;
-  if (response && html && csv && svg && points && diagram) {
-    up_to_date_warn(file, response);
-    status = check_modal(file, response);
-    if (status == SHB_OK) status = stress_read(file, modal, response, !options->no_report, &stress);
-    const post_job job = {file->name,
-                          response,
-                          options->no_report ? NULL : html,
-                          csv,
-                          svg,
-                          convergence,
-                          has_points(file, points, response) ? points : NULL,
-                          modal,
-                          diagram,
-                          up_to_date_keys(file, CASE_MHB, response) ? &file->mhb : NULL,
-                          stress.section.text,
-                          file->axis,
-                          file->n_speeds == 1 ? file->speed[0] : 0};
-    if (status == SHB_OK) status = post_publish(&job, &progress, &summary);
-    if (status == SHB_OK && stress.response && case_has_fatigue(file))
-      status = stress_publish(file, &stress, &progress);
-    if (status == SHB_OK && stress.response && file->n_gauges > 0)
-      status = gauge_publish(file, modal, stress.response);
-    if (status == SHB_OK) status = publish_summary(file, response, modal, &stress, options->json);
-  } else {
-    status = shb_fail(SHB_ERR_IO, __FILE__, __LINE__, "out of memory");
-  }
+  up_to_date_warn(file, response);
+  shb_status status = check_modal(file, response);
+  if (status == SHB_OK) status = stress_read(file, modal, response, !options->no_report, &stress);
+  const post_job job = {file->name,
+                        response,
+                        options->no_report ? NULL : html,
+                        csv,
+                        svg,
+                        convergence,
+                        has_points(file, points, response) ? points : NULL,
+                        modal,
+                        diagram,
+                        up_to_date_keys(file, CASE_MHB, response) ? &file->mhb : NULL,
+                        stress.section.text,
+                        file->axis,
+                        file->n_speeds == 1 ? file->speed[0] : 0};
+  if (status == SHB_OK) status = post_publish(&job, &progress, &summary);
+  if (status == SHB_OK && stress.response && case_has_fatigue(file))
+    status = stress_publish(file, &stress, &progress);
+  if (status == SHB_OK && stress.response && file->n_gauges > 0)
+    status = gauge_publish(file, modal, stress.response);
+  if (status == SHB_OK) status = publish_summary(file, response, modal, &stress, options->json);
   if (status == SHB_OK && !options->quiet && !options->json)
     printf("%s%s%s\n", options->no_report ? csv : html, summary ? ": " : "",
            summary ? summary : "");
@@ -359,31 +351,27 @@ static shb_status find_run(const command_options *options, const char *path, run
   if (ends_with(path, ".h5")) {
     const char *slash = strrchr(path, '/'), *base = slash ? slash + 1 : path;
     size_t      cut = ends_with(path, suffix) ? sizeof suffix - 1 : strlen(".h5");
-    out->response   = strdup(path);
-    out->name       = strndup(base, strlen(base) - cut);
-    out->page       = strndup(path, strlen(path) - cut);
+    out->response   = shb_text(path);
+    out->name       = shb_text_start(base, strlen(base) - cut);
+    out->page       = shb_text_start(path, strlen(path) - cut);
   } else {
     case_file       file;
     command_options one = *options;
     one.path            = path;
     SHB_TRY(command_read(&one, CASE_POST, &file));
     out->response = case_output(&file, ".response.h5");
-    out->name     = strdup(file.name);
+    out->name     = shb_text(file.name);
     out->page     = case_output(&file, "");
     up_to_date_warn(&file, out->response);
     case_free(&file);
   }
-  SHB_CHECK(out->response && out->name && out->page, SHB_ERR_IO, "out of memory");
   return SHB_OK;
 }
 
 static shb_status show_comparison(const post_comparison *c, const run_files run[POST_RUNS],
                                   const command_options *options) {
-  size_t      size = strlen(run[0].page) + strlen(run[1].name) + 16;
-  char       *path = malloc(size);
+  char       *path = shb_text_of("%s.vs.%s.html", run[0].page, run[1].name);
   post_buffer page = {0}, text = {0};
-  SHB_CHECK(path, SHB_ERR_IO, "out of memory");
-  snprintf(path, size, "%s.vs.%s.html", run[0].page, run[1].name);
   post_comparison_page(c, &page);
   if (options->json)
     post_comparison_json(c, &text);

@@ -39,7 +39,7 @@ static void print_times(const shb_child_end result[N_STAGES]) {
 
 static void print_result(const case_file *file, const char *what, const char *suffix) {
   char *path = case_output(file, suffix);
-  if (path && access(path, R_OK) == 0) printf("%-9s %s\n", what, path);
+  if (access(path, R_OK) == 0) printf("%-9s %s\n", what, path);
   free(path);
 }
 
@@ -202,6 +202,6 @@ void run_describe(const case_file *file, FILE *out) {
     fprintf(out, "%d harmonic%s\n", mhb->harmonics, mhb->harmonics == 1 ? "" : "s");
   }
   char *path = case_output(file, ".html");
-  fprintf(out, "  report    %s\n", path ? path : file->name);
+  fprintf(out, "  report    %s\n", path);
   free(path);
 }

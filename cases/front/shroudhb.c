@@ -8,6 +8,7 @@
 
 #include "cases/front/json_command.h"
 #include "cases/options/help.h"
+#include "mesh/base/memory.h"
 #include "mesh/process/child.h"
 #include "mesh/process/report.h"
 
@@ -15,10 +16,9 @@
  * and the user's words behind argv[0]. malloc'ed, words[0] too. */
 static char **words_of(command_id id, int argc, char **argv) {
   const bool own   = id == COMMAND_MODAL;
-  char     **words = calloc((size_t)argc + 2, sizeof *words);
+  char     **words = shb_alloc_zeroed((size_t)argc + 2, sizeof *words);
   int        n     = 0;
-  if (!words) return NULL;
-  words[n++] = shb_child_program(own ? "shroudhb-modal" : "shroudhb-pool");
+  words[n++]       = shb_child_program(own ? "shroudhb-modal" : "shroudhb-pool");
   if (!own) words[n++] = (char *)command_row_of(id)->name;
   for (int i = 1; i < argc; i++) words[n++] = argv[i];
   return words;
@@ -54,15 +54,11 @@ static int run_command(command_id id, int argc, char **argv) {
   int                code = help_answer(row, argc, argv);
   if (code >= 0) return code;
   char **words = words_of(id, argc, argv);
-  if (!words || !words[0]) {
-    shb_error("out of memory");
-    code = SHB_ERR_IO;
-  } else if (row->json != JSON_NONE && asks_json(argc, argv)) {
+  if (row->json != JSON_NONE && asks_json(argc, argv))
     code = json_command(row, words);
-  } else {
+  else
     code = row->may_crash ? watch(row, words) : become(words);
-  }
-  if (words) free(words[0]);
+  free(words[0]);
   free(words);
   return code;
 }

@@ -11,6 +11,7 @@
 #include "cases/schema/case.h"
 #include "cases/schema/case_paths.h"
 #include "cases/study/crew.h"
+#include "mesh/base/memory.h"
 #include "mesh/base/progress.h"
 #include "mesh/process/report.h"
 
@@ -32,8 +33,7 @@ typedef struct {
 
 static shb_status compute(void *context, const double *value, char **bytes, size_t *size) {
   const worker *w  = context;
-  answer       *to = calloc(1, sizeof *to);
-  SHB_CHECK(to, SHB_ERR_IO, "out of memory");
+  answer       *to = shb_alloc_zeroed(1, sizeof *to);
   to->status = mhb_ring_sample(&w->model->tuned, &w->model->settings, &w->sampling, (int)value[0],
                                (int)value[1], &to->peak);
   if (to->status != SHB_OK) snprintf(to->text, sizeof to->text, "%s", shb_message());
@@ -48,12 +48,11 @@ static shb_status serve(const command_options *options) {
   case_model model;
   SHB_TRY(command_read(options, CASE_MHB, &file));
   char               *modal    = case_modal_path(&file);
-  shb_status          status   = modal ? case_model_read(&file, modal, 0, true, &model)
-                                       : shb_fail(SHB_ERR_IO, __FILE__, __LINE__, "out of memory");
+  shb_status          status   = case_model_read(&file, modal, 0, true, &model);
   worker              w        = {&model, balance_sampling(&file)};
   const crew_computer computer = {&w, REQUEST, compute};
   if (status == SHB_OK) status = crew_serve(&computer);
-  if (modal) case_model_free(&model);
+  case_model_free(&model);
   free(modal);
   case_free(&file);
   return status;

@@ -13,6 +13,7 @@
 
 #include "cases/commands/stage.h"
 #include "cases/study/design_message.h"
+#include "mesh/base/memory.h"
 #include "mesh/base/progress.h"
 #include "mesh/process/child.h"
 
@@ -158,9 +159,8 @@ void design_process_stop(design_process *p) {
 /* ---------------------------------------------------------------- the pool */
 
 shb_status design_pool_create(const design_job *job, int n, design_pool *pool) {
-  *pool = (design_pool){n, calloc((size_t)n, sizeof *pool->process),
-                        calloc((size_t)n, sizeof *pool->design)};
-  SHB_CHECK(pool->process && pool->design, SHB_ERR_IO, "out of memory");
+  *pool = (design_pool){n, shb_alloc_zeroed((size_t)n, sizeof *pool->process),
+                        shb_alloc((size_t)n, sizeof *pool->design)};
   for (int i = 0; i < n; i++) pool->process[i].job = job;
   for (int i = 0; i < n; i++) pool->design[i] = -1;
   return SHB_OK;
@@ -232,10 +232,9 @@ static void stop_all(const design_pool *pool) {
 
 shb_status design_pool_manage(void *context, const crew_work *w) {
   design_pool   *pool    = context;
-  struct pollfd *watched = calloc((size_t)pool->n, sizeof *watched);
+  struct pollfd *watched = shb_alloc((size_t)pool->n, sizeof *watched);
   shb_status     status  = SHB_OK;
   bool           stopped = false;
-  SHB_CHECK(watched, SHB_ERR_IO, "out of memory");
   for (int busy = 1; status == SHB_OK && busy > 0;) {
     status = hand_out(pool, w, &busy);
     if (shb_interrupted() && !stopped) stop_all(pool);
@@ -272,9 +271,8 @@ shb_status design_process_texts(char **texts, study_texts *out) {
 }
 
 shb_status design_process_serve(int n_request, design_compute *compute, void *context) {
-  double *value = calloc((size_t)n_request + 1, sizeof *value);
-  SHB_CHECK(value, SHB_ERR_IO, "out of memory");
-  int answers = dup(STDOUT_FILENO); /* what a library prints must not mix with answers */
+  double *value   = shb_alloc((size_t)n_request + 1, sizeof *value);
+  int     answers = dup(STDOUT_FILENO); /* what a library prints must not mix with answers */
   dup2(STDERR_FILENO, STDOUT_FILENO);
   shb_status status = SHB_OK;
   while (status == SHB_OK && get_all(STDIN_FILENO, value, (size_t)n_request * sizeof *value)) {

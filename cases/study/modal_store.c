@@ -17,25 +17,16 @@
 #include "cases/designs/digest.h"
 #include "cases/schema/case.h"
 #include "cases/schema/case_paths.h"
+#include "mesh/base/memory.h"
 #include "mesh/process/report.h"
 
 enum { MORE_WORDS = 12 };
 
 static const char modal_suffix[] = ".modal.h5";
 
-static char *text3(const char *a, const char *b, const char *c) {
-  size_t size = strlen(a) + strlen(b) + strlen(c) + 1;
-  char  *out  = malloc(size);
-  if (out) snprintf(out, size, "%s%s%s", a, b, c);
-  return out;
-}
-
 shb_status modal_store_open(const study_spec *spec, modal_store *s) {
-  char *stem = text3(spec->folder, "/", spec->name);
-  *s         = (modal_store){.spec = spec, .copy = -1};
-  s->folder  = stem ? text3(stem, ".study.d", "") : NULL;
-  free(stem);
-  SHB_CHECK(s->folder, SHB_ERR_IO, "out of memory");
+  *s        = (modal_store){.spec = spec, .copy = -1};
+  s->folder = shb_text_of("%s/%s.study.d", spec->folder, spec->name);
   SHB_CHECK(mkdir(s->folder, 0777) == 0 || errno == EEXIST, SHB_ERR_IO, "%s: cannot be made: %s",
             s->folder, strerror(errno));
   return shb_child_text(spec->base.text, &s->copy, s->copy_path);
@@ -109,13 +100,11 @@ static shb_status run_stage(const modal_store *s, command_id stage, const double
 /* A modal file of this digest, of this study or of one beside it; malloc'ed, else NULL. */
 static char *find_file(const modal_store *s, const char *digest) {
   glob_t found   = {0};
-  char  *pattern = text3(s->spec->folder, "/*.study.d/", digest), *path = NULL;
-  char  *whole = pattern ? text3(pattern, modal_suffix, "") : NULL;
-  if (whole && glob(whole, 0, NULL, &found) == 0 && found.gl_pathc > 0)
-    path = strdup(found.gl_pathv[0]);
+  char  *pattern = shb_text_of("%s/*.study.d/%s%s", s->spec->folder, digest, modal_suffix);
+  char  *path    = NULL;
+  if (glob(pattern, 0, NULL, &found) == 0 && found.gl_pathc > 0) path = shb_text(found.gl_pathv[0]);
   globfree(&found);
   free(pattern);
-  free(whole);
   return path;
 }
 
@@ -149,14 +138,11 @@ static bool read_quietly(const modal_store *s, const double *value, case_file *f
 
 /* The text that the modal file at path would have as settings; malloc'ed. The mesh lies beside. */
 static shb_status settings_beside(const case_file *file, const char *path, char **settings) {
-  char      *stem   = strndup(path, strlen(path) - strlen(modal_suffix));
-  char      *made   = stem ? text3(stem, ".msh", "") : NULL;
-  const bool given  = file->mesh_file && !case_mesh_is_made(file);
-  shb_status status = made ? SHB_OK : shb_fail(SHB_ERR_IO, __FILE__, __LINE__, "out of memory");
-  *settings         = NULL;
-  if (status == SHB_OK)
-    status = up_to_date_settings(file, CASE_MODAL, given ? file->mesh_file : made, settings);
-  free(stem);
+  const int        length = (int)(strlen(path) - strlen(modal_suffix));
+  char            *made   = shb_text_of("%.*s.msh", length, path);
+  const bool       given  = file->mesh_file && !case_mesh_is_made(file);
+  const shb_status status =
+      up_to_date_settings(file, CASE_MODAL, given ? file->mesh_file : made, settings);
   free(made);
   return status;
 }
@@ -196,9 +182,8 @@ static shb_status make_from_common(const modal_store *s, const double *value, co
     status = make_file(s, value_of_common, &of_common, modes, &common);
   case_free(&of_common);
   if (status == SHB_OK && common) {
-    char *stem = text3(s->folder, "/", digest), *path = stem ? text3(stem, modal_suffix, "") : NULL;
-    *made = path && revise(file, common, path);
-    free(stem);
+    char *path = shb_text_of("%s/%s%s", s->folder, digest, modal_suffix);
+    *made      = revise(file, common, path);
     free(path);
   }
   free(common);
@@ -213,8 +198,8 @@ static shb_status run_stages(const modal_store *s, const double *value, const ch
 /* The modal file of a design, made if it is not there, under the lock of its digest. */
 static shb_status make_file(const modal_store *s, const double *value, const case_file *file,
                             const char *digest, char **path) {
-  char *stem = text3(s->folder, "/", digest), *lock = stem ? text3(stem, ".lock", "") : NULL;
-  int   held = lock ? open(lock, O_RDWR | O_CREAT, 0666) : -1;
+  char *lock = shb_text_of("%s/%s.lock", s->folder, digest);
+  int   held = open(lock, O_RDWR | O_CREAT, 0666);
   if (held >= 0) flock(held, LOCK_EX); /* a dead process holds none */
   bool       made   = false;
   shb_status status = SHB_OK;
@@ -226,9 +211,8 @@ static shb_status make_file(const modal_store *s, const double *value, const cas
     if (status == SHB_OK && !*path)
       status = shb_fail(SHB_ERR_IO, __FILE__, __LINE__, "modal: left no file");
   }
-  if (lock) unlink(lock);
+  unlink(lock);
   if (held >= 0) close(held);
-  free(stem);
   free(lock);
   return status;
 }

@@ -16,6 +16,7 @@
 #include "cases/study/design_process.h"
 #include "cases/study/shroudhb_study.h"
 #include "cases/study/study_run.h"
+#include "mesh/base/memory.h"
 #include "mesh/base/progress.h"
 #include "mesh/base/publish.h"
 #include "mesh/process/report.h"
@@ -45,13 +46,11 @@ static void add_cost(const study_spec *spec, const char *path, study_cost *cost,
 
 /* From all studies beside this one. */
 static study_cost cost_of(const study_spec *spec) {
-  study_cost   cost    = {0};
-  double       seconds = 0;
-  const size_t size    = strlen(spec->folder) + 32;
-  char        *pattern = malloc(size);
-  glob_t       found   = {0};
-  if (pattern) snprintf(pattern, size, "%s/*.study.h5", spec->folder);
-  if (pattern && glob(pattern, 0, NULL, &found) != 0) found.gl_pathc = 0;
+  study_cost cost    = {0};
+  double     seconds = 0;
+  char      *pattern = shb_text_of("%s/*.study.h5", spec->folder);
+  glob_t     found   = {0};
+  if (glob(pattern, 0, NULL, &found) != 0) found.gl_pathc = 0;
   for (size_t i = 0; i < found.gl_pathc; i++) add_cost(spec, found.gl_pathv[i], &cost, &seconds);
   globfree(&found);
   free(pattern);
@@ -80,8 +79,7 @@ static shb_status check(const study_spec *spec, const command_options *options) 
 static shb_status print_json(const study_spec *spec) {
   post_buffer text   = {0};
   char       *path   = study_path(spec, ".study.h5");
-  shb_status  status = path ? post_summary_of_file(path, &text)
-                            : shb_fail(SHB_ERR_IO, __FILE__, __LINE__, "out of memory");
+  shb_status  status = post_summary_of_file(path, &text);
   if (status == SHB_OK) fwrite(text.text, 1, text.length, stdout);
   post_buffer_free(&text);
   free(path);

@@ -26,13 +26,11 @@ char *shb_child_program(const char *name) {
     here[n]     = '\0';
     char *slash = strrchr(here, '/');
     if (slash) slash[1] = '\0';
-    size_t size = strlen(here) + strlen(name) + 1;
-    char  *path = malloc(size);
-    if (path) snprintf(path, size, "%s%s", here, name);
-    if (!path || access(path, X_OK) == 0) return path;
+    char *path = shb_text_of("%s%s", here, name);
+    if (access(path, X_OK) == 0) return path;
     free(path);
   }
-  return strdup(name);
+  return shb_text(name);
 }
 
 static sigset_t waited_signals(void) {
@@ -40,6 +38,7 @@ static sigset_t waited_signals(void) {
   sigemptyset(&set);
   sigaddset(&set, SIGINT);
   sigaddset(&set, SIGTERM);
+  sigaddset(&set, SIGHUP);
   sigaddset(&set, SIGCHLD);
   return set;
 }
@@ -115,7 +114,7 @@ shb_status shb_child_start(const shb_child *child, pid_t *pid) {
   return why ? not_started(child, why) : SHB_OK;
 }
 
-/* Waits for the child and passes signals on. A SIGINT from the terminal reaches the whole
+/* Waits for the child and passes signals on. SIGINT and SIGHUP of the terminal reach the whole
  * foreground process group, the child included. */
 static bool wait_for(pid_t child, const sigset_t *signals, int *status, struct rusage *usage) {
   bool  interrupted = false;
@@ -123,7 +122,7 @@ static bool wait_for(pid_t child, const sigset_t *signals, int *status, struct r
   while ((ended = wait4(child, status, WNOHANG, usage)) == 0) {
     siginfo_t info;
     int       number = sigwaitinfo(signals, &info);
-    if (number != SIGINT && number != SIGTERM) continue;
+    if (number != SIGINT && number != SIGTERM && number != SIGHUP) continue;
     interrupted = true;
     if (info.si_code != SI_KERNEL) kill(child, number);
   }
