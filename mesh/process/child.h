@@ -35,8 +35,8 @@ char *shb_child_program(const char *name);
 /* Start a child, and go on. Errors: SHB_ERR_IO. */
 shb_status shb_child_start(const shb_child *child, pid_t *pid);
 
-/* Run a child to its end. SIGINT, SIGTERM and SIGHUP are passed on to it. It then publishes its finished
- * results, and its code is 130.
+/* Run a child to its end. SIGINT, SIGTERM and SIGHUP are passed on to it. It then publishes its
+ * finished results, and its code is 130.
  *
  * Errors: SHB_ERR_IO if it cannot be started, or was killed by a signal. */
 shb_status shb_child_run(const shb_child *child, shb_child_end *end);
