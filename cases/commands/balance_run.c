@@ -125,7 +125,8 @@ static shb_status release_terms(case_model *m, mhb_receptance **alike) {
   if (m->model.n_pairs < MHB_MANY_PAIRS || reads_own) return SHB_OK;
   SHB_TRY(mhb_receptance_create(&m->model, &m->settings, 0, alike));
   m->settings.alike = *alike;
-  return modal_model_release_terms(&m->model, mhb_lasting_refusal(&m->model, &m->settings) ? 0 : 2);
+  modal_model_release_terms(&m->model, mhb_lasting_refusal(&m->model, &m->settings) ? 0 : 2);
+  return SHB_OK;
 }
 
 static shb_status sweep(case_model *m, const char *output, const shb_provenance *provenance,

@@ -54,9 +54,6 @@ shb_status contact_points_join(modal_model *model, modal_nodal_diameters *disc, 
   if (patches == model->n_pairs) return SHB_OK;
   SHB_TRY(create(out));
   shb_status status = modal_joining_create(model, patches, &(*out)->joining);
-  if (status == SHB_OK)
-    status = disc ? modal_join_diameters(disc, &(*out)->joining, &joined_disc)
-                  : modal_join(model, &(*out)->joining, &joined);
   if (status != SHB_OK) {
     contact_points_free(*out);
     *out = NULL;
@@ -64,11 +61,13 @@ shb_status contact_points_join(modal_model *model, modal_nodal_diameters *disc, 
   }
   (*out)->pairs.finer = true;
   if (disc) {
+    modal_join_diameters(disc, &(*out)->joining, &joined_disc);
     take_disc(*out, *disc);
     *disc  = joined_disc;
     *model = disc->model[0];
     return SHB_OK;
   }
+  modal_join(model, &(*out)->joining, &joined);
   (*out)->other = *model;
   *model        = joined;
   return SHB_OK;
@@ -82,16 +81,18 @@ shb_status contact_points_halve(const modal_model *model, const modal_nodal_diam
   if (modal_joinable(model) < 2 * interfaces) return SHB_OK;
   SHB_TRY(create(out));
   shb_status status = modal_joining_create(model, model->n_pairs / 2, &(*out)->joining);
-  if (status == SHB_OK)
-    status = disc ? modal_join_diameters(disc, &(*out)->joining, &joined)
-                  : modal_join(model, &(*out)->joining, &(*out)->other);
-  if (status == SHB_OK) {
-    if (disc) take_disc(*out, joined);
-    return SHB_OK;
+  if (status != SHB_OK) {
+    contact_points_free(*out);
+    *out = NULL;
+    return status;
   }
-  contact_points_free(*out);
-  *out = NULL;
-  return status;
+  if (disc) {
+    modal_join_diameters(disc, &(*out)->joining, &joined);
+    take_disc(*out, joined);
+  } else {
+    modal_join(model, &(*out)->joining, &(*out)->other);
+  }
+  return SHB_OK;
 }
 
 /* ---------------------------------------------------------------- choice */

@@ -21,7 +21,7 @@ static shb_status read_speeds(const char *path, int modes, bool residuals, case_
     status = mhb_speed_table_create(&speeds, path, m->settings.engine_order, f, &m->run_up);
   modal_speeds_free(&speeds);
   if (status == SHB_OK) status = mhb_speed_model_check(m->run_up, path);
-  if (status == SHB_OK) status = mhb_speed_model_create(m->run_up, &m->top);
+  if (status == SHB_OK) m->top = mhb_speed_model_create(m->run_up);
   SHB_TRY(status);
   mhb_speed_model_set(m->top, SHB_TWO_PI * f[1]);
   m->model           = m->top->model;
@@ -48,8 +48,8 @@ static shb_status read_disc_speeds(const char *path, int modes, bool residuals, 
   if (!m->disc_run_up) return SHB_OK;
   m->run_up = m->disc_run_up->table[0];
   SHB_TRY(mhb_disc_table_check(m->disc_run_up, path));
-  SHB_TRY(mhb_disc_speeds_create(m->disc_run_up, &m->disc_top));
-  m->top = m->disc_top->at[0];
+  m->disc_top = mhb_disc_speeds_create(m->disc_run_up);
+  m->top      = m->disc_top->at[0];
   mhb_disc_speeds_set(m->disc_top, SHB_TWO_PI * f[1]);
   mhb_disc_speeds_set_all(m->disc_top);
   m->disc                     = &m->disc_top->now;

@@ -39,9 +39,10 @@ static shb_status make(const modal_model *model, point_matcher *matcher) {
   matcher->motion = calloc(3 * (size_t)model->n_probes + 1, sizeof *matcher->motion);
   bool good       = matcher->x && matcher->normal && matcher->force && matcher->motion;
   SHB_CHECK(good && matcher->last && matcher->start, SHB_ERR_IO, "out of memory");
-  SHB_TRY(mhb_newton_create(matcher->balance->n, &matcher->newton));
+  matcher->newton = mhb_newton_create(matcher->balance->n);
   /* short memory is told here; later it would pass for a place without a solution */
-  return mhb_newton_bind(matcher->newton, matcher->balance);
+  mhb_newton_bind(matcher->newton, matcher->balance);
+  return SHB_OK;
 }
 
 shb_status point_matcher_create(const modal_model *model, const mhb_settings *settings,
@@ -267,17 +268,24 @@ shb_status point_matcher_change(point_matcher *matcher, const matched_solution *
 shb_status point_matcher_record(point_matcher *matcher, mhb_response *response, int branch) {
   mhb_curve_point point = {
       .x = matcher->x, .value = matcher->omega, .evaluation = matcher->balance->eval};
-  return mhb_record(response, branch, matcher->balance, &point, MHB_PEAK, 0);
+  mhb_record(response, branch, matcher->balance, &point, MHB_PEAK, 0);
+  return SHB_OK;
 }
 
 shb_status point_matcher_judge(point_matcher *matcher, int *stable) {
   mhb_multipliers multipliers;
-  mhb_floquet    *floquet = NULL;
-  SHB_TRY(mhb_branch_floquet_create(matcher->balance, &floquet));
-  mhb_branch_floquet_evaluate(floquet, matcher->balance, matcher->x, &multipliers);
-  *stable = multipliers.verdict == MHB_UNSTABLE ? 0 : multipliers.verdict == MHB_STABLE ? 1 : -1;
+  mhb_floquet    *floquet    = NULL;
+  mhb_truncation *truncation = NULL;
+  shb_status      status     = mhb_truncation_create(matcher->balance, &truncation);
+  if (status == SHB_OK) status = mhb_branch_floquet_create(matcher->balance, &floquet);
+  if (status == SHB_OK) {
+    const mhb_judged_point at = {matcher->x, matcher->omega, INFINITY};
+    mhb_branch_floquet_judge(floquet, matcher->balance, truncation, &at, &multipliers);
+    *stable = multipliers.verdict == MHB_UNSTABLE ? 0 : multipliers.verdict == MHB_STABLE ? 1 : -1;
+  }
   mhb_floquet_destroy(floquet);
-  return SHB_OK;
+  mhb_truncation_destroy(truncation);
+  return status;
 }
 
 shb_status point_matcher_peak(point_matcher *matcher, mhb_peak_near near,

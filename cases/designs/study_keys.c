@@ -95,6 +95,7 @@ static void refuse_path(case_issues *issues, const case_node *node, const char *
 bool study_key_number(case_issues *issues, const study_key *key, const case_node *node,
                       double *value) {
   char why[CASE_WHY];
+  if (node->kind == CASE_BROKEN) return false; /* told */
   if (node->kind != CASE_SCALAR) {
     case_issue_add(issues, node->line, node->column, key->path, "is %s; expected a number",
                    case_kind_name(node->kind));
@@ -135,15 +136,6 @@ static void read_list(case_issues *issues, const case_node *node, study_key *key
   }
 }
 
-/* {from: 0,1} has a key 1. */
-static bool refuse_comma(case_issues *issues, const case_node *one, const char *path) {
-  if (one->kind != CASE_NULL || one->key[0] < '0' || one->key[0] > '9') return false;
-  case_issue_add(issues, one->key_line, one->key_column, path,
-                 "'%.40s': a number where a key belongs; write decimals with a point, such as 2.1",
-                 one->key);
-  return true;
-}
-
 /* Read the members of {from, to, points, scale}; false after a fault. */
 static bool read_members(case_issues *issues, const case_node *node, study_key *key) {
   const int before = issues->n;
@@ -152,7 +144,7 @@ static bool read_members(case_issues *issues, const case_node *node, study_key *
     const case_node *one = &node->child[i];
     char             path[CASE_PATH];
     case_path(path, "%s.%s", key->path, one->key);
-    if (refuse_comma(issues, one, key->path)) continue;
+    if (one->kind == CASE_BROKEN) return false; /* told */
     if (strcmp(one->key, "from") == 0)
       study_key_number(issues, key, one, &key->from);
     else if (strcmp(one->key, "to") == 0)

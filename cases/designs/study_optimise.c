@@ -42,15 +42,26 @@ static int output_of(reading *r, const case_node *node, const char *name) {
   return -1;
 }
 
-/* A limit of stress below this without a unit is one in MPa: no metal fails at 1 MPa. */
-static const double LEAST_BARE_STRESS = 1e6;
+/* Bare limits that are none in SI: no metal fails at 1 MPa, and no meshed blade swings by 5 cm. */
+static const double LEAST_BARE_STRESS = 1e6, MOST_BARE_LENGTH = 0.05;
 
 /* A bare number that cannot be meant in SI is asked back. */
 static bool refuse_bare(reading *r, const case_node *one, const char *unit, double value) {
-  const bool bare = one->text[strspn(one->text, "+-.0123456789eE")] == '\0';
-  if (strcmp(unit, "Pa") != 0 || !bare || fabs(value) >= LEAST_BARE_STRESS) return false;
-  case_issue_add(r->issues, one->line, one->column, "optimise", "%s: %s Pa: did you mean %s MPa?",
-                 one->key, one->text, one->text);
+  const bool bare   = one->text[strspn(one->text, "+-.0123456789eE")] == '\0';
+  const bool stress = strcmp(unit, "Pa") == 0 && fabs(value) < LEAST_BARE_STRESS;
+  const bool length =
+      strcmp(unit, "m") == 0 && !r->outputs->base->modal_file && fabs(value) > MOST_BARE_LENGTH;
+  if (!bare || !(stress || length)) return false;
+  case_issue_add(r->issues, one->line, one->column, "optimise", "%s: %s %s: did you mean %s %s?",
+                 one->key, one->text, unit, one->text, stress ? "MPa" : "mm");
+  return true;
+}
+
+/* A size is never below 0: every design keeps such a limit, or none does. */
+static bool refuse_idle(reading *r, const case_node *one, const char *unit, double value) {
+  if (strcmp(unit, "-") == 0 || value >= 0) return false;
+  case_issue_add(r->issues, one->line, one->column, "optimise", "%s: %s: no design is below 0",
+                 one->key, one->text);
   return true;
 }
 
@@ -61,13 +72,13 @@ static void read_limits(reading *r, const case_node *node, bool least) {
     const case_node *one = &node->child[i];
     char             why[CASE_WHY];
     study_limit      limit = {output_of(r, one, one->key), least, 0};
-    if (limit.output < 0) continue;
+    if (limit.output < 0 || one->kind == CASE_BROKEN) continue; /* told */
     const char *unit = r->outputs->output[limit.output].unit;
     if (one->kind != CASE_SCALAR) {
       fault(r, one, "a limit is a number with its unit");
     } else if (!case_quantity(one->text, strcmp(unit, "-") == 0 ? "" : unit, &limit.value, why)) {
       case_issue_add(r->issues, one->line, one->column, "optimise", "%s: %s", one->key, why);
-    } else if (refuse_bare(r, one, unit, limit.value)) {
+    } else if (refuse_bare(r, one, unit, limit.value) || refuse_idle(r, one, unit, limit.value)) {
       continue;
     } else if (r->o->n_limits == STUDY_MAX_LIMITS) {
       fault(r, one, "more than 16 limits");

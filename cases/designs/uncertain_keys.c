@@ -37,19 +37,33 @@ static bool is_percent(const case_node *node) {
   return n > 0 && node->text[n - 1] == '%';
 }
 
-/* A parameter in percent beside a mean without: a deviation is relative to the mean. */
-static void read_percent(case_issues *issues, const case_node *node, bool deviation,
-                         const char *path, double mean, double *value) {
+/* A deviation in percent beside a mean without is relative to the mean. */
+static void read_relative_deviation(case_issues *issues, const case_node *node, const char *path,
+                                    double mean, double *value) {
   char why[CASE_WHY];
-  if (!deviation)
-    case_issue_add(issues, node->line, node->column, path,
-                   "'%.40s': percent of what? A deviation is relative to the mean; give the value "
-                   "itself",
-                   node->text);
-  else if (!case_quantity(node->text, "", value, why))
+  if (!case_quantity(node->text, "", value, why))
     fault(issues, node, path, why);
   else
     *value *= fabs(mean);
+}
+
+/* Other parameters are in percent all or none. Where mean and deviation are both, the deviation is
+ * a value as well. One above the mean is asked back, as it may be meant relative to it. */
+static void refuse_percent(case_issues *issues, const case_node *list, int i, bool has_mean,
+                           const double *parameter, const char *path) {
+  const case_node *one = &list->child[i], *first = &list->child[0];
+  if (is_percent(one) != is_percent(first)) {
+    case_issue_add(issues, one->line, one->column, path,
+                   "'%.40s' beside '%.40s': percent of what? A deviation is relative to the mean; "
+                   "give the values themselves",
+                   one->text, first->text);
+    return;
+  }
+  if (!has_mean || i != 1 || !is_percent(one) || parameter[1] <= parameter[0]) return;
+  case_issue_add(issues, one->line, one->column, path,
+                 "'%.40s' of a mean of '%.40s': is it relative to the mean? Write the mean without "
+                 "percent then",
+                 one->text, first->text);
 }
 
 static void read_parameters(case_issues *issues, const case_node *node, plan_kind kind,
@@ -65,11 +79,12 @@ static void read_parameters(case_issues *issues, const case_node *node, plan_kin
   double    *parameter   = key->distribution.parameter;
   const bool has_mean    = strncmp(PARAMETERS[kind], "mean", strlen("mean")) == 0;
   for (int i = 0; i < n; i++) {
-    const case_node *one = &node->child[i];
-    if (i > 0 && is_percent(one) && !is_percent(&node->child[0]))
-      read_percent(issues, one, has_mean && i == 1, key->path, parameter[0], &parameter[i]);
-    else
-      study_key_number(issues, key, one, &parameter[i]);
+    const case_node *one   = &node->child[i];
+    const bool       share = has_mean && i == 1 && is_percent(one) && !is_percent(&node->child[0]);
+    if (share)
+      read_relative_deviation(issues, one, key->path, parameter[0], &parameter[i]);
+    else if (study_key_number(issues, key, one, &parameter[i]))
+      refuse_percent(issues, node, i, has_mean, parameter, key->path);
   }
   if (issues->n == before && plan_distribution_check(&key->distribution, key->path) != SHB_OK)
     fault(issues, node, NULL, shb_message());

@@ -186,8 +186,8 @@ void run_describe(const case_file *file, FILE *out) {
   if (mhb->to_ground) {
     fputs("  contact   to ground", out);
   } else {
-    fprintf(out, "  contact   to the neighbour, %d blades, engine order %d", mhb->blades,
-            mhb->engine_order);
+    fprintf(out, "  contact   to the neighbour, %d blades, engine order %d%s", mhb->blades,
+            mhb->engine_order, mhb->turns_right ? ", rotor turns right" : "");
   }
   if (file->has_interfaces)
     fprintf(out, ", %d interface%s\n", mhb->n_interfaces, mhb->n_interfaces > 1 ? "s" : "");

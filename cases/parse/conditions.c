@@ -24,7 +24,7 @@ const char *case_condition_words(case_condition condition) {
 }
 
 const char *case_condition_needed(case_condition condition) {
-#define NEEDED(name, test, words, needed) [name] = needed,
+#define NEEDED(name, test, words, needed) [name] = (needed),
   static const char *const text[]                = {CASE_CONDITIONS(NEEDED)};
   return text[condition];
 }

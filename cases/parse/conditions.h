@@ -43,6 +43,7 @@
       "several interfaces, with `mhb.vary`", NULL)                                                 \
   ROW(CASE_IF_ORDER, !file->mhb.to_ground || file->run_up,                                         \
       "contact to the neighbour, or a run-up", NULL)                                               \
+  ROW(CASE_IF_RIGHT, file->mhb.turns_right, NULL, NULL)                                            \
   ROW(CASE_IF_RUN_UP, file->run_up, NULL, NULL)                                                    \
   ROW(CASE_IF_SECTOR, (own && !file->mesh_file) || !file->mhb.to_ground,                           \
       "contact to the neighbour, or parametric blade", NULL)                                       \

@@ -4,6 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "mesh/base/memory.h"
 #include "mesh/process/report.h"
 
 enum { WIDTH = 120 }; /* columns of a source line */
@@ -66,24 +67,15 @@ static const char *find_line(const case_issues *issues, int line, size_t *length
   return at;
 }
 
-/* Bytes of the UTF-8 character at text (1 for a stray byte). */
-static size_t character(const char *text, const char *end) {
-  unsigned char first = (unsigned char)text[0];
-  size_t whole = first < 0xC2 ? 1 : first < 0xE0 ? 2 : first < 0xF0 ? 3 : first < 0xF5 ? 4 : 1;
-  if (text + whole > end) return 1;
-  for (size_t n = 1; n < whole; n++)
-    if (((unsigned char)text[n] & 0xC0) != 0x80) return 1;
-  return whole;
-}
-
-static void put_character(const char *text, size_t n, FILE *out) {
-  unsigned char c  = (unsigned char)text[0];
-  bool          c1 = n == 2 && c == 0xC2 && (unsigned char)text[1] < 0xA0; /* U+0080 to U+009F */
-  if ((c < 0x20 && c != '\t') || c == 0x7F || (n == 1 && c >= 0x80) || c1) {
-    fputc('?', out); /* a broken file must not send control characters to the terminal */
-  } else {
-    fwrite(text, 1, n, out);
-  }
+/* Print the character at text, or '?': a broken file must not send control characters to the
+ * terminal. Returns its bytes. */
+static size_t put_character(const char *text, const char *end, FILE *out) {
+  size_t         n;
+  const unsigned c     = shb_character(text, end, &n);
+  const bool     shown = c == '\t' || (shb_is_shown(c) && (c != SHB_NO_CHARACTER || n > 1));
+  if (shown) fwrite(text, 1, n, out);
+  if (!shown) fputc('?', out);
+  return n;
 }
 
 /* The part of the line around column, and a caret under it. */
@@ -93,30 +85,24 @@ static void print_source(const case_issues *issues, const case_issue *issue, FIL
   if (length == 0) return;
   const char *end   = at + length;
   int         first = issue->column > WIDTH - 20 ? issue->column - WIDTH / 2 : 1, i = 1;
-  for (; at < end && i < first; i++) at += character(at, end);
+  size_t      n;
+  for (; at < end && i < first; at += n, i++) shb_character(at, end, &n);
   const char *start = at;
   fputs("    ", out);
-  for (; at < end && i < first + WIDTH; i++) {
-    size_t n = character(at, end);
-    put_character(at, n, out);
-    at += n;
-  }
+  for (; at < end && i < first + WIDTH; i++) at += put_character(at, end, out);
   fputs("\n    ", out);
-  for (i = first, at = start; at < end && i < issue->column; i++) {
+  for (i = first, at = start; at < end && i < issue->column; at += n, i++) {
     fputc(*at == '\t' ? '\t' : ' ', out);
-    at += character(at, end);
+    shb_character(at, end, &n);
   }
   fputs("^\n", out);
 }
 
 static void print_override(const char *text, FILE *out) {
-  const char *end = text + strlen(text);
-  fputs(" --set ", out);
-  for (size_t n; text < end; text += n) {
-    n = character(text, end);
-    put_character(*text == '\n' ? " " : text, n, out);
-  }
-  fputc(':', out);
+  char *plain = shb_text(text);
+  shb_plain_text(plain);
+  fprintf(out, " --set %s:", plain);
+  free(plain);
 }
 
 static void print_issue(const case_issues *issues, const case_issue *issue, FILE *out) {

@@ -221,10 +221,14 @@ static const case_key table[] = {
      .help = "rotation speed: modes about the static equilibrium under the centrifugal load; 0: at "
              "rest; a list or {from, to, points}: a Campbell diagram, the response at the last of "
              "them, or along them with mhb.run_up"},
-    {"rotor.coriolis", CASE_CHOICE, "", .words = "no left right", .fallback = "no", AT(coriolis),
-     .stages = CASE_MODAL, .when = CASE_IF_OWN_MODES,
-     .help = "with Coriolis terms at rotor.speed, of a rotor that turns towards -tangential (left) "
-             "or +tangential (right)"},
+    {"rotor.turns", CASE_SWITCH, "", .words = "left right", .fallback = "left",
+     AT(mhb.turns_right), .stages = CASE_MHB, .only = CASE_IF_RIGHT,
+     .help = "the rotor turns towards -tangential (left) or +tangential (right); engine orders are "
+             "then those of the machine"},
+    {"rotor.coriolis", CASE_CHOICE, "", .words = "no left right yes", .fallback = "no",
+     AT(coriolis), .stages = CASE_MODAL, .when = CASE_IF_OWN_MODES,
+     .help = "yes: with Coriolis terms at rotor.speed; left or right: of a rotor that turns so, "
+             "where rotor.turns is not given and engine_order is E or blades - E"},
     {"rotor.pressure", CASE_NUMBER, "Pa", -1e12, 1e12, .fallback = "0 Pa", AT(pressure),
      .stages = CASE_MODAL, .when = CASE_IF_OWN_MODES,
      .help = "steady gas pressure on the group load, into the deformed surface: part of the static "
@@ -268,8 +272,8 @@ static const case_key table[] = {
 
     {"excitation.engine_order", CASE_INTEGER, "", 0, 10000, .required = true, AT(engine_order),
      .stages = CASE_MHB, .when = CASE_IF_ORDER,
-     .help = "engine order E; the right neighbour lags by 2 pi E / blades (rotor turning towards "
-             "+tangential: give blades - E)"},
+     .help = "engine order E; the right neighbour lags by 2 pi E / blades, or leads by it with "
+             "rotor.turns: right"},
     LOAD_KEYS("excitation.", FIRST_LOAD, CASE_IF_LOAD, true)
     {"excitation.loads", CASE_LIST, "", 1, CASE_MAX_LOADS, LIST(loads, n_loads),
      .stages = CASE_MESH | CASE_MODAL, .when = CASE_IF_LOADS,

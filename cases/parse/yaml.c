@@ -6,6 +6,7 @@
 #include <string.h>
 #include <yaml.h>
 
+#include "mesh/table/number.h"
 #include "mesh/table/text_file.h"
 
 typedef struct {
@@ -142,42 +143,46 @@ static bool has_tag(const yaml_event_t *event) {
 static bool build(builder *b, const yaml_event_t *event, const char *path, int depth,
                   case_node *out);
 
-/* Digits with a sign, and no more. */
-static bool is_whole(const char *text) {
-  if (*text == '+' || *text == '-') text++;
-  return *text && strspn(text, "0123456789") == strlen(text);
+/* Does a scalar stand at this place, a character behind another one? Columns count characters,
+ * which are bytes in a number. */
+static bool is_adjacent(const case_node *value, int line, int column) {
+  return value->kind == CASE_SCALAR && line == value->line &&
+         column == value->column + (int)strlen(value->text) + 1;
 }
 
-/* Does the next value stand behind the comma, without a blank? Columns count characters, which are
- * bytes in a number. */
-static bool is_adjacent(const case_node *value) {
-  const case_node *next = value + 1;
-  return value->kind == CASE_SCALAR && next->kind == CASE_SCALAR && next->line == value->line &&
-         next->column == value->column + (int)strlen(value->text) + 1;
+/* Is the value the whole part of 0,05, and text at this place the rest? */
+static bool is_cut(const case_node *value, const char *text, int line, int column) {
+  return is_adjacent(value, line, column) && mesh_text_is_whole(value->text) &&
+         isdigit((unsigned char)text[0]) && !strchr(text, '.');
+}
+
+static void refuse_cut(builder *b, const char *path, const case_node *value, const char *rest,
+                       const char *or_else) {
+  case_issue_add(b->issues, value->line, value->column, path,
+                 "%.40s,%.40s has a decimal comma; write %.40s.%.40s%s", value->text, rest,
+                 value->text, rest, or_else);
 }
 
 /* Decimals with a comma make two values each: [0,2, 0,4] has four. They are told where other commas
- * of the list have a blank behind them, or where a value begins with a zero, as in 0,05. */
+ * of the list have a blank behind them, or where a value begins with a zero, as in 0,05. Without
+ * any blank they are told where all values are such pairs, and do not ascend as a list does. */
 static void refuse_decimal_comma(builder *b, const char *path, case_node *list) {
   const case_node *value = list->child;
   int              found = -1;
-  bool             mixed = false, zero = false;
+  bool             told = false, pairs = list->n >= 4 && list->n % 2 == 0, ascends = true;
   for (int i = 0; i + 1 < list->n; i++) {
-    const bool cut = is_adjacent(&value[i]) && is_whole(value[i].text) &&
-                     isdigit((unsigned char)value[i + 1].text[0]) &&
-                     !strchr(value[i + 1].text, '.');
+    const case_node *next = &value[i + 1];
+    const bool       both = value[i].kind == CASE_SCALAR && next->kind == CASE_SCALAR;
+    const bool       near = both && is_adjacent(&value[i], next->line, next->column);
+    const bool       cut  = both && is_cut(&value[i], next->text, next->line, next->column);
     if (cut && found < 0) found = i;
-    mixed = mixed || !is_adjacent(&value[i]);
-    zero  = zero ||
-           (cut && value[i + 1].text[0] == '0' && isdigit((unsigned char)value[i + 1].text[1]));
+    told  = told || !near || (cut && next->text[0] == '0' && isdigit((unsigned char)next->text[1]));
+    pairs = pairs && (i % 2 == 1 || cut);
+    ascends = ascends && both && strtod(value[i].text, NULL) <= strtod(next->text, NULL);
   }
-  if (found < 0 || !(mixed || zero)) return;
-  const char *whole = value[found].text, *rest = value[found + 1].text;
-  case_issue_add(
-      b->issues, value[found].line, value[found].column, path,
-      "%.40s,%.40s has a decimal comma; write %.40s.%.40s, or a blank behind every comma "
-      "of the list",
-      whole, rest, whole, rest);
+  if (found < 0 || !(told || (pairs && !ascends))) return;
+  refuse_cut(b, path, &value[found], value[found + 1].text,
+             ", or a blank behind every comma of the list");
   list->kind = CASE_BROKEN;
 }
 
@@ -197,9 +202,28 @@ static bool build_sequence(builder *b, const char *path, int depth, case_node *o
   }
 }
 
+/* {from: 0,5, to: 1} has a key 5 without a value behind the 0. */
+static bool is_rest(const case_node *map, const case_node *child, const case_node *key) {
+  return map->n > 1 && child->kind == CASE_NULL && key->text &&
+         is_cut(child - 1, key->text, key->line, key->column);
+}
+
+static void refuse_rest(builder *b, case_node *map, const case_node *key, const char *path) {
+  case_node *whole = &map->child[map->n - 2];
+  char       entry[CASE_PATH];
+  case_path(entry, "%.*s%s", (int)(strlen(path) - strlen(key->text)), path, whole->key);
+  refuse_cut(b, entry, whole, key->text, "");
+  whole->kind = CASE_BROKEN;
+  node_clear(&map->child[--map->n]);
+}
+
 /* Stores the key of an entry in child->key, and drops an entry that is not allowed. */
 static void settle_entry(builder *b, case_node *map, case_node *key, const char *path) {
-  case_node *child  = &map->child[map->n - 1];
+  case_node *child = &map->child[map->n - 1];
+  if (is_rest(map, child, key)) {
+    refuse_rest(b, map, key, path);
+    return;
+  }
   child->key_line   = key->line;
   child->key_column = key->column;
   child->key        = key->text;

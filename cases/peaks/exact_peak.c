@@ -194,15 +194,11 @@ static shb_status describe(const work *w, mhb_response *response, int branch, in
 
 /* Numbers at the solution that the matcher found last. */
 static shb_status describe_solution(const work *w, const maximum *m, exact_peak *peak) {
-  mhb_response *one = mhb_response_like(w->response);
-  int           index;
-  SHB_CHECK(one, SHB_ERR_IO, "out of memory");
-  shb_status status = mhb_response_branch(one, MHB_BRANCH_NONLINEAR, &index);
-  if (status == SHB_OK) {
-    one->branch[index].order       = m->fine->branch->order;
-    one->branch[index].n_harmonics = m->harmonics;
-    status                         = point_matcher_record(m->matcher, one, index);
-  }
+  mhb_response *one              = mhb_response_like(w->response);
+  const int     index            = mhb_response_branch(one, MHB_BRANCH_NONLINEAR);
+  one->branch[index].order       = m->fine->branch->order;
+  one->branch[index].n_harmonics = m->harmonics;
+  shb_status status              = point_matcher_record(m->matcher, one, index);
   if (status == SHB_OK) status = describe(w, one, index, 0, peak);
   mhb_response_destroy(one);
   return status;
@@ -546,7 +542,9 @@ static shb_status choose(const work *w, const fine_maxima *maxima, candidate *c,
   if (best >= 0 && w->asked.solution) give_solution(w, &maxima->list[best], &c[best]);
   if (best >= 0) SHB_TRY(add_asked(w, &maxima->list[best], &c[best], peak));
   if (!peak->found) SHB_TRY(describe_coarse(w, peak));
-  peak->missed = maxima->missed;
+  peak->missed  = maxima->missed;
+  peak->high[0] = maxima->high[0];
+  peak->high[1] = maxima->high[1];
   if (maxima->missed > (peak->walked ? 1 : MISSED) * peak->amplitude) peak->doubt = true;
   return SHB_OK;
 }

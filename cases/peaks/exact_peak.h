@@ -17,11 +17,12 @@
 /* Numbers at a peak, and their changes by more harmonics (NAN: not known). */
 typedef struct {
   bool   found;
-  bool   edge;   /* the highest point is an end of a curve: the peak may lie outside the range */
-  bool   exact;  /* solved again; false: a point of the coarse curve */
-  bool   doubt;  /* a place where the curve may be higher has no fine solution */
-  double missed; /* m, the highest place of the coarse curve without a fine solution; 0: none */
-  bool   walked; /* it is the peak that was walked to from another design */
+  bool   edge;    /* the highest point is an end of a curve: the peak may lie outside the range */
+  bool   exact;   /* solved again; false: a point of the coarse curve */
+  bool   doubt;   /* a place where the curve may be higher has no fine solution */
+  double missed;  /* m, the highest place of the coarse curve without a fine solution; 0: none */
+  double high[2]; /* Hz, between which such places are high; the first is the greater: none */
+  bool   walked;  /* it is the peak that was walked to from another design */
   double frequency, amplitude, peak_to_peak, rss, dissipation; /* Hz, m, m, m, J */
   double frequency_error, amplitude_error, peak_to_peak_error, rss_error, dissipation_error;
   int    stable;           /* 1, 0; -1: not judged or undecided */

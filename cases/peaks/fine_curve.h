@@ -26,6 +26,7 @@ typedef struct {
   int           n;
   fine_maximum *list;   /* [n] by falling amplitude */
   double        missed; /* m, highest point of the coarse curve without a fine solution; 0: none */
+  double high[2];       /* Hz, between which such points are high; the first is the greater: none */
 } fine_maxima;
 
 /* The maxima of an output that may be the highest over all nonlinear branches.

@@ -71,9 +71,16 @@ static void count_elements(case_reader *r) {
   strcpy(file->interfaces[0].left, mesh_set_name(MESH_CONTACT_LEFT));
 }
 
+/* coriolis: yes is the word after those of fem_turning. */
+static void share_turning(case_file *file) {
+  if (file->coriolis <= FEM_TURNS_RIGHT) return;
+  file->coriolis = file->mhb.turns_right ? FEM_TURNS_RIGHT : FEM_TURNS_LEFT;
+}
+
 /* Copies values that several structs hold. */
 static void share(case_reader *r) {
-  case_file *file         = r->file;
+  case_file *file = r->file;
+  share_turning(file);
   file->mhb.engine_order  = file->engine_order;
   file->mhb.blades        = file->blades;
   file->blade.blades      = file->blades;

@@ -218,6 +218,9 @@ static void check_coriolis(case_reader *r, int stages) {
   for (int i = 0; i < file->n_speeds; i++) turns = turns && file->speed[i] > 0;
   if (case_reader_good(r, "rotor.speed") && !turns)
     case_reader_issue(r, path, "needs rotor.speed above 0; at rest there are no Coriolis forces");
+  if (case_reader_given(r, "rotor.turns") && case_reader_good(r, "rotor.turns") &&
+      file->mhb.turns_right != (file->coriolis == FEM_TURNS_RIGHT))
+    case_reader_issue(r, path, "is of the other sense than rotor.turns; write coriolis: yes");
   if (stages & CASE_MHB && file->mistuning.kind != CASE_TUNED)
     case_reader_issue(r, path, "does not go with rotor.mistuning; leave one of them out");
 }

@@ -30,7 +30,8 @@ static void whole(const case_reader *r, const case_key *key, char path[CASE_PATH
   if (!none) case_path(path, "%s", key->path);
 }
 
-/* Keys reported elsewhere, or allowed. The check of mesh.file reports mesh.size beside a mesh.
+/* Keys reported elsewhere, or allowed. The check of mesh.file reports mesh.size beside a mesh, that
+ * of the interfaces the keys of a single one.
  * search.at and search.orders may stay while search.starts is 0. */
 static bool told(const case_reader *r, const case_key *key) {
   if (key->when == CASE_IF_SIZE) return r->file->mesh_file != NULL;
@@ -39,12 +40,20 @@ static bool told(const case_reader *r, const case_key *key) {
   return false;
 }
 
+static bool of_single_interface(const case_reader *r, const case_key *key) {
+  const size_t n = strlen("contact.");
+  char         path[CASE_PATH];
+  if (!r->file->has_interfaces || strncmp(key->path, "contact.", n) != 0) return false;
+  case_path(path, "contact.interfaces[].%s", key->path + n);
+  return case_key_find(r->keys, path) != NULL;
+}
+
 void case_check_unused(const case_reader *r) {
   char last[CASE_PATH] = "", path[CASE_PATH];
   for (int i = 0; i < r->keys.n; i++) {
     const case_key *key = &r->keys.key[i];
     if (!r->good[i] || !r->given[i]) continue;
-    if (case_key_applies(key, r->file, r->file)) continue;
+    if (case_key_applies(key, r->file, r->file) || of_single_interface(r, key)) continue;
     if (r->file->modal_file && of_own_modes(key)) {
       whole(r, key, path);
       if (strcmp(path, last) != 0)

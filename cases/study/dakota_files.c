@@ -8,15 +8,16 @@
 
 #include "postproc/draw/text_buffer.h"
 
-/* One entry of the file: a number and its tag. */
+/* One entry of the file: a number and its tag, and what should not stand behind them. */
 typedef struct {
-  char number[DAKOTA_TAG], tag[DAKOTA_TAG];
+  char number[DAKOTA_TAG], tag[DAKOTA_TAG], more[DAKOTA_TAG];
 } entry;
 
 /* "{ tag = number }" or "number tag". False: neither. */
 static bool read_entry(const char *line, entry *e) {
   const char *open = strchr(line, '{');
-  if (!open) return sscanf(line, "%127s %127s", e->number, e->tag) == 2;
+  e->more[0]       = '\0';
+  if (!open) return sscanf(line, "%127s %127s %127s", e->number, e->tag, e->more) >= 2;
   const char *equal = strchr(open, '=');
   if (!equal || sscanf(open + 1, "%127s", e->tag) != 1) return false;
   e->tag[strcspn(e->tag, "=")] = '\0';
@@ -57,6 +58,23 @@ static bool whole(reading *r, const entry *e, int least, int most, int *value) {
   return false;
 }
 
+/* The name in "ASV_1:peak", "DVV_1:contact.n0", whose number must be that of its place. NULL: a
+ * fault was told. */
+static const char *name_in(reading *r, const entry *e, int place) {
+  const size_t prefix = strlen("ASV_");
+  const char  *name   = strchr(e->tag, ':');
+  char        *end;
+  const long   number = strtol(e->tag + prefix, &end, 10);
+  if (!name || !name[1])
+    snprintf(r->why, r->size, "%s names no response or variable; give descriptors", e->tag);
+  else if (end != name || number != place)
+    snprintf(r->why, r->size, "%s stands in place %d; expected %.4s%d:%s", e->tag, place, e->tag,
+             place, name + 1);
+  else
+    return name + 1;
+  return NULL;
+}
+
 static bool take_variable(reading *r, const entry *e) {
   dakota_parameters *p = r->p;
   if (is_count(e, "functions", "DAKOTA_FNS")) {
@@ -80,23 +98,19 @@ static bool take_variable(reading *r, const entry *e) {
 /* "ASV_1:peak"; 0 asks for nothing, the sum of 1 value, 2 gradient, 4 Hessian for these. */
 static bool take_response(reading *r, const entry *e) {
   enum { ALL = 7 };
-  dakota_parameters *p    = r->p;
-  const char        *name = strchr(e->tag, ':');
-  if (!name || !name[1]) {
-    snprintf(r->why, r->size, "%s names no response; give the responses descriptors", e->tag);
-    return false;
-  }
+  dakota_parameters *p = r->p;
   if (p->n_responses == r->responses) {
     snprintf(r->why, r->size, "%s is response %d, of %d", e->tag, p->n_responses + 1, r->responses);
     return false;
   }
-  if (!whole(r, e, 0, ALL, &p->active[p->n_responses])) return false;
+  const char *name = name_in(r, e, p->n_responses + 1);
+  if (!name || !whole(r, e, 0, ALL, &p->active[p->n_responses])) return false;
   for (int i = 0; i < p->n_responses; i++) {
-    if (strcmp(p->response[i], name + 1) != 0) continue;
-    snprintf(r->why, r->size, "the response %s stands there twice", name + 1);
+    if (strcmp(p->response[i], name) != 0) continue;
+    snprintf(r->why, r->size, "the response %s stands there twice", name);
     return false;
   }
-  strcpy(p->response[p->n_responses++], name + 1);
+  strcpy(p->response[p->n_responses++], name);
   return true;
 }
 
@@ -108,7 +122,12 @@ static bool take_derivative(reading *r, const entry *e) {
              p->n_derivatives);
     return false;
   }
-  if (!whole(r, e, 1, p->n_variables, &i)) return false;
+  const char *name = name_in(r, e, p->n_derivatives + 1);
+  if (!name || !whole(r, e, 1, p->n_variables, &i)) return false;
+  if (strcmp(name, p->variable[i - 1]) != 0) {
+    snprintf(r->why, r->size, "%s %s: variable %d is %s", e->number, e->tag, i, p->variable[i - 1]);
+    return false;
+  }
   p->derivative[p->n_derivatives++] = i - 1;
   return true;
 }
@@ -121,9 +140,15 @@ static bool refuse_further(reading *r, const entry *e) {
   return false;
 }
 
+static bool refuse_more(reading *r, const entry *e) {
+  snprintf(r->why, r->size, "'%s' stands behind '%s %s'", e->more, e->number, e->tag);
+  return false;
+}
+
 static bool take(reading *r, const entry *e) {
   if (r->variables == NOT_YET)
     return !is_count(e, "variables", "DAKOTA_VARS") || whole(r, e, 1, DAKOTA_MOST, &r->variables);
+  if (e->more[0] && r->responses == NOT_YET) return refuse_more(r, e);
   if (r->p->n_variables < r->variables) return take_variable(r, e);
   if (r->responses == NOT_YET)
     return is_count(e, "functions", "DAKOTA_FNS") ? whole(r, e, 1, DAKOTA_MOST, &r->responses)

@@ -51,8 +51,8 @@ typedef struct {
 shb_status design_pool_create(const design_job *job, int n, design_pool *pool);
 void       design_pool_free(design_pool *pool);
 
-/* Hand out designs until none is left and all are done (crew.h). pool: a design_pool. After SIGINT
- * or SIGTERM the processes are told to stop, and what they had begun is not done. */
+/* Hand out designs until none is left and all are done (crew.h). pool: a design_pool. After SIGINT,
+ * SIGTERM or SIGHUP the processes are told to stop, and what they had begun is not done. */
 shb_status design_pool_manage(void *pool, const crew_work *work);
 
 /* The child's side: the texts of the study from standard input; malloc'ed, the members point into

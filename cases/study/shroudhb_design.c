@@ -94,8 +94,8 @@ static void share_cores(int sharing) {
 }
 
 /* The manager tells this process when to stop, and it goes with the manager. What it leaves undone
- * is not its to tell: a second signal, or the end of the grace, ends it without a word. Ctrl-C goes
- * to all processes of a terminal, and is left to the manager. */
+ * is not its to tell: a second signal, or the end of the grace, ends it without a word. Ctrl-C and
+ * the end of a terminal go to all its processes, and are left to the manager. */
 static void follow_manager(void) {
   enum { GRACE = 5 }; /* s */
   struct sigaction action;
@@ -106,6 +106,7 @@ static void follow_manager(void) {
   sigaction(SIGTERM, &action, NULL);
   signal(SIGALRM, SIG_DFL);
   signal(SIGINT, SIG_IGN);
+  signal(SIGHUP, SIG_IGN);
   prctl(PR_SET_PDEATHSIG, SIGTERM);
 }
 

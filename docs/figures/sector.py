@@ -130,7 +130,7 @@ def ring():
     text(24, 262, "pattern of E lobes", 14)
     text(24, 280, "excites this wave.", 14)
     text(24, 304, "If it turns to the right,", 14)
-    text(24, 322, "give engine_order: N − E.", 14)
+    text(24, 322, "give turns: right.", 14)
 
 
 def shrouds():

@@ -88,9 +88,11 @@ static void exit_now(void) {
 
 static void on_signal(int number) {
   enum { DEFAULT_GRACE = 10 }; /* s */
+  /* a terminal that closes may tell twice: by the shell and by the system */
+  if (interrupted == SIGHUP && number == SIGHUP) return;
   if (interrupted) exit_now();
   interrupted = number;
-  alarm((unsigned)(grace_seconds > 0 ? grace_seconds : number == SIGTERM ? DEFAULT_GRACE : 0));
+  alarm((unsigned)(grace_seconds > 0 ? grace_seconds : number == SIGINT ? 0 : DEFAULT_GRACE));
 }
 
 static void on_alarm(int number) {
@@ -107,8 +109,11 @@ static void install(int number, void (*handler)(int)) {
 }
 
 void shb_interrupt_catch(void) {
+  struct sigaction hangup;
   install(SIGINT, on_signal);
   install(SIGTERM, on_signal);
+  if (sigaction(SIGHUP, NULL, &hangup) == 0 && hangup.sa_handler != SIG_IGN) /* nohup */
+    install(SIGHUP, on_signal);
   install(SIGALRM, on_alarm);
   signal(SIGXFSZ, SIG_IGN); /* a file over the size limit fails the write, not the process */
 }

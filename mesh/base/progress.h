@@ -1,4 +1,4 @@
-/* Progress line on stderr, notes, phases of a stage, and the flag set by SIGINT and SIGTERM.
+/* Progress line on stderr, notes, phases of a stage, and the flag set by signals.
  *
  * The line is rewritten in place. It appears only on a terminal and without --quiet. */
 #ifndef MESH_BASE_PROGRESS_H
@@ -44,11 +44,12 @@ void shb_progress_warn(shb_progress *progress, const char *format, ...)
 void shb_progress_phase(shb_progress *progress, const char *name, const char *format, ...)
     __attribute__((format(printf, 3, 4)));
 
-/* Install the handlers of SIGINT and SIGTERM once, then ask whether a signal came.
+/* Install the handlers of SIGINT, SIGTERM and SIGHUP once, then ask whether a signal came. SIGHUP
+ * comes where the terminal is closed; nohup has it ignored.
  *
  * A second signal ends the process at once with exit code 128 + number of the signal. The first
  * signal does so after a grace period: the given seconds (at least 1; for stages without results to
- * save). By default it is 10 s after SIGTERM and unlimited after SIGINT. Temporary files of
+ * save). By default it is unlimited after SIGINT and 10 s after the others. Temporary files of
  * shb_publish_temporary that are not published yet are removed. */
 void shb_interrupt_catch(void);
 void shb_interrupt_grace(int seconds);

@@ -175,28 +175,10 @@ shb_status shb_make_folder(const char *path) {
   return SHB_OK;
 }
 
-/* The character at text, where it has two or three bytes in UTF-8; else its first byte. */
-static unsigned character_at(const unsigned char *text) {
-  if ((text[0] & 0xE0) == 0xC0 && (text[1] & 0xC0) == 0x80)
-    return (text[0] & 0x1Fu) << 6 | (text[1] & 0x3Fu);
-  if ((text[0] & 0xF0) == 0xE0 && (text[1] & 0xC0) == 0x80 && (text[2] & 0xC0) == 0x80)
-    return (text[0] & 0xFu) << 12 | (text[1] & 0x3Fu) << 6 | (text[2] & 0x3Fu);
-  return text[0];
-}
-
 bool shb_name_is_plain(const char *text) {
-  /* C0, DEL and C1; Unicode's Bidi_Control; separators of lines and paragraphs; the byte-order
-   * mark */
-  static const unsigned refused[][2] = {{0, 0x1F},        {0x7F, 0x9F},     {0x61C, 0x61C},
-                                        {0x200E, 0x200F}, {0x2028, 0x202E}, {0x2066, 0x2069},
-                                        {0xFEFF, 0xFEFF}};
-  const unsigned char  *at           = (const unsigned char *)text;
-  for (; *at; at++) {
-    const unsigned c = character_at(at);
-    if (*at >= 0x80 && c == *at) continue; /* inside of a character */
-    for (size_t i = 0; i < sizeof refused / sizeof *refused; i++)
-      if (c >= refused[i][0] && c <= refused[i][1]) return false;
-  }
+  const char *at = text, *end = text + strlen(text);
+  for (size_t n; at < end; at += n)
+    if (!shb_is_shown(shb_character(at, end, &n))) return false;
   return text[0] != '\0';
 }
 

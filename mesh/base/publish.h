@@ -40,9 +40,9 @@ void shb_publish_clear(const char *stem);
  * is removed. SHB_ERR_IO. */
 shb_status shb_publish(const char *temporary, const char *path);
 
-/* May a text be the name of a file, a column or a probe? Not an empty one. Control characters, and
- * those that turn the direction of a text, show another name than there is. Bytes that are not
- * UTF-8 are left to the reader of the text. */
+/* May a text be the name of a file, a column or a probe? Not an empty one, and none with a
+ * character that does not show itself (shb_is_shown). Bytes that are not UTF-8 are left to the
+ * reader of the text. */
 bool shb_name_is_plain(const char *text);
 
 /* Make a folder and those above it, where they are missing. SHB_ERR_IO, also where a part of the

@@ -5,16 +5,28 @@
 #ifndef MESH_BASE_STATUS_H
 #define MESH_BASE_STATUS_H
 
+#include <stdbool.h>
+#include <stddef.h>
+
 typedef enum {
   SHB_OK            = 0,
   SHB_ERR_INPUT     = 2,   /* bad input: case file, mesh, contents of a data file */
   SHB_NOT_CONVERGED = 3,   /* an outcome; results are published */
   SHB_ERR_IO        = 4,   /* cannot open, read, write, rename; no memory */
-  SHB_INTERRUPTED   = 130, /* SIGINT or SIGTERM; results so far are published */
+  SHB_INTERRUPTED   = 130, /* SIGINT, SIGTERM, SIGHUP; results so far are published */
 } shb_status;
 
-/* Replace control characters, which could command a terminal: line ends and tabs by spaces, others
- * by question marks. text is UTF-8. */
+enum { SHB_NO_CHARACTER = 0xFFFD }; /* Unicode's own word for it */
+
+/* The character of UTF-8 at text, which ends at end. bytes: its length; one byte that begins none
+ * is SHB_NO_CHARACTER. */
+unsigned shb_character(const char *text, const char *end, size_t *bytes);
+
+/* Does a character show itself? Control characters may command a terminal. Those that turn the
+ * direction of a text show another one than there is. */
+bool shb_is_shown(unsigned character);
+
+/* Replace what does not show itself: line ends and tabs by spaces, others by question marks. */
 void shb_plain_text(char *text);
 
 /* Record a message (printf style) in plain text and return code. file and line are those of the

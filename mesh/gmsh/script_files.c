@@ -29,24 +29,26 @@ void mesh_files_free(mesh_file_list *list) {
   list->n = 0;
 }
 
-static bool is_new(const mesh_file_list *list, const char *path, struct stat *about) {
-  if (stat(path, about) != 0 || !S_ISREG(about->st_mode)) return false;
+static int place_of(const mesh_file_list *list, const struct stat *about) {
   for (int i = 0; i < list->n; i++)
-    if (list->device[i] == about->st_dev && list->inode[i] == about->st_ino) return false;
-  return true;
+    if (list->device[i] == about->st_dev && list->inode[i] == about->st_ino) return i;
+  return -1;
 }
 
-shb_status mesh_files_add(mesh_file_list *list, const char *from, const char *name, size_t n) {
+shb_status mesh_files_add(mesh_file_list *list, const char *from, const char *name, size_t n,
+                          int *at) {
   struct stat about;
-  const char *slash  = strrchr(from, '/');
-  const int   folder = slash && name[0] != '/' ? (int)(slash + 1 - from) : 0;
-  char       *path   = shb_text_of("%.*s%.*s", folder, from, (int)n, name);
-  const bool  added = is_new(list, path, &about), full = list->n == MESH_MOST_FILES;
-  if (added && !full)
+  const char *slash   = strrchr(from, '/');
+  const int   folder  = slash && name[0] != '/' ? (int)(slash + 1 - from) : 0;
+  char       *path    = shb_text_of("%.*s%.*s", folder, from, (int)n, name);
+  const bool  present = stat(path, &about) == 0 && S_ISREG(about.st_mode);
+  const int   known = present ? place_of(list, &about) : -1, full = list->n == MESH_MOST_FILES;
+  *at = known < 0 && present && !full ? list->n : known;
+  if (*at == list->n)
     put(list, path, &about);
   else
     free(path);
-  SHB_CHECK(!added || !full, SHB_ERR_INPUT, "%s: includes more than %d files", list->path[0],
+  SHB_CHECK(*at >= 0 || !present, SHB_ERR_INPUT, "%s: includes more than %d files", list->path[0],
             MESH_MOST_FILES);
   return SHB_OK;
 }
@@ -65,9 +67,10 @@ char *mesh_files_text(const char *path) {
 static shb_status add_quoted(mesh_file_list *list, const char *from, const char *text) {
   enum { LONGEST = 4096 };
   static const char quotes[] = "\"'\n";
+  int               place;
   for (const char *at = text; *at;) {
     const size_t n = strcspn(at, quotes);
-    if (n > 0 && n < LONGEST) SHB_TRY(mesh_files_add(list, from, at, n));
+    if (n > 0 && n < LONGEST) SHB_TRY(mesh_files_add(list, from, at, n, &place));
     at += at[n] ? n + 1 : n;
   }
   return SHB_OK;

@@ -22,8 +22,10 @@ void mesh_files_begin(const char *path, mesh_file_list *list);
 void mesh_files_free(mesh_file_list *list);
 
 /* Add the file `name` of n characters, in the folder of the file `from`, if it is a file and not
- * there yet. Errors: SHB_ERR_INPUT too many files. */
-shb_status mesh_files_add(mesh_file_list *list, const char *from, const char *name, size_t n);
+ * there yet. Errors: SHB_ERR_INPUT too many files.
+ *   at  out  its place in the list; -1: it is no file */
+shb_status mesh_files_add(mesh_file_list *list, const char *from, const char *name, size_t n,
+                          int *at);
 
 /* The text of a file; malloc'ed. NULL: it cannot be read. */
 char *mesh_files_text(const char *path);

@@ -1,8 +1,12 @@
 #include "mesh/io/inp_cards.h"
 
 #include <ctype.h>
+#include <math.h>
 #include <string.h>
 #include <strings.h>
+
+#include "mesh/base/constants.h"
+#include "mesh/io/inp_parts.h"
 
 typedef struct {
   const char *name;
@@ -10,22 +14,61 @@ typedef struct {
   bool        face; /* marks a face; no membrane or shell is computed */
 } element_type;
 
+/* By the beginning of their names; what follows (C3D20RH, S8R5) changes nothing of the mesh. */
 static const element_type types[] = {
-    {"C3D10", 10, false},  {"C3D10M", 10, false}, {"C3D10T", 10, false}, {"C3D20", 20, false},
-    {"C3D20R", 20, false}, {"S6", 6, true},       {"STRI65", 6, true},   {"M3D6", 6, true},
-    {"SFM3D6", 6, true},   {"CPS6", 6, true},     {"CPE6", 6, true},     {"S8", 8, true},
-    {"S8R", 8, true},      {"M3D8", 8, true},     {"M3D8R", 8, true},    {"SFM3D8", 8, true},
-    {"CPS8", 8, true},     {"CPS8R", 8, true},    {"CPE8", 8, true},     {"T3D2", 0, false},
-    {"T3D3", 0, false}};
+    {"C3D10", 10, false}, {"C3D20", 20, false}, {"S6", 6, true},     {"STRI65", 6, true},
+    {"M3D6", 6, true},    {"SFM3D6", 6, true},  {"CPS6", 6, true},   {"CPE6", 6, true},
+    {"S8", 8, true},      {"M3D8", 8, true},    {"SFM3D8", 8, true}, {"CPS8", 8, true},
+    {"CPE8", 8, true},    {"T3D2", 0, false},   {"T3D3", 0, false}};
 
-static shb_status read_nodes(mesh_deck *deck, const mesh_card *card, mesh_inp *inp) {
-  char name[MESH_DECK_NAME];
-  int  set = -1;
-  MESH_DECK_CHECK(!mesh_card_has(card, "INPUT") && !mesh_card_has(card, "SYSTEM"), deck, card->line,
-                  "*NODE with %s is not supported; write rectangular coordinates into the file",
-                  mesh_card_has(card, "INPUT") ? "INPUT" : "SYSTEM");
-  SHB_TRY(mesh_card_value(deck, card, "NSET", name));
-  if (name[0]) set = mesh_inp_open_set(inp, MESH_INP_NSET, name, true, card->line);
+/* What a card of the mesh goes into. */
+typedef struct {
+  mesh_inp_model          *model;
+  mesh_deck               *deck;
+  const mesh_card         *card;
+  mesh_inp                *inp;
+  const mesh_inp_instance *of; /* raises its numbers */
+} reader;
+
+/* The set that the card names by a parameter, made if absent; -1: it names none. In the block of an
+ * instance the set is its own. */
+static shb_status open_set(const reader *r, const char *parameter, mesh_inp_kind kind,
+                           bool of_nodes, int *set) {
+  const mesh_inp_model *m = r->model;
+  char                  name[MESH_DECK_NAME], whole[MESH_INP_NAME];
+  SHB_TRY(mesh_card_value(r->deck, r->card, parameter, name));
+  snprintf(whole, sizeof whole, "%s%s%s", m->inside >= 0 ? m->instance[m->inside].name : "",
+           m->inside >= 0 ? "." : "", name);
+  *set = name[0] ? mesh_inp_open_set(r->inp, kind, whole, of_nodes, r->card->line) : -1;
+  return SHB_OK;
+}
+
+/* A set that an earlier card has named, that of the card's own instance before others. */
+static const mesh_inp_set *find_set(const reader *r, mesh_inp_kind kind, const char *name) {
+  char whole[MESH_INP_NAME];
+  snprintf(whole, sizeof whole, "%s.%s", r->of->name, name);
+  return mesh_inp_find(r->inp, kind, *r->of->name ? whole : name);
+}
+
+/* A row (number, R, theta in degrees, z) in rectangular coordinates; spherical: theta, phi. */
+static void from_polar(const char *system, double at[3]) {
+  const double radius = at[0], theta = at[1] * SHB_PI / 180, phi = at[2] * SHB_PI / 180;
+  const bool   sphere = toupper((unsigned char)system[0]) == 'S';
+  const double flat   = sphere ? radius * cos(phi) : radius;
+  at[0]               = flat * cos(theta);
+  at[1]               = flat * sin(theta);
+  if (sphere) at[2] = radius * sin(phi);
+}
+
+static shb_status read_nodes(const reader *r) {
+  mesh_deck *deck = r->deck;
+  char       system[MESH_DECK_NAME];
+  int        set;
+  SHB_TRY(mesh_card_value(deck, r->card, "SYSTEM", system));
+  SHB_TRY(open_set(r, "NSET", MESH_INP_NSET, true, &set));
+  MESH_DECK_CHECK(!system[0] || (!system[1] && strchr("RrCcSs", system[0])), deck, r->card->line,
+                  "*NODE: SYSTEM=%s; expected R, C or S", system);
+  if (mesh_card_has(r->card, "INPUT")) SHB_TRY(mesh_deck_include(deck, r->card));
   mesh_row row;
   for (bool more = true;;) {
     SHB_TRY(mesh_deck_row(deck, &row, &more));
@@ -35,8 +78,12 @@ static shb_status read_nodes(mesh_deck *deck, const mesh_card *card, mesh_inp *i
     mesh_inp_node node = {.line = row.line};
     SHB_TRY(mesh_deck_number(deck, row.field[0], &node.id));
     for (int d = 0; d < 3; d++) SHB_TRY(mesh_deck_real(deck, row.field[1 + d], &node.at[d]));
-    mesh_inp_add_node(inp, &node);
-    if (set >= 0) mesh_inp_add_member(&inp->set[set], &(mesh_inp_member){node.id, row.line, 0});
+    if (system[0] && !strchr("Rr", system[0])) from_polar(system, node.at);
+    if (r->model->has_system) mesh_inp_map_point(&r->model->system, node.at);
+    node.id += r->of->node;
+    mesh_inp_add_node(r->inp, &node);
+    if (set >= 0)
+      mesh_inp_add_member(&r->inp->set[set], &(mesh_inp_member){node.id, row.line, 0, false});
   }
 }
 
@@ -45,12 +92,13 @@ static shb_status find_type(const mesh_deck *deck, const mesh_card *card,
   char name[MESH_DECK_NAME];
   SHB_TRY(mesh_card_value(deck, card, "TYPE", name));
   for (size_t i = 0; i < sizeof types / sizeof *types; i++) {
-    *type = &types[i];
-    if (strcasecmp(name, types[i].name) == 0) return SHB_OK;
+    const size_t n = strlen(types[i].name);
+    *type          = &types[i];
+    if (strncasecmp(name, types[i].name, n) == 0 && !isdigit((unsigned char)name[n])) return SHB_OK;
   }
   bool linear = strcasecmp(name, "C3D4") == 0 || strncasecmp(name, "C3D8", 4) == 0;
   MESH_DECK_FAIL(deck, card->line,
-                 "*ELEMENT: type %s is not supported; C3D10 and C3D20(R) are%s (S6 and S8 may mark "
+                 "*ELEMENT: type %s is not supported; C3D10 and C3D20 are%s (S6 and S8 may mark "
                  "faces)",
                  name[0] ? name : "(none)", linear ? ": second order is needed" : "");
 }
@@ -77,23 +125,24 @@ static shb_status read_element(mesh_deck *deck, const element_type *type, mesh_i
   return SHB_OK;
 }
 
-static shb_status read_elements(mesh_deck *deck, const mesh_card *card, mesh_inp *inp) {
+static shb_status read_elements(const reader *r) {
+  mesh_deck          *deck = r->deck;
   const element_type *type;
-  char                name[MESH_DECK_NAME];
-  int                 set = -1;
-  MESH_DECK_CHECK(!mesh_card_has(card, "INPUT"), deck, card->line,
-                  "*ELEMENT with INPUT is not supported; write the elements into the file");
-  SHB_TRY(find_type(deck, card, &type));
+  int                 set;
+  SHB_TRY(find_type(deck, r->card, &type));
   if (type->n == 0) return SHB_OK;
-  SHB_TRY(mesh_card_value(deck, card, "ELSET", name));
-  if (name[0]) set = mesh_inp_open_set(inp, MESH_INP_ELSET, name, false, card->line);
+  SHB_TRY(open_set(r, "ELSET", MESH_INP_ELSET, false, &set));
+  if (mesh_card_has(r->card, "INPUT")) SHB_TRY(mesh_deck_include(deck, r->card));
   for (bool more = true;;) {
     mesh_inp_element element = {0};
     SHB_TRY(read_element(deck, type, &element, &more));
     if (!more) return SHB_OK;
-    mesh_inp_add_element(inp, &element);
+    element.id += r->of->element;
+    for (int i = 0; i < element.n; i++) element.node[i] += r->of->node;
+    mesh_inp_add_element(r->inp, &element);
     if (set >= 0)
-      mesh_inp_add_member(&inp->set[set], &(mesh_inp_member){element.id, element.line, 0});
+      mesh_inp_add_member(&r->inp->set[set],
+                          &(mesh_inp_member){element.id, element.line, 0, false});
   }
 }
 
@@ -111,57 +160,84 @@ static shb_status admit(const mesh_deck *deck, mesh_inp *inp, int into, const ch
   return SHB_OK;
 }
 
-static shb_status generate(mesh_deck *deck, const mesh_row *row, mesh_inp *inp, int into) {
-  long range[3] = {0, 0, 1};
+static long raised_by(const reader *r, int set) {
+  return r->inp->set[set].of_nodes ? r->of->node : r->of->element;
+}
+
+/* Numbers that the file does not have are skipped, as CalculiX skips them. */
+static shb_status generate(const reader *r, const mesh_row *row, int into) {
+  mesh_deck *deck     = r->deck;
+  long       range[3] = {0, 0, 1};
   MESH_DECK_CHECK(row->n == 2 || row->n == 3, deck, row->line,
                   "GENERATE: %d values; expected first, last, step", row->n);
   for (int i = 0; i < row->n; i++) SHB_TRY(mesh_deck_number(deck, row->field[i], &range[i]));
   MESH_DECK_CHECK(range[1] >= range[0], deck, row->line, "GENERATE: %ld to %ld counts down",
                   range[0], range[1]);
-  long last = (range[1] - range[0]) / range[2];
-  SHB_TRY(admit(deck, inp, into, "GENERATE", last + 1));
+  const long last = (range[1] - range[0]) / range[2], first = range[0] + raised_by(r, into);
+  SHB_TRY(admit(deck, r->inp, into, "GENERATE", last + 1));
   for (long i = 0; i <= last; i++)
-    mesh_inp_add_member(&inp->set[into], &(mesh_inp_member){range[0] + i * range[2], row->line, 0});
+    mesh_inp_add_member(&r->inp->set[into],
+                        &(mesh_inp_member){first + i * range[2], row->line, 0, true});
   return SHB_OK;
 }
 
-/* Add a member given by number, or all members of a set given by name; face as in
- * mesh_inp_member. */
-static shb_status add_named(mesh_deck *deck, mesh_inp *inp, int into, const char *field, int face) {
-  mesh_inp_kind   kind   = inp->set[into].of_nodes ? MESH_INP_NSET : MESH_INP_ELSET;
-  mesh_inp_member member = {.line = deck->line, .face = face};
-  if (mesh_deck_numeric(field)) {
-    SHB_TRY(mesh_deck_number(deck, field, &member.id));
-    mesh_inp_add_member(&inp->set[into], &member);
-    return SHB_OK;
-  }
-  const mesh_inp_set *from = mesh_inp_find(inp, kind, field);
-  MESH_DECK_CHECK(from, deck, deck->line, "%s '%.40s' is not defined before this line",
-                  kind == MESH_INP_NSET ? "node set" : "element set", field);
-  SHB_TRY(admit(deck, inp, into, inp->set[into].name, from->n));
+/* Add all members of a set; face as in mesh_inp_member, -1: those that they have. */
+static shb_status add_set(const reader *r, int into, mesh_inp_kind kind, const char *name,
+                          int face) {
+  static const char *const what[] = {"node set", "element set", "surface"};
+  const mesh_inp_set      *from   = find_set(r, kind, name);
+  MESH_DECK_CHECK(from, r->deck, r->deck->line, "%s '%.40s' is not defined before this line",
+                  what[kind], name);
+  MESH_DECK_CHECK(from->of_nodes == r->inp->set[into].of_nodes, r->deck, r->deck->line,
+                  "'%.40s' is made of nodes, or the other of faces", name);
+  SHB_TRY(admit(r->deck, r->inp, into, r->inp->set[into].name, from->n));
   for (int i = 0, n = from->n; i < n; i++) {
-    member.id = from->member[i].id;
-    mesh_inp_add_member(&inp->set[into], &member);
+    mesh_inp_member member = from->member[i];
+    member.line            = r->deck->line;
+    if (face >= 0) member.face = face;
+    mesh_inp_add_member(&r->inp->set[into], &member);
   }
   return SHB_OK;
 }
 
-static shb_status read_set(mesh_deck *deck, const mesh_card *card, mesh_inp_kind kind,
-                           mesh_inp *inp) {
+/* Add a member given by number, or all members of a set given by name. */
+static shb_status add_named(const reader *r, int into, const char *field, int face) {
+  mesh_inp_member member = {.line = r->deck->line, .face = face};
+  if (!mesh_deck_numeric(field))
+    return add_set(r, into, r->inp->set[into].of_nodes ? MESH_INP_NSET : MESH_INP_ELSET, field,
+                   face);
+  SHB_TRY(mesh_deck_number(r->deck, field, &member.id));
+  member.id += raised_by(r, into);
+  mesh_inp_add_member(&r->inp->set[into], &member);
+  return SHB_OK;
+}
+
+/* *NSET, ELSET=: the nodes of an element set. */
+static shb_status add_nodes_of(const reader *r, int into) {
+  char name[MESH_DECK_NAME];
+  SHB_TRY(mesh_card_value(r->deck, r->card, "ELSET", name));
+  const mesh_inp_set *of = find_set(r, MESH_INP_ELSET, name);
+  MESH_DECK_CHECK(of, r->deck, r->card->line, "*NSET: element set '%.40s' is not defined before",
+                  name);
+  mesh_inp_add_nodes_of(r->inp, into, of);
+  return SHB_OK;
+}
+
+static shb_status read_set(const reader *r, mesh_inp_kind kind) {
   const char *word = kind == MESH_INP_NSET ? "NSET" : "ELSET";
-  char        name[MESH_DECK_NAME];
-  SHB_TRY(mesh_card_value(deck, card, word, name));
-  MESH_DECK_CHECK(name[0], deck, card->line, "*%s without a name (%s=...)", word, word);
-  const int set = mesh_inp_open_set(inp, kind, name, kind == MESH_INP_NSET, card->line);
-  mesh_row  row;
+  int         set;
+  SHB_TRY(open_set(r, word, kind, kind == MESH_INP_NSET, &set));
+  MESH_DECK_CHECK(set >= 0, r->deck, r->card->line, "*%s without a name (%s=...)", word, word);
+  if (kind == MESH_INP_NSET && mesh_card_has(r->card, "ELSET")) return add_nodes_of(r, set);
+  mesh_row row;
   for (bool more = true;;) {
-    SHB_TRY(mesh_deck_row(deck, &row, &more));
+    SHB_TRY(mesh_deck_row(r->deck, &row, &more));
     if (!more) return SHB_OK;
-    if (mesh_card_has(card, "GENERATE")) {
-      SHB_TRY(generate(deck, &row, inp, set));
+    if (mesh_card_has(r->card, "GENERATE")) {
+      SHB_TRY(generate(r, &row, set));
       continue;
     }
-    for (int i = 0; i < row.n; i++) SHB_TRY(add_named(deck, inp, set, row.field[i], 0));
+    for (int i = 0; i < row.n; i++) SHB_TRY(add_named(r, set, row.field[i], 0));
   }
 }
 
@@ -179,65 +255,73 @@ static shb_status face_number(const mesh_deck *deck, const mesh_row *row, int *f
   return SHB_OK;
 }
 
-static shb_status read_surface(mesh_deck *deck, const mesh_card *card, mesh_inp *inp) {
-  char name[MESH_DECK_NAME], type[MESH_DECK_NAME];
-  SHB_TRY(mesh_card_value(deck, card, "NAME", name));
-  SHB_TRY(mesh_card_value(deck, card, "TYPE", type));
-  MESH_DECK_CHECK(name[0], deck, card->line, "*SURFACE without a name (NAME=...)");
-  bool nodes = strcasecmp(type, "NODE") == 0;
+/* *SURFACE, COMBINE=UNION: rows of surfaces. */
+static shb_status read_union(const reader *r, int set) {
+  mesh_row row;
+  for (bool more = true;;) {
+    SHB_TRY(mesh_deck_row(r->deck, &row, &more));
+    if (!more) return SHB_OK;
+    for (int i = 0; i < row.n; i++) SHB_TRY(add_set(r, set, MESH_INP_SURFACE, row.field[i], -1));
+  }
+}
+
+static shb_status read_surface(const reader *r) {
+  char type[MESH_DECK_NAME], combine[MESH_DECK_NAME];
+  int  set;
+  SHB_TRY(mesh_card_value(r->deck, r->card, "TYPE", type));
+  SHB_TRY(mesh_card_value(r->deck, r->card, "COMBINE", combine));
+  const bool nodes = strcasecmp(type, "NODE") == 0;
   if (!nodes && type[0] && strcasecmp(type, "ELEMENT") != 0)
     return SHB_OK; /* other types of surface define no group */
-  const int set = mesh_inp_open_set(inp, MESH_INP_SURFACE, name, nodes, card->line);
-  mesh_row  row;
+  SHB_TRY(open_set(r, "NAME", MESH_INP_SURFACE, nodes, &set));
+  MESH_DECK_CHECK(set >= 0, r->deck, r->card->line, "*SURFACE without a name (NAME=...)");
+  if (strcasecmp(combine, "UNION") == 0) return read_union(r, set);
+  MESH_DECK_CHECK(!combine[0], r->deck, r->card->line,
+                  "*SURFACE: COMBINE=%s is not supported; UNION is, or list the faces", combine);
+  mesh_row row;
   for (bool more = true;;) {
     int face = 0;
-    SHB_TRY(mesh_deck_row(deck, &row, &more));
+    SHB_TRY(mesh_deck_row(r->deck, &row, &more));
     if (!more) return SHB_OK;
-    if (!nodes) SHB_TRY(face_number(deck, &row, &face));
-    SHB_TRY(add_named(deck, inp, set, row.field[0], face));
+    if (!nodes) SHB_TRY(face_number(r->deck, &row, &face));
+    SHB_TRY(add_named(r, set, row.field[0], face));
   }
 }
 
 /* Refuse the cards that generate or move nodes and elements. */
-static shb_status refuse_others(const mesh_deck *deck, const mesh_card *card, int *parts) {
-  static const char *const makers[]             = {"NGEN",  "NFILL",  "NCOPY", "NMAP",
-                                                   "ELGEN", "ELCOPY", "SYSTEM"};
-  char                     file[MESH_DECK_NAME] = "";
-  if (strcmp(card->word, "INCLUDE") == 0) {
-    SHB_TRY(mesh_card_value(deck, card, "INPUT", file));
-    MESH_DECK_FAIL(deck, card->line, "*INCLUDE of '%s': put that file's text here", file);
-  }
+static shb_status refuse_others(const mesh_deck *deck, const mesh_card *card) {
+  static const char *const makers[] = {"NGEN", "NFILL", "NCOPY", "NMAP", "ELGEN", "ELCOPY"};
   for (size_t i = 0; i < sizeof makers / sizeof *makers; i++)
     MESH_DECK_CHECK(strcmp(card->word, makers[i]) != 0, deck, card->line,
                     "*%s is not supported; write the nodes and elements out", card->word);
-  if (strcmp(card->word, "PART") == 0)
-    MESH_DECK_CHECK((*parts)++ == 0, deck, card->line,
-                    "a second *PART; write the model without parts and assemblies");
   return SHB_OK;
 }
 
-/* An instance must not move its part. */
-static shb_status read_instance(mesh_deck *deck, const mesh_card *card) {
-  mesh_row row;
-  bool     more;
-  SHB_TRY(mesh_deck_row(deck, &row, &more));
-  MESH_DECK_CHECK(!more, deck, card->line,
-                  "*INSTANCE is moved; write the model without parts and assemblies");
-  return SHB_OK;
+static shb_status read_card(mesh_inp_model *model, const mesh_card *card) {
+  reader r = {.model = model, .deck = model->deck, .card = card};
+  bool   known;
+  SHB_TRY(mesh_inp_parts_card(model, card, &known));
+  if (known) return SHB_OK;
+  SHB_TRY(refuse_others(r.deck, card));
+  SHB_TRY(mesh_inp_parts_of(model, card, &r.of));
+  r.inp = model->inp;
+  if (strcmp(card->word, "NODE") == 0) return read_nodes(&r);
+  if (strcmp(card->word, "ELEMENT") == 0) return read_elements(&r);
+  if (strcmp(card->word, "NSET") == 0) return read_set(&r, MESH_INP_NSET);
+  if (strcmp(card->word, "ELSET") == 0) return read_set(&r, MESH_INP_ELSET);
+  return strcmp(card->word, "SURFACE") == 0 ? read_surface(&r) : SHB_OK;
 }
 
 shb_status mesh_inp_cards(mesh_deck *deck, mesh_inp *inp) {
-  mesh_card card;
-  int       parts = 0;
-  for (bool more = true;;) {
-    SHB_TRY(mesh_deck_card(deck, &card, &more));
-    if (!more) return SHB_OK;
-    SHB_TRY(refuse_others(deck, &card, &parts));
-    if (strcmp(card.word, "NODE") == 0) SHB_TRY(read_nodes(deck, &card, inp));
-    if (strcmp(card.word, "ELEMENT") == 0) SHB_TRY(read_elements(deck, &card, inp));
-    if (strcmp(card.word, "NSET") == 0) SHB_TRY(read_set(deck, &card, MESH_INP_NSET, inp));
-    if (strcmp(card.word, "ELSET") == 0) SHB_TRY(read_set(deck, &card, MESH_INP_ELSET, inp));
-    if (strcmp(card.word, "SURFACE") == 0) SHB_TRY(read_surface(deck, &card, inp));
-    if (strcmp(card.word, "INSTANCE") == 0) SHB_TRY(read_instance(deck, &card));
+  mesh_inp_model model = {.deck = deck, .whole = inp, .inp = inp, .inside = -1};
+  mesh_card      card;
+  bool           more   = true;
+  shb_status     status = mesh_deck_card(deck, &card, &more);
+  while (status == SHB_OK && more) {
+    status = read_card(&model, &card);
+    if (status == SHB_OK) status = mesh_deck_card(deck, &card, &more);
   }
+  if (status == SHB_OK) status = mesh_inp_parts_end(&model);
+  mesh_inp_parts_free(&model);
+  return status;
 }

@@ -4,8 +4,9 @@
 
 #include "mesh/io/inp_table.h"
 
-/* Read *NODE, *ELEMENT, *NSET, *ELSET and *SURFACE. Other cards that change the mesh (*INCLUDE,
- * *NGEN, ...) are refused. The rest (materials, steps) is skipped. SHB_ERR_INPUT, SHB_ERR_IO. */
+/* Read *NODE, *ELEMENT, *NSET, *ELSET, *SURFACE, parts and systems. Other cards that change the
+ * mesh (*NGEN, ...) are refused. The rest (materials, steps) is skipped. SHB_ERR_INPUT,
+ * SHB_ERR_IO. */
 shb_status mesh_inp_cards(mesh_deck *deck, mesh_inp *inp);
 
 #endif

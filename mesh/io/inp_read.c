@@ -113,12 +113,15 @@ static shb_status own_face(const builder *b, const mesh_inp_element *from, const
   return SHB_OK;
 }
 
-/* Nodes of a member of a surface or element set that is a face. */
+/* Nodes of a member of a surface or element set that is a face. found: false in the gap of a
+ * range. */
 static shb_status member_face(const builder *b, const mesh_inp_member *member, const char *name,
-                              int *nodes) {
+                              int *nodes, bool *found) {
   int at = mesh_inp_element_at(&b->inp, member->id);
-  MESH_DECK_CHECK(at >= 0, b->deck, member->line, "group %s: element %ld is not in the file", name,
-                  member->id);
+  *found = at >= 0;
+  MESH_DECK_CHECK(*found || member->may_lack, b->deck, member->line,
+                  "group %s: element %ld is not in the file", name, member->id);
+  if (!*found) return SHB_OK;
   const mesh_inp_element *from = &b->inp.element[at];
   if (from->face) return own_face(b, from, name, nodes);
   MESH_DECK_CHECK(member->face > 0, b->deck, member->line,
@@ -136,9 +139,12 @@ static shb_status faces_of_elements(builder *b, const mesh_inp_set *from, int id
   const size_t   each = (size_t)mesh_topology_of(b->mesh->kind)->face_nodes;
   mesh_face_set *set  = &b->mesh->set[id];
   set->nodes          = shb_alloc(each * (size_t)from->n, sizeof *set->nodes);
-  for (int i = 0; i < from->n; i++)
+  for (int i = 0; i < from->n; i++) {
+    bool found;
     SHB_TRY(member_face(b, &from->member[i], mesh_fe_set_name(b->mesh, id),
-                        set->nodes + each * (size_t)set->n++));
+                        set->nodes + each * (size_t)set->n, &found));
+    set->n += found;
+  }
   return SHB_OK;
 }
 
@@ -148,7 +154,7 @@ static shb_status faces_of_nodes(builder *b, const mesh_inp_set *from, int id) {
   shb_status status = SHB_OK;
   for (int i = 0; i < from->n && status == SHB_OK; i++) {
     int at = mesh_inp_node_at(&b->inp, from->member[i].id);
-    if (at < 0)
+    if (at < 0 && !from->member[i].may_lack)
       status = mesh_deck_fail(b->deck, from->member[i].line, __FILE__, __LINE__,
                               "group %s: node %ld is not in the file",
                               mesh_fe_set_name(b->mesh, id), from->member[i].id);
@@ -187,8 +193,9 @@ static shb_status take_volume(builder *b, mesh_regions *regions, int i) {
   for (int m = 0; m < set->n; m++) {
     const mesh_inp_member *member = &set->member[m];
     int                    at     = mesh_inp_element_at(&b->inp, member->id);
-    MESH_DECK_CHECK(at >= 0, b->deck, member->line,
+    MESH_DECK_CHECK(at >= 0 || member->may_lack, b->deck, member->line,
                     "element set %s: element %ld is not in the file", name, member->id);
+    if (at < 0) continue;
     MESH_DECK_CHECK(b->volume[at] >= 0, b->deck, member->line,
                     "element set %s: element %ld is a face, not a volume", name, member->id);
     mesh_regions_assign(regions, b->volume[at], i);

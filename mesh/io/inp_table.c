@@ -30,16 +30,21 @@ void mesh_inp_add_member(mesh_inp_set *set, const mesh_inp_member *member) {
   set->member[set->n++] = *member;
 }
 
-mesh_inp_set *mesh_inp_find(const mesh_inp *inp, mesh_inp_kind kind, const char *name) {
-  const char *dot = strrchr(name, '.');
+static mesh_inp_set *find_whole_name(const mesh_inp *inp, mesh_inp_kind kind, const char *name) {
   for (int i = 0; i < inp->n_sets; i++)
     if (inp->set[i].kind == kind && strcasecmp(inp->set[i].name, name) == 0) return &inp->set[i];
-  return dot ? mesh_inp_find(inp, kind, dot + 1) : NULL;
+  return NULL;
+}
+
+mesh_inp_set *mesh_inp_find(const mesh_inp *inp, mesh_inp_kind kind, const char *name) {
+  mesh_inp_set *found = find_whole_name(inp, kind, name);
+  const char   *dot   = strrchr(name, '.');
+  return found || !dot ? found : mesh_inp_find(inp, kind, dot + 1);
 }
 
 int mesh_inp_open_set(mesh_inp *inp, mesh_inp_kind kind, const char *name, bool of_nodes,
-                      long line) {
-  const mesh_inp_set *found = mesh_inp_find(inp, kind, name);
+                      mesh_place line) {
+  const mesh_inp_set *found = find_whole_name(inp, kind, name);
   if (found) return (int)(found - inp->set);
   reserve((void **)&inp->set, inp->n_sets, &inp->set_room, sizeof *inp->set);
   mesh_inp_set *set = &inp->set[inp->n_sets];
@@ -48,8 +53,75 @@ int mesh_inp_open_set(mesh_inp *inp, mesh_inp_kind kind, const char *name, bool 
   return inp->n_sets++;
 }
 
+void mesh_inp_map_point(const mesh_inp_map *map, double at[3]) {
+  const double x[3] = {at[0], at[1], at[2]};
+  for (int i = 0; i < 3; i++)
+    at[i] =
+        map->axes[i][0] * x[0] + map->axes[i][1] * x[1] + map->axes[i][2] * x[2] + map->origin[i];
+}
+
+/* Members of a set behind those of another; their numbers are raised. */
+static void append_set(mesh_inp_set *to, const mesh_inp_set *from, long raise) {
+  for (int i = 0, n = from->n; i < n; i++) {
+    mesh_inp_member member = from->member[i];
+    member.id += raise;
+    mesh_inp_add_member(to, &member);
+  }
+}
+
+void mesh_inp_append(mesh_inp *inp, const mesh_inp *part, const mesh_inp_placement *placement) {
+  for (int i = 0; i < part->n_nodes; i++) {
+    mesh_inp_node node = part->node[i];
+    node.id += placement->node;
+    mesh_inp_map_point(&placement->map, node.at);
+    mesh_inp_add_node(inp, &node);
+  }
+  for (int i = 0; i < part->n_elements; i++) {
+    mesh_inp_element element = part->element[i];
+    element.id += placement->element;
+    for (int j = 0; j < element.n; j++) element.node[j] += placement->node;
+    mesh_inp_add_element(inp, &element);
+  }
+  for (int i = 0; i < part->n_sets; i++) {
+    const mesh_inp_set *from = &part->set[i];
+    char                name[MESH_DECK_NAME + MESH_INP_NAME];
+    snprintf(name, sizeof name, "%s%s%s", placement->name, *placement->name ? "." : "", from->name);
+    const int to = mesh_inp_open_set(inp, from->kind, name, from->of_nodes, from->line);
+    append_set(&inp->set[to], from, from->of_nodes ? placement->node : placement->element);
+  }
+}
+
+void mesh_inp_share_names(mesh_inp *inp) {
+  for (int i = 0, n = inp->n_sets; i < n; i++) {
+    const mesh_inp_set  from = inp->set[i];
+    const char         *dot  = strrchr(from.name, '.');
+    const mesh_inp_set *own  = dot ? find_whole_name(inp, from.kind, dot + 1) : NULL;
+    if (!dot || (own && own - inp->set < n)) continue;
+    const int to = mesh_inp_open_set(inp, from.kind, dot + 1, from.of_nodes, from.line);
+    append_set(&inp->set[to], &from, 0);
+  }
+}
+
 static int compare(long a, long b) {
   return (a > b) - (a < b);
+}
+
+static int by_number(const void *a, const void *b) {
+  return compare(*(const long *)a, *(const long *)b);
+}
+
+void mesh_inp_add_nodes_of(mesh_inp *inp, int into, const mesh_inp_set *of) {
+  long *wanted = shb_alloc((size_t)of->n, sizeof *wanted);
+  for (int i = 0; i < of->n; i++) wanted[i] = of->member[i].id;
+  qsort(wanted, (size_t)of->n, sizeof *wanted, by_number);
+  for (int e = 0; e < inp->n_elements; e++) {
+    const mesh_inp_element *element = &inp->element[e];
+    if (!bsearch(&element->id, wanted, (size_t)of->n, sizeof *wanted, by_number)) continue;
+    for (int i = 0; i < element->n; i++)
+      mesh_inp_add_member(&inp->set[into],
+                          &(mesh_inp_member){element->node[i], element->line, 0, 0});
+  }
+  free(wanted);
 }
 
 static int by_node(const void *a, const void *b) {
@@ -61,10 +133,11 @@ static int by_element(const void *a, const void *b) {
 }
 
 /* Name the later of the two lines. */
-static shb_status refuse_duplicate(const mesh_deck *deck, const char *what, long id, long a,
-                                   long b) {
-  MESH_DECK_FAIL(deck, a > b ? a : b, "%s %ld is given twice, first in line %ld", what, id,
-                 a > b ? b : a);
+static shb_status refuse_duplicate(const mesh_deck *deck, const char *what, long id, mesh_place a,
+                                   mesh_place b) {
+  MESH_DECK_FAIL(deck, a > b ? a : b, "%s %ld is given twice, first in line %ld%s%s", what, id,
+                 mesh_place_line(a > b ? b : a), a >> 32 == b >> 32 ? "" : " of ",
+                 a >> 32 == b >> 32 ? "" : mesh_place_file(deck, a > b ? b : a));
 }
 
 shb_status mesh_inp_sort(mesh_inp *inp, const mesh_deck *deck) {

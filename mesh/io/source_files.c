@@ -3,40 +3,22 @@
 #include <inttypes.h>
 #include <stdint.h>
 #include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
-#include <strings.h>
 
 #include "mesh/base/publish.h"
 #include "mesh/core/file_format.h"
 #include "mesh/gmsh/script_files.h"
-
-/* Cards "*INCLUDE, INPUT=NAME", the name with or without quotes. */
-static shb_status add_cards(mesh_file_list *list, const char *from, const char *text) {
-  static const char card[] = "*INCLUDE", key[] = "INPUT";
-  for (const char *line = text; *line; line += strcspn(line, "\n"), line += *line == '\n') {
-    if (strncasecmp(line, card, sizeof card - 1) != 0) continue;
-    const char *end = line + strcspn(line, "\r\n"), *at = line + sizeof card - 1;
-    while (at < end && strncasecmp(at, key, sizeof key - 1) != 0) at++;
-    at = at < end ? at + sizeof key - 1 : end;
-    at += strspn(at, " =\t\"'");
-    if (at >= end) continue;
-    size_t n = (size_t)(end - at);
-    while (n > 0 && strchr(" \t\"'", at[n - 1])) n--;
-    SHB_TRY(mesh_files_add(list, from, at, n));
-  }
-  return SHB_OK;
-}
+#include "mesh/io/inp_deck.h"
 
 static shb_status deck_files(const char *path, mesh_file_list *list) {
-  mesh_files_begin(path, list);
-  for (int i = 0; i < list->n; i++) {
-    char            *text   = mesh_files_text(list->path[i]);
-    const shb_status status = text ? add_cards(list, list->path[i], text) : SHB_OK;
-    free(text);
-    SHB_TRY(status);
-  }
-  return SHB_OK;
+  mesh_deck  deck;
+  mesh_card  card;
+  bool       more   = true;
+  shb_status status = mesh_deck_open(path, &deck);
+  while (status == SHB_OK && more) status = mesh_deck_card(&deck, &card, &more);
+  *list      = deck.files;
+  deck.files = (mesh_file_list){0};
+  mesh_deck_close(&deck);
+  return status;
 }
 
 /* FNV-1a over the fingerprints, in the order of the list. */

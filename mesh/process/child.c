@@ -33,13 +33,16 @@ char *shb_child_program(const char *name) {
   return shb_text(name);
 }
 
+/* A blocked signal is delivered though it is ignored, as SIGHUP is by nohup: it is not blocked. */
 static sigset_t waited_signals(void) {
-  sigset_t set;
+  struct sigaction hangup;
+  sigset_t         set;
   sigemptyset(&set);
   sigaddset(&set, SIGINT);
   sigaddset(&set, SIGTERM);
-  sigaddset(&set, SIGHUP);
   sigaddset(&set, SIGCHLD);
+  if (sigaction(SIGHUP, NULL, &hangup) == 0 && hangup.sa_handler != SIG_IGN)
+    sigaddset(&set, SIGHUP);
   return set;
 }
 

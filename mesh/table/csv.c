@@ -2,6 +2,7 @@
 
 #include <stdlib.h>
 #include <string.h>
+#include <strings.h>
 
 #include "mesh/base/memory.h"
 #include "mesh/table/text_file.h"
@@ -47,6 +48,13 @@ static bool begins_number(const char *text) {
   return *text >= '0' && *text <= '9';
 }
 
+/* A comment begins with #. Capital letters with / ! or ? are an error of a spreadsheet: #DIV/0!,
+ * #NAME?, also in other languages. */
+static bool is_comment(const char *text) {
+  const size_t n = strspn(text + 1, "ABCDEFGHIJKLMNOPQRSTUVWXYZ_0123456789/!?");
+  return text[0] == '#' && (n == 0 || strcspn(text + 1, "/!?") >= n);
+}
+
 /* A blank before a unit is part of the cell: 1 %. */
 static bool separates(const scanner *s) {
   if (s->table->separator != ' ') return *s->at && *s->at == s->table->separator;
@@ -71,7 +79,7 @@ static char separator_of(const char *text) {
   int               found   = 3;
   bool              quoted = false, fresh = true; /* fresh: no text in this line so far */
   for (; *text && (found == 3 || quoted || !is_end(*text)); text++) {
-    if (fresh && *text == '#') text += strcspn(text, "\r\n") - 1;
+    if (fresh && is_comment(text)) text += strcspn(text, "\r\n") - 1;
     if (*text == '"') quoted = !quoted;
     for (int i = 0; i < found && !quoted; i++)
       if (*text == order[i]) found = i;
@@ -133,7 +141,7 @@ static shb_status take_row(scanner *s) {
   bool        text  = false;
   grow((void **)&t->first, t->n_rows + 1, &s->row_room, sizeof *t->first);
   skip_blanks(s);
-  const bool comment = *s->at == '#';
+  const bool comment = is_comment(s->at);
   for (bool more = !comment; more;) {
     SHB_TRY(take_cell(s));
     text = text || t->cell[s->n_cells - 1].length > 0;
@@ -191,8 +199,15 @@ int mesh_table_line(const mesh_table *table, int row) {
   return mesh_table_cell(table, row, 0)->line;
 }
 
+static bool is_name(const char *text) {
+  return !begins_number(text) && !strchr("=+-@#", text[0]) && strcasecmp(text, "nan") != 0 &&
+         strcasecmp(text, "inf") != 0;
+}
+
 bool mesh_table_is_header(const mesh_table *table, int row) {
-  for (int i = 0; i < mesh_table_cells(table, row); i++)
-    if (begins_number(mesh_table_cell(table, row, i)->text)) return false;
+  for (int i = 0; i < mesh_table_cells(table, row); i++) {
+    const char *text = mesh_table_cell(table, row, i)->text;
+    if (*text && !is_name(text)) return false;
+  }
   return true;
 }

@@ -3,8 +3,9 @@
  * Cells are separated by tabs, semicolons or commas: by the first of these in the first row that
  * has one. A first line "sep=X" says so instead. In a file without any, blanks before a number or a
  * quote separate, if the reader allows it. Lines end with LF, CRLF or CR. A UTF-8 byte-order mark
- * is passed over, and so are rows without any text and rows that begin with #. A cell in double
- * quotes holds anything; two quotes within stand for one (RFC 4180). */
+ * is passed over, and so are rows without any text and rows that begin with #. Errors of a
+ * spreadsheet, as #N/A, are cells. A cell in double quotes holds anything; two quotes within stand
+ * for one (RFC 4180). */
 #ifndef MESH_TABLE_CSV_H
 #define MESH_TABLE_CSV_H
 
@@ -42,7 +43,8 @@ const mesh_cell *mesh_table_cell(const mesh_table *table, int row, int column);
 /* Line of the file where a row stands. */
 int mesh_table_line(const mesh_table *table, int row);
 
-/* Whether a row holds names: no cell of it begins as a number does. */
+/* Whether a row holds names: no cell of it begins as a number or formula does. An error of a
+ * spreadsheet, nan and inf are no names. */
 bool mesh_table_is_header(const mesh_table *table, int row);
 
 #endif

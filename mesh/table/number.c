@@ -22,7 +22,7 @@ static size_t length_of(const char *text) {
   return (size_t)(at - text);
 }
 
-static bool is_whole(const char *text) {
+bool mesh_text_is_whole(const char *text) {
   if (*text == '+' || *text == '-') text++;
   return *text && strspn(text, "0123456789") == strlen(text);
 }
@@ -31,7 +31,7 @@ static bool is_whole(const char *text) {
 static bool is_cut(const mesh_table *t, int row, int column) {
   if (t->separator != ',' || column + 1 >= mesh_table_cells(t, row)) return false;
   const char *rest = mesh_table_cell(t, row, column + 1)->text;
-  return is_whole(mesh_table_cell(t, row, column)->text) && rest[0] == '0' &&
+  return mesh_text_is_whole(mesh_table_cell(t, row, column)->text) && rest[0] == '0' &&
          isdigit((unsigned char)rest[1]);
 }
 

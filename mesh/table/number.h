@@ -4,6 +4,9 @@
 
 #include "mesh/table/csv.h"
 
+/* Digits with a sign, and no more. */
+bool mesh_text_is_whole(const char *text);
+
 /* The number in a cell, whatever the locale, and what stands behind it.
  *
  *   expected  in   what would be right, for messages: "a deviation such as 0.01 or 1 %"

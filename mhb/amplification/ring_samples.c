@@ -60,19 +60,16 @@ static shb_status trace(const mhb_settings *settings, double n0, mhb_ring_peak *
   mhb_monitor monitor = {
       .point = go_on, .searching = searching, .is_due = never_due, .publish = publish_nothing};
   const modal_model *whole = &settings->ring->whole;
-  int                m[MHB_MAX_LEVELS], n = mhb_harmonic_levels_ladder(whole, settings, m), branch;
+  int                m[MHB_MAX_LEVELS], n = mhb_harmonic_levels_ladder(whole, settings, m);
   mhb_settings       first   = *settings;
   mhb_balance       *balance = NULL;
   mhb_response      *response =
       mhb_response_create(whole->n_pairs, whole->n_probes, mhb_harmonic_levels_usual(n, m));
   first.harmonics   = m[0];
-  shb_status status = response ? SHB_OK : shb_fail(SHB_ERR_IO, __FILE__, __LINE__, "out of memory");
+  response->ring    = settings->ring->blades;
+  shb_status status = mhb_balance_create(whole, &first, &balance);
   if (status == SHB_OK) {
-    response->ring = settings->ring->blades;
-    status         = mhb_balance_create(whole, &first, &balance);
-  }
-  if (status == SHB_OK) status = mhb_response_branch(response, MHB_BRANCH_NONLINEAR, &branch);
-  if (status == SHB_OK) {
+    mhb_response_branch(response, MHB_BRANCH_NONLINEAR);
     mhb_balance_set_preload(balance, n0);
     mhb_balance_set_parameter(balance, settings->parameter);
     status = mhb_trace_main_branch(balance, response, &monitor);
@@ -123,8 +120,8 @@ static void store(work *w, int at, const mhb_ring_peak *peak) {
 
 static shb_status make(const mhb_settings *settings, const mhb_sampling *sampling, int preloads,
                        mhb_samples **out) {
-  const int N = settings->ring->blades;
-  SHB_TRY(mhb_samples_create(sampling->n, preloads, N, out));
+  const int N    = settings->ring->blades;
+  *out           = mhb_samples_create(sampling->n, preloads, N);
   mhb_samples *s = *out;
   for (int i = 0; i < preloads; i++) s->n0[i] = settings->n0[i];
   for (int i = 0; i < s->n; i++)

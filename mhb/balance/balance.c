@@ -8,11 +8,13 @@
 #include <string.h>
 
 #include "mesh/base/constants.h"
+#include "mesh/base/memory.h"
 #include "mhb/balance/ring_condensation.h"
 #include "mhb/balance/stuck_solver.h"
 #include "mhb/contact/slip_onset.h"
 #include "mhb/numerics/fourier.h"
 #include "mhb/numerics/simd.h"
+#include "mhb/problem/wave.h"
 #include "mhb/structure/ring_receptance.h"
 
 /* Margin of a bound that decides the state of a pair. */
@@ -26,7 +28,6 @@ static shb_status create_contacts(mhb_balance *b) {
   int threads  = omp_in_parallel() || b->n_pairs < WORTH_THREADS ? 1 : omp_get_max_threads();
   b->contacts  = shb_arena_take(&b->arena, (size_t)threads, sizeof(mhb_contact_evaluator *));
   b->n_threads = threads;
-  SHB_CHECK(b->contacts, SHB_ERR_IO, "out of memory");
   for (int i = 0; i < threads; i++)
     SHB_TRY(mhb_contact_evaluator_create(b->m, b->m, b->settings->tolerance, &b->contacts[i]));
   b->contact = b->contacts[0];
@@ -36,10 +37,10 @@ static shb_status create_contacts(mhb_balance *b) {
 /* Each contact of a ring is evaluated in the time of its own blade. So the tuned wave has the same
  * numbers in all of them, whatever the tolerance of the law. */
 static void set_lags(mhb_balance *b) {
-  const int    N     = b->receptance->ring->blades;
-  const double shift = mhb_wave_shift(b->settings) > 0 ? mhb_wave_shift(b->settings) : 0;
-  const double step  = SHB_TWO_PI / b->receptance->nu *
-                      ((double)b->settings->engine_order / b->settings->blades + shift);
+  const mhb_driven_wave wave  = mhb_settings_wave(b->settings);
+  const int             N     = b->receptance->ring->blades;
+  const double          shift = fmax(mhb_driven_wave_shift(wave), 0);
+  const double step = SHB_TWO_PI / wave.periods * ((double)wave.order / wave.blades + shift);
   for (int i = 0; i < N; i++)
     for (int k = 0; k <= b->m; k++)
       b->lag[i * (b->m + 1) + k] = cexp(-I * fmod(fmod(i * step, SHB_TWO_PI) * k, SHB_TWO_PI));
@@ -61,8 +62,8 @@ static void operating_point_changed(mhb_balance *b) {
   set_laws(b);
 }
 
-shb_status mhb_balance_product(const mhb_balance *b, mhb_receptance *receptance, int first, int m,
-                               mhb_receptance_product **out) {
+mhb_receptance_product *mhb_balance_product(const mhb_balance *b, mhb_receptance *receptance,
+                                            int first, int m) {
   const double from = fmax(b->settings->frequency[0], b->settings->frequency[1]);
   double       stiffness[3 * b->n_pairs], top = 0;
   for (int a = 0; a < b->n_pairs; a++)
@@ -72,14 +73,8 @@ shb_status mhb_balance_product(const mhb_balance *b, mhb_receptance *receptance,
     stiffness[i]       = fmax(i % 3 ? law->ku[i % 3 == 2 ? 2 : 0] : law->kv, 1e-3 * top);
     if (!(stiffness[i] > 0)) stiffness[i] = 1;
   }
-  *out = mhb_receptance_product_create(receptance, first, m, stiffness,
+  return mhb_receptance_product_create(receptance, first, m, stiffness,
                                        SHB_TWO_PI * fmax(from, receptance->model->frequency[0]));
-  return SHB_OK;
-}
-
-static shb_status create_product(mhb_balance *b) {
-  if (b->n_pairs < MHB_MANY_PAIRS || b->receptance->at || b->receptance->ring) return SHB_OK;
-  return mhb_balance_product(b, b->receptance, 0, b->m, &b->product);
 }
 
 shb_status mhb_balance_create(const modal_model *model, const mhb_settings *settings,
@@ -96,9 +91,8 @@ shb_status mhb_balance_create(const modal_model *model, const mhb_settings *sett
 
 shb_status mhb_balance_create_on(mhb_receptance *receptance, const mhb_settings *settings,
                                  mhb_balance **out) {
-  mhb_balance *b = calloc(1, sizeof *b);
-  SHB_CHECK(b, SHB_ERR_IO, "out of memory");
-  int m           = settings->harmonics;
+  mhb_balance *b  = shb_alloc_zeroed(1, sizeof *b);
+  int          m  = settings->harmonics;
   b->settings     = settings;
   b->receptance   = receptance;
   b->m            = m;
@@ -112,12 +106,10 @@ shb_status mhb_balance_create_on(mhb_receptance *receptance, const mhb_settings 
   b->motion_k     = shb_arena_take(&b->arena, 3 * pairs, sizeof(double complex));
   if (receptance->ring) {
     b->lag = shb_arena_take(&b->arena, pairs * ((size_t)m + 1), sizeof(double complex));
-    if (b->lag) set_lags(b);
+    set_lags(b);
   }
-  shb_status status = SHB_OK;
-  if (b->arena.failed) status = shb_fail(SHB_ERR_IO, __FILE__, __LINE__, "out of memory");
-  if (status == SHB_OK) status = mhb_evaluation_create(b, &b->default_evaluation);
-  if (status == SHB_OK) status = create_contacts(b);
+  b->default_evaluation   = mhb_evaluation_create(b);
+  const shb_status status = create_contacts(b);
   if (status != SHB_OK) {
     mhb_balance_destroy(b);
     return status;
@@ -125,11 +117,8 @@ shb_status mhb_balance_create_on(mhb_receptance *receptance, const mhb_settings 
   b->eval     = b->default_evaluation;
   b->eval->at = mhb_operating_point_of(settings);
   operating_point_changed(b);
-  status = create_product(b);
-  if (status != SHB_OK) {
-    mhb_balance_destroy(b);
-    return status;
-  }
+  if (b->n_pairs >= MHB_MANY_PAIRS && !receptance->at && !receptance->ring)
+    b->product = mhb_balance_product(b, receptance, 0, m);
   *out = b;
   return SHB_OK;
 }
@@ -146,27 +135,21 @@ void mhb_balance_destroy(mhb_balance *b) {
   free(b);
 }
 
-shb_status mhb_evaluation_create(const mhb_balance *b, mhb_evaluation **out) {
-  mhb_evaluation *e = calloc(1, sizeof *e);
-  SHB_CHECK(e, SHB_ERR_IO, "out of memory");
-  size_t pairs = (size_t)b->n_pairs, block = 3 * (size_t)b->nb;
+mhb_evaluation *mhb_evaluation_create(const mhb_balance *b) {
+  mhb_evaluation *e     = shb_alloc_zeroed(1, sizeof *e);
+  size_t          pairs = (size_t)b->n_pairs, block = 3 * (size_t)b->nb;
   e->p            = shb_arena_take(&e->arena, (size_t)b->n, sizeof(double));
   e->dp           = shb_arena_take(&e->arena, pairs * block * block, sizeof(double));
   e->linear_dp    = shb_arena_take(&e->arena, pairs, sizeof *e->linear_dp);
   e->kind         = shb_arena_take(&e->arena, pairs, sizeof *e->kind);
   e->info         = shb_arena_take(&e->arena, pairs, sizeof *e->info);
   e->by_parameter = shb_arena_take(&e->arena, (size_t)b->n, sizeof(double));
-  if (e->arena.failed) {
-    mhb_evaluation_destroy(e);
-    SHB_FAIL(SHB_ERR_IO, "out of memory for %d unknowns", b->n);
-  }
   for (size_t a = 0; a < pairs; a++) e->linear_dp[a] = -1;
   if (b->eval) {
     e->at = b->eval->at;
     memcpy(e->own, b->eval->own, sizeof e->own);
   }
-  *out = e;
-  return SHB_OK;
+  return e;
 }
 
 void mhb_evaluation_destroy(mhb_evaluation *e) {
@@ -693,7 +676,7 @@ bool mhb_balance_solve_many_stuck(mhb_balance *b, int k, const mhb_pair_kind *ki
                                   double complex *u) {
   const double *range = b->settings->frequency;
   if (!b->product) return false;
-  if (!b->stuck && mhb_stuck_solver_create(b->product, b->m, &b->stuck) != SHB_OK) return false;
+  if (!b->stuck) b->stuck = mhb_stuck_solver_create(b->product, b->m);
   return mhb_stuck_solver_solve(b->stuck, k, 0.5 * SHB_TWO_PI * (range[0] + range[1]), b->law, kind,
                                 u);
 }
@@ -713,8 +696,7 @@ static shb_status solve_stuck(mhb_balance *b, int k, int stuck, double complex *
   const int              n = 3 * b->n_pairs;
   lapack_complex_double  few[n < FEW ? n * n : 1];
   lapack_int             ipiv[n];
-  lapack_complex_double *A = n < FEW ? few : calloc((size_t)n * (size_t)n, sizeof *A);
-  SHB_CHECK(A, SHB_ERR_IO, "out of memory for %d stuck pairs", b->n_pairs);
+  lapack_complex_double *A = n < FEW ? few : shb_alloc_zeroed((size_t)n * (size_t)n, sizeof *A);
   mhb_stick_matrix(b->n_pairs, b->law, kind, k,
                    b->receptance->R + (size_t)k * (size_t)n * (size_t)n, A);
   const lapack_int bad = LAPACKE_zgesv_work(LAPACK_COL_MAJOR, n, 1, A, n, ipiv, u, n);

@@ -83,13 +83,12 @@ void       mhb_balance_destroy(mhb_balance *balance);
 
 /* Products with harmonics first..m of a receptance. Their accuracy is measured by the balance's
  * laws. */
-shb_status mhb_balance_product(const mhb_balance *balance, mhb_receptance *receptance, int first,
-                               int m, mhb_receptance_product **product);
+mhb_receptance_product *mhb_balance_product(const mhb_balance *balance, mhb_receptance *receptance,
+                                            int first, int m);
 
-/* An evaluation for this balance, at the balance's operating point; its results are not made yet.
- * SHB_ERR_IO: no memory. */
-shb_status mhb_evaluation_create(const mhb_balance *balance, mhb_evaluation **evaluation);
-void       mhb_evaluation_destroy(mhb_evaluation *evaluation);
+/* An evaluation for this balance, at its operating point; the results are not made yet. */
+mhb_evaluation *mhb_evaluation_create(const mhb_balance *balance);
+void            mhb_evaluation_destroy(mhb_evaluation *evaluation);
 
 /* Use this evaluation from here on; NULL: the balance's own. Its operating point becomes the
  * balance's: laws and receptance follow. Trap: an operating point, preload or tie that was set

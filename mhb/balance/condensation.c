@@ -7,6 +7,7 @@
 #include <string.h>
 
 #include "mesh/base/constants.h"
+#include "mesh/base/memory.h"
 #include "mhb/balance/stick_stiffness.h"
 #include "mhb/numerics/lu.h"
 
@@ -29,70 +30,58 @@ static size_t n_axes(const mhb_condensation *s) {
 }
 
 /* The large arrays are not cleared: their pages are touched only as far as they are used. */
-static int allocate(mhb_condensation *s) {
+static void allocate(mhb_condensation *s) {
   size_t pairs = (size_t)s->balance->n_pairs, n3 = n_axes(s), K = (size_t)s->balance->m + 1;
   size_t size           = (size_t)s->capacity + MHB_MOST_BORDERS;
   size_t borders        = 1 + 2 * (pairs < MHB_MOST_AT_LIMIT ? pairs : MHB_MOST_AT_LIMIT);
   size_t half           = n3 * n3 / 4 + 1; /* 3 stuck times 3 nonlinear is never more */
-  s->kind               = calloc(pairs, sizeof *s->kind);
-  s->form               = calloc(pairs, sizeof *s->form);
-  s->nonlinear          = calloc(pairs, sizeof(int));
-  s->stuck              = calloc(pairs, sizeof(int));
-  s->factored           = calloc(pairs, sizeof(int));
-  s->is_factored        = calloc(K, 1);
-  s->A                  = malloc(K * n3 * n3 * sizeof(double complex));
-  s->A_pivot            = calloc(K * n3, sizeof(int));
-  s->schur              = malloc(K * n3 * n3 * sizeof(double complex));
-  s->stuck_to_nonlinear = malloc(K * half * sizeof(double complex));
-  s->nonlinear_to_stuck = malloc(K * half * sizeof(double complex));
-  s->columns            = calloc(borders * K * n3, sizeof(double complex));
-  s->rows               = calloc(borders * K * n3, sizeof(double complex));
-  s->dense              = malloc(size * size * sizeof(double));
-  s->unknown            = calloc(size, sizeof(double));
-  s->live               = calloc(n3, sizeof(int));
-  s->full               = calloc((size_t)s->balance->n, sizeof(double));
-  s->full_row           = malloc(borders * (size_t)s->balance->n * sizeof(double));
-  s->pivot              = calloc(size, sizeof(int));
-  s->rhs                = calloc(K * n3, sizeof(double complex));
-  s->nonlinear_force    = calloc(K * n3, sizeof(double complex));
-  s->stuck_force        = calloc(K * n3, sizeof(double complex));
-  s->open_reaction      = calloc(n3, sizeof(double complex));
-  return s->kind && s->form && s->nonlinear && s->stuck && s->factored && s->is_factored && s->A &&
-         s->A_pivot && s->schur && s->stuck_to_nonlinear && s->nonlinear_to_stuck && s->columns &&
-         s->rows && s->dense && s->unknown && s->live && s->full && s->full_row && s->pivot &&
-         s->rhs && s->nonlinear_force && s->stuck_force && s->open_reaction;
+  s->kind               = shb_alloc_zeroed(pairs, sizeof *s->kind);
+  s->form               = shb_alloc_zeroed(pairs, sizeof *s->form);
+  s->nonlinear          = shb_alloc_zeroed(pairs, sizeof(int));
+  s->stuck              = shb_alloc_zeroed(pairs, sizeof(int));
+  s->factored           = shb_alloc_zeroed(pairs, sizeof(int));
+  s->is_factored        = shb_alloc_zeroed(K, 1);
+  s->A                  = shb_alloc(K * n3 * n3, sizeof(double complex));
+  s->A_pivot            = shb_alloc_zeroed(K * n3, sizeof(int));
+  s->schur              = shb_alloc(K * n3 * n3, sizeof(double complex));
+  s->stuck_to_nonlinear = shb_alloc(K * half, sizeof(double complex));
+  s->nonlinear_to_stuck = shb_alloc(K * half, sizeof(double complex));
+  s->columns            = shb_alloc_zeroed(borders * K * n3, sizeof(double complex));
+  s->rows               = shb_alloc_zeroed(borders * K * n3, sizeof(double complex));
+  s->dense              = shb_alloc(size * size, sizeof(double));
+  s->unknown            = shb_alloc_zeroed(size, sizeof(double));
+  s->live               = shb_alloc_zeroed(n3, sizeof(int));
+  s->full               = shb_alloc_zeroed((size_t)s->balance->n, sizeof(double));
+  s->full_row           = shb_alloc(borders * (size_t)s->balance->n, sizeof(double));
+  s->pivot              = shb_alloc_zeroed(size, sizeof(int));
+  s->rhs                = shb_alloc_zeroed(K * n3, sizeof(double complex));
+  s->nonlinear_force    = shb_alloc_zeroed(K * n3, sizeof(double complex));
+  s->stuck_force        = shb_alloc_zeroed(K * n3, sizeof(double complex));
+  s->open_reaction      = shb_alloc_zeroed(n3, sizeof(double complex));
 }
 
-shb_status mhb_condensation_create(const mhb_balance *balance, mhb_condensation **out) {
-  return mhb_condensation_create_within(balance, balance->n, out);
+mhb_condensation *mhb_condensation_create(const mhb_balance *balance) {
+  return mhb_condensation_create_within(balance, balance->n);
 }
 
-shb_status mhb_condensation_create_within(const mhb_balance *balance, int capacity,
-                                          mhb_condensation **out) {
-  mhb_condensation *s = calloc(1, sizeof *s);
-  SHB_CHECK(s, SHB_ERR_IO, "out of memory");
-  s->balance  = balance;
-  s->m        = balance->m;
-  s->n_pairs  = balance->n_pairs;
-  s->capacity = capacity < balance->n ? capacity : balance->n;
-  s->omega    = NAN;
-  s->accuracy = STEP_ACCURACY;
+mhb_condensation *mhb_condensation_create_within(const mhb_balance *balance, int capacity) {
+  mhb_condensation *s = shb_alloc_zeroed(1, sizeof *s);
+  s->balance          = balance;
+  s->m                = balance->m;
+  s->n_pairs          = balance->n_pairs;
+  s->capacity         = capacity < balance->n ? capacity : balance->n;
+  s->omega            = NAN;
+  s->accuracy         = STEP_ACCURACY;
   if (balance->product && s->capacity > MHB_MOST_DENSE) s->capacity = MHB_MOST_DENSE;
-  shb_status status = SHB_OK;
   if (balance->receptance->ring)
-    status = mhb_ring_system_create(balance, &s->ring);
-  else if (!allocate(s))
-    status = shb_fail(SHB_ERR_IO, __FILE__, __LINE__, "out of memory for %d unknowns", balance->n);
-  if (status == SHB_OK && balance->product)
+    s->ring = mhb_ring_system_create(balance);
+  else
+    allocate(s);
+  if (balance->product)
     s->low_rank = mhb_woodbury_create(balance->product, balance->law,
                                       SHB_TWO_PI * balance->settings->frequency[0],
                                       SHB_TWO_PI * balance->settings->frequency[1]);
-  if (status != SHB_OK) {
-    mhb_condensation_destroy(s);
-    return status;
-  }
-  *out = s;
-  return SHB_OK;
+  return s;
 }
 
 void mhb_condensation_destroy(mhb_condensation *s) {

@@ -93,13 +93,12 @@ typedef struct {
   double complex *open_reaction;   /* [3 pairs] R_O^H row_O of one harmonic */
 } mhb_condensation;
 
-/* For one balance, which must outlive it. SHB_ERR_IO: no memory. */
-shb_status mhb_condensation_create(const mhb_balance *balance, mhb_condensation **condensation);
+/* For one balance, which must outlive it. */
+mhb_condensation *mhb_condensation_create(const mhb_balance *balance);
 
 /* With room for so many nonlinear unknowns; a point with more of them is not factored. */
-shb_status mhb_condensation_create_within(const mhb_balance *balance, int capacity,
-                                          mhb_condensation **condensation);
-void       mhb_condensation_destroy(mhb_condensation *condensation);
+mhb_condensation *mhb_condensation_create_within(const mhb_balance *balance, int capacity);
+void              mhb_condensation_destroy(mhb_condensation *condensation);
 
 /* Factor at the balance's evaluation in use, which must be a linearisation.
  *   column, row  in  [n+1] border, both with the same corner last; or both NULL

@@ -4,6 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "mesh/base/memory.h"
 #include "mhb/balance/higher_harmonics.h"
 #include "mhb/numerics/lu.h"
 #include "mhb/structure/ring_receptance.h"
@@ -13,33 +14,23 @@ enum { MOST_ITERATIONS = 30 };
 
 /* ---- life cycle ---- */
 
-shb_status mhb_doubled_ring_create(const mhb_balance *balance, const mhb_balance *doubled,
-                                   mhb_doubled_ring **out) {
+mhb_doubled_ring *mhb_doubled_ring_create(const mhb_balance *balance, const mhb_balance *doubled) {
   const mhb_ring_receptance *ring = balance->receptance->ring;
   const size_t               n = (size_t)ring->n, N = (size_t)ring->blades, m = (size_t)balance->m;
-  mhb_doubled_ring          *d = calloc(1, sizeof *d);
-  SHB_CHECK(d, SHB_ERR_IO, "out of memory");
-  d->balance        = balance;
-  d->doubled        = doubled;
-  d->A              = shb_arena_take(&d->arena, m * N * n * n, sizeof *d->A);
-  d->pivot          = shb_arena_take(&d->arena, m * N * n, sizeof *d->pivot);
-  d->u              = shb_arena_take(&d->arena, n, sizeof *d->u);
-  d->low            = shb_arena_take(&d->arena, (size_t)balance->n + 1, sizeof(double));
-  d->along          = shb_arena_take(&d->arena, (size_t)balance->n + 1, sizeof(double));
-  d->rhs            = shb_arena_take(&d->arena, (size_t)doubled->n, sizeof(double));
-  d->p              = shb_arena_take(&d->arena, (size_t)doubled->n, sizeof(double));
-  d->force          = shb_arena_take(&d->arena, N * n, sizeof *d->force);
-  d->motion         = shb_arena_take(&d->arena, N * n, sizeof *d->motion);
-  d->gmres          = mhb_gmres_create(doubled->n, MOST_ITERATIONS);
-  shb_status status = SHB_OK;
-  if (status == SHB_OK && d->arena.failed)
-    status = shb_fail(SHB_ERR_IO, __FILE__, __LINE__, "out of memory for %d harmonics", doubled->m);
-  if (status != SHB_OK) {
-    mhb_doubled_ring_destroy(d);
-    return status;
-  }
-  *out = d;
-  return SHB_OK;
+  mhb_doubled_ring          *d = shb_alloc_zeroed(1, sizeof *d);
+  d->balance                   = balance;
+  d->doubled                   = doubled;
+  d->A                         = shb_arena_take(&d->arena, m * N * n * n, sizeof *d->A);
+  d->pivot                     = shb_arena_take(&d->arena, m * N * n, sizeof *d->pivot);
+  d->u                         = shb_arena_take(&d->arena, n, sizeof *d->u);
+  d->low                       = shb_arena_take(&d->arena, (size_t)balance->n + 1, sizeof(double));
+  d->along                     = shb_arena_take(&d->arena, (size_t)balance->n + 1, sizeof(double));
+  d->rhs                       = shb_arena_take(&d->arena, (size_t)doubled->n, sizeof(double));
+  d->p                         = shb_arena_take(&d->arena, (size_t)doubled->n, sizeof(double));
+  d->force                     = shb_arena_take(&d->arena, N * n, sizeof *d->force);
+  d->motion                    = shb_arena_take(&d->arena, N * n, sizeof *d->motion);
+  d->gmres                     = mhb_gmres_create(doubled->n, MOST_ITERATIONS);
+  return d;
 }
 
 void mhb_doubled_ring_destroy(mhb_doubled_ring *d) {

@@ -27,10 +27,9 @@ typedef struct {
   shb_arena          arena;
 } mhb_doubled_ring;
 
-/* Both balances must outlive it. SHB_ERR_IO: no memory. */
-shb_status mhb_doubled_ring_create(const mhb_balance *balance, const mhb_balance *doubled,
-                                   mhb_doubled_ring **ring);
-void       mhb_doubled_ring_destroy(mhb_doubled_ring *ring);
+/* Both balances must outlive it. */
+mhb_doubled_ring *mhb_doubled_ring_create(const mhb_balance *balance, const mhb_balance *doubled);
+void              mhb_doubled_ring_destroy(mhb_doubled_ring *ring);
 
 /* Factor the first matrix. Both balances' evaluations in use must be linearisations at the same
  * point. Solutions need that of the doubled one.

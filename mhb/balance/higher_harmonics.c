@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "mesh/base/constants.h"
+#include "mesh/base/memory.h"
 #include "mhb/numerics/fourier.h"
 #include "mhb/numerics/lu.h"
 
@@ -13,7 +14,7 @@ static int most(int a, int b) {
   return a > b ? a : b;
 }
 
-static int allocate(mhb_higher_harmonics *h, int product, size_t change) {
+static void allocate(mhb_higher_harmonics *h, int product, size_t change) {
   size_t K = (size_t)h->last - (size_t)h->first + 1, n = (size_t)h->n, m = (size_t)h->n_modes;
   size_t row = 3 * (size_t)mhb_real_size(h->last);
   h->x       = shb_arena_take(&h->arena, row, sizeof(double));
@@ -34,31 +35,25 @@ static int allocate(mhb_higher_harmonics *h, int product, size_t change) {
   h->change   = shb_arena_take(&h->arena, change > high ? change : high, sizeof(double));
   h->motion   = shb_arena_take(&h->arena, high, sizeof(double));
   h->pivot    = shb_arena_take(&h->arena, (size_t)most(h->n, h->n_modes), sizeof(int));
-  return !h->arena.failed;
 }
 
 shb_status mhb_higher_harmonics_create(const mhb_balance *balance, mhb_receptance *receptance,
                                        mhb_higher_harmonics **out) {
-  mhb_higher_harmonics *h = calloc(1, sizeof *h);
-  SHB_CHECK(h, SHB_ERR_IO, "out of memory");
-  h->first          = balance->m + 1;
-  h->last           = receptance->n_harmonics;
-  h->n              = receptance->n;
-  h->n_modes        = receptance->n_modes;
-  h->by_modes       = h->n > h->n_modes;
-  h->receptance     = receptance;
-  shb_status status = SHB_OK;
-  if (!allocate(h, balance->product != NULL, balance->product ? (size_t)balance->n : 0))
-    status = shb_fail(SHB_ERR_IO, __FILE__, __LINE__, "out of memory for %d harmonics", h->last);
-  if (status == SHB_OK)
-    status =
-        mhb_contact_evaluator_create(h->last, h->last, balance->settings->tolerance, &h->contact);
-  if (status == SHB_OK && balance->product)
-    status = mhb_balance_product(balance, receptance, h->first, h->last, &h->product);
+  mhb_higher_harmonics *h = shb_alloc_zeroed(1, sizeof *h);
+  h->first                = balance->m + 1;
+  h->last                 = receptance->n_harmonics;
+  h->n                    = receptance->n;
+  h->n_modes              = receptance->n_modes;
+  h->by_modes             = h->n > h->n_modes;
+  h->receptance           = receptance;
+  allocate(h, balance->product != NULL, balance->product ? (size_t)balance->n : 0);
+  const shb_status status =
+      mhb_contact_evaluator_create(h->last, h->last, balance->settings->tolerance, &h->contact);
   if (status != SHB_OK) {
     mhb_higher_harmonics_destroy(h);
     return status;
   }
+  if (balance->product) h->product = mhb_balance_product(balance, receptance, h->first, h->last);
   *out = h;
   return SHB_OK;
 }

@@ -35,7 +35,7 @@ typedef struct {
 } mhb_higher_harmonics;
 
 /* For the harmonics of the receptance above those of the balance.
- * SHB_ERR_IO: no memory. */
+ * SHB_ERR_IO: no memory for a contact evaluator. */
 shb_status mhb_higher_harmonics_create(const mhb_balance *balance, mhb_receptance *receptance,
                                        mhb_higher_harmonics **higher);
 void       mhb_higher_harmonics_destroy(mhb_higher_harmonics *higher);

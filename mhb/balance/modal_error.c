@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "mesh/base/constants.h"
+#include "mesh/base/memory.h"
 #include "mhb/balance/ring_condensation.h"
 #include "mhb/numerics/lu.h"
 #include "mhb/numerics/vector.h"
@@ -186,8 +187,8 @@ static double answer(const mhb_balance *b, mhb_truncation *t, const double compl
  * harmonics is singular, that of 2m is not. */
 static double solve_by_system(const mhb_balance *b, mhb_truncation *t, double size,
                               const double complex *e) {
-  double *du     = calloc((size_t)t->doubled->n, sizeof *du);
-  double  length = du ? answer(b, t, e, du) : 0;
+  double *du     = shb_alloc_zeroed((size_t)t->doubled->n, sizeof *du);
+  double  length = answer(b, t, e, du);
   if (length > LONG * size && mhb_truncation_linearise(t)) length = answer(b, t, e, du);
   if (length > LONG * size) length *= fmin(1, mhb_truncation_part(t, du));
   free(du);
@@ -227,11 +228,11 @@ double mhb_modal_error(const mhb_balance *b, const double *x, mhb_truncation *t)
   const int last =
       last_term(one->residual_terms->own[0] ? (void *const *)one->residual_terms->own
                                             : (void *const *)one->residual_terms->contact);
-  double complex *e =
-      calloc(2 * (size_t)all + (linear && !r->ring ? (size_t)n * (size_t)n : 0), sizeof *e);
-  if (!e || !(size > 0)) {
+  double complex *e = shb_alloc_zeroed(
+      2 * (size_t)all + (linear && !r->ring ? (size_t)n * (size_t)n : 0), sizeof *e);
+  if (!(size > 0)) {
     free(e);
-    return e ? 0 : -1;
+    return 0;
   }
   for (int k = 1; k <= b->m; k++) {
     const modal_model *model = mhb_receptance_model(one, k);

@@ -5,24 +5,20 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "mesh/base/memory.h"
+
 enum { MAX_ITERATIONS = 40, MAX_HALVINGS = 8 };
 
-shb_status mhb_newton_create(int n, mhb_newton **out) {
-  mhb_newton *w = calloc(1, sizeof *w);
-  SHB_CHECK(w, SHB_ERR_IO, "out of memory");
-  size_t one = (size_t)n + 1;
-  w->n       = n;
-  w->r       = shb_arena_take(&w->arena, one, sizeof(double));
-  w->step    = shb_arena_take(&w->arena, one, sizeof(double));
-  w->trial   = shb_arena_take(&w->arena, one, sizeof(double));
-  w->slope   = shb_arena_take(&w->arena, one, sizeof(double));
-  w->row     = shb_arena_take(&w->arena, one, sizeof(double));
-  if (w->arena.failed) {
-    mhb_newton_destroy(w);
-    SHB_FAIL(SHB_ERR_IO, "out of memory for %d unknowns", n);
-  }
-  *out = w;
-  return SHB_OK;
+mhb_newton *mhb_newton_create(int n) {
+  mhb_newton *w   = shb_alloc_zeroed(1, sizeof *w);
+  size_t      one = (size_t)n + 1;
+  w->n            = n;
+  w->r            = shb_arena_take(&w->arena, one, sizeof(double));
+  w->step         = shb_arena_take(&w->arena, one, sizeof(double));
+  w->trial        = shb_arena_take(&w->arena, one, sizeof(double));
+  w->slope        = shb_arena_take(&w->arena, one, sizeof(double));
+  w->row          = shb_arena_take(&w->arena, one, sizeof(double));
+  return w;
 }
 
 void mhb_newton_destroy(mhb_newton *w) {
@@ -32,12 +28,11 @@ void mhb_newton_destroy(mhb_newton *w) {
   free(w);
 }
 
-shb_status mhb_newton_bind(mhb_newton *w, const mhb_balance *b) {
+void mhb_newton_bind(mhb_newton *w, const mhb_balance *b) {
   const mhb_condensation *s = w->system;
-  if (s && s->balance == b && s->m == b->m && s->n_pairs == b->n_pairs) return SHB_OK;
+  if (s && s->balance == b && s->m == b->m && s->n_pairs == b->n_pairs) return;
   mhb_condensation_destroy(w->system);
-  w->system = NULL;
-  return mhb_condensation_create(b, &w->system);
+  w->system = mhb_condensation_create(b);
 }
 
 /* Halve the step until |r| decreases; leaves r and the linearisation at the new x. */
@@ -59,7 +54,7 @@ static int line_search(mhb_newton *w, mhb_balance *b, double value, double *x, d
 mhb_reason mhb_newton_solve(mhb_newton *w, mhb_balance *b, double value, double tolerance,
                             double *x, int *iterations) {
   int n = w->n;
-  if (mhb_newton_bind(w, b) != SHB_OK) return MHB_SINGULAR;
+  mhb_newton_bind(w, b);
   mhb_balance_linearise(b, x, value, w->r, NULL);
   double size = mhb_norm(w->r, n);
   for (*iterations = 0; *iterations < MAX_ITERATIONS; ++*iterations) {

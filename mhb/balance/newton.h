@@ -25,12 +25,11 @@ typedef struct {
   shb_arena   arena;
 } mhb_newton;
 
-shb_status mhb_newton_create(int n, mhb_newton **newton);
-void       mhb_newton_destroy(mhb_newton *newton);
+mhb_newton *mhb_newton_create(int n);
+void        mhb_newton_destroy(mhb_newton *newton);
 
-/* Create the condensation of a balance of n unknowns, unless it is the one bound. SHB_ERR_IO: no
- * memory. */
-shb_status mhb_newton_bind(mhb_newton *newton, const mhb_balance *balance);
+/* Create the condensation of a balance of n unknowns, unless it is the one bound. */
+void mhb_newton_bind(mhb_newton *newton, const mhb_balance *balance);
 
 /* Solve r(x, value) = 0 from x[n]: |r| <= tolerance max(|x|, DBL_MIN).
  *   iterations  out  Newton steps

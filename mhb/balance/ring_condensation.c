@@ -4,16 +4,15 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "mesh/base/memory.h"
 #include "mhb/numerics/blas_room.h"
 #include "mhb/numerics/lu.h"
 #include "mhb/structure/relative_motion.h"
 
 /* ---- life cycle ---- */
 
-shb_status mhb_ring_condensation_create(const mhb_ring_receptance *ring, int m,
-                                        mhb_ring_condensation **out) {
-  mhb_ring_condensation *c = calloc(1, sizeof *c);
-  SHB_CHECK(c, SHB_ERR_IO, "out of memory");
+mhb_ring_condensation *mhb_ring_condensation_create(const mhb_ring_receptance *ring, int m) {
+  mhb_ring_condensation *c = shb_alloc_zeroed(1, sizeof *c);
   const size_t N = (size_t)ring->blades, n = (size_t)ring->n, one = sizeof(double complex);
   const size_t all                = ((size_t)m + 1) * N * n * n;
   c->ring                         = ring;
@@ -31,12 +30,7 @@ shb_status mhb_ring_condensation_create(const mhb_ring_receptance *ring, int m,
   c->rows  = shb_arena_take(&c->arena, n * n + MHB_BLAS_ROOM, one);
   c->force = shb_arena_take(&c->arena, n, one);
   c->pivot = shb_arena_take(&c->arena, n, sizeof(int));
-  if (c->arena.failed) {
-    mhb_ring_condensation_destroy(c);
-    SHB_FAIL(SHB_ERR_IO, "out of memory for the contacts of %d blades", ring->blades);
-  }
-  *out = c;
-  return SHB_OK;
+  return c;
 }
 
 void mhb_ring_condensation_destroy(mhb_ring_condensation *c) {
@@ -273,18 +267,15 @@ void mhb_ring_condensation_functional(mhb_ring_condensation *c, int k, double co
 
 shb_status mhb_ring_linear_limit(const mhb_ring_receptance *ring, const mhb_law *law, int k,
                                  const mhb_pair_kind *kind, double complex *u) {
-  mhb_ring_condensation *c;
-  SHB_TRY(mhb_ring_condensation_create(ring, k, &c));
-  double complex *q       = calloc((size_t)ring->blades * (size_t)ring->n, sizeof *q);
-  const int       regular = q && mhb_ring_condensation_factor(c, law, kind, k);
+  mhb_ring_condensation *c = mhb_ring_condensation_create(ring, k);
+  double complex        *q = shb_alloc_zeroed((size_t)ring->blades * (size_t)ring->n, sizeof *q);
+  const int              regular = mhb_ring_condensation_factor(c, law, kind, k);
   if (regular) {
     mhb_ring_condensation_forward(c, k, u);
     mhb_ring_condensation_backward(c, k, u, q);
   }
-  const bool failed = !q;
   free(q);
   mhb_ring_condensation_destroy(c);
-  SHB_CHECK(!failed, SHB_ERR_IO, "out of memory");
   SHB_CHECK(regular, SHB_ERR_INPUT, "the stuck system is singular at harmonic %d", k);
   return SHB_OK;
 }

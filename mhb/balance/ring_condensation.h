@@ -41,10 +41,8 @@ typedef struct {
   shb_arena       arena;
 } mhb_ring_condensation;
 
-/* SHB_ERR_IO: no memory. */
-shb_status mhb_ring_condensation_create(const mhb_ring_receptance *ring, int m,
-                                        mhb_ring_condensation **condensation);
-void       mhb_ring_condensation_destroy(mhb_ring_condensation *condensation);
+mhb_ring_condensation *mhb_ring_condensation_create(const mhb_ring_receptance *ring, int m);
+void                   mhb_ring_condensation_destroy(mhb_ring_condensation *condensation);
 
 /* Whether all pairs of a contact stick or are open. */
 bool mhb_ring_contact_is_linear(const mhb_pair_kind *kind, int pairs, int contact);
@@ -76,7 +74,7 @@ void mhb_ring_condensation_functional(mhb_ring_condensation *c, int k, double co
                                       double complex *on_force);
 
 /* u[3 pairs] <- (I + R_k S)^-1 u where all contacts stick or are open. The blocks of harmonic k are
- * up to date. SHB_ERR_INPUT: the system is singular. SHB_ERR_IO: no memory. */
+ * up to date. SHB_ERR_INPUT: the system is singular. */
 shb_status mhb_ring_linear_limit(const mhb_ring_receptance *ring, const mhb_law *law, int k,
                                  const mhb_pair_kind *kind, double complex *u);
 

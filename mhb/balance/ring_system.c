@@ -5,34 +5,28 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "mesh/base/memory.h"
+
 /* ---- life cycle ---- */
 
-shb_status mhb_ring_system_create(const mhb_balance *b, mhb_ring_system **out) {
+mhb_ring_system *mhb_ring_system_create(const mhb_balance *b) {
   const mhb_ring_receptance *ring = b->receptance->ring;
   const size_t               n = (size_t)b->n, pairs = (size_t)b->n_pairs, axes = 3 * (size_t)b->nb;
   const size_t               all = ((size_t)b->m + 1) * 3 * pairs;
-  mhb_ring_system           *s   = calloc(1, sizeof *s);
-  SHB_CHECK(s, SHB_ERR_IO, "out of memory");
-  s->balance        = b;
-  s->kind           = shb_arena_take(&s->arena, pairs, sizeof *s->kind);
-  s->law            = shb_arena_take(&s->arena, pairs, sizeof *s->law);
-  s->D              = shb_arena_take(&s->arena, pairs * axes * axes, sizeof(double));
-  s->line           = shb_arena_take(&s->arena, 2 * axes, sizeof(double));
-  s->reduced        = shb_arena_take(&s->arena, n + 1, sizeof(double));
-  s->column         = shb_arena_take(&s->arena, all, sizeof(double complex));
-  s->row            = shb_arena_take(&s->arena, all, sizeof(double complex));
-  s->x              = shb_arena_take(&s->arena, all, sizeof(double complex));
-  s->q              = shb_arena_take(&s->arena, all, sizeof(double complex));
-  s->blocks         = mhb_block_cyclic_create(ring->blades, ring->n * b->nb);
-  shb_status status = mhb_ring_condensation_create(ring, b->m, &s->linear);
-  if (status == SHB_OK && s->arena.failed)
-    status = shb_fail(SHB_ERR_IO, __FILE__, __LINE__, "out of memory");
-  if (status != SHB_OK) {
-    mhb_ring_system_destroy(s);
-    return status;
-  }
-  *out = s;
-  return SHB_OK;
+  mhb_ring_system           *s   = shb_alloc_zeroed(1, sizeof *s);
+  s->balance                     = b;
+  s->kind                        = shb_arena_take(&s->arena, pairs, sizeof *s->kind);
+  s->law                         = shb_arena_take(&s->arena, pairs, sizeof *s->law);
+  s->D                           = shb_arena_take(&s->arena, pairs * axes * axes, sizeof(double));
+  s->line                        = shb_arena_take(&s->arena, 2 * axes, sizeof(double));
+  s->reduced                     = shb_arena_take(&s->arena, n + 1, sizeof(double));
+  s->column                      = shb_arena_take(&s->arena, all, sizeof(double complex));
+  s->row                         = shb_arena_take(&s->arena, all, sizeof(double complex));
+  s->x                           = shb_arena_take(&s->arena, all, sizeof(double complex));
+  s->q                           = shb_arena_take(&s->arena, all, sizeof(double complex));
+  s->blocks                      = mhb_block_cyclic_create(ring->blades, ring->n * b->nb);
+  s->linear                      = mhb_ring_condensation_create(ring, b->m);
+  return s;
 }
 
 void mhb_ring_system_destroy(mhb_ring_system *s) {

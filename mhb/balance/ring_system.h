@@ -30,9 +30,9 @@ typedef struct {
   shb_arena              arena;
 } mhb_ring_system;
 
-/* For the balance of a ring, which must outlive it. SHB_ERR_IO: no memory. */
-shb_status mhb_ring_system_create(const mhb_balance *balance, mhb_ring_system **system);
-void       mhb_ring_system_destroy(mhb_ring_system *system);
+/* For the balance of a ring, which must outlive it. */
+mhb_ring_system *mhb_ring_system_create(const mhb_balance *balance);
+void             mhb_ring_system_destroy(mhb_ring_system *system);
 
 /* Factor at the balance's evaluation in use, which must be a linearisation. column, row: [n + 1]
  * border, both with the same corner last; or both NULL. 0: singular. No allocation. */

@@ -4,9 +4,10 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "mesh/base/memory.h"
+
 shb_status mhb_spatial_error_create(const mhb_balance *balance, mhb_spatial_error **out) {
-  mhb_spatial_error *e = calloc(1, sizeof *e);
-  SHB_CHECK(e, SHB_ERR_IO, "out of memory");
+  mhb_spatial_error *e        = shb_alloc_zeroed(1, sizeof *e);
   e->balance                  = balance;
   e->pairs                    = balance->settings->other_pairs;
   e->settings                 = *balance->settings;
@@ -18,9 +19,8 @@ shb_status mhb_spatial_error_create(const mhb_balance *balance, mhb_spatial_erro
     e->step   = shb_arena_take(&e->arena, (size_t)e->other->n, sizeof *e->step);
     e->force  = shb_arena_take(&e->arena, 3 * (size_t)balance->n_pairs, sizeof *e->force);
     e->spread = shb_arena_take(&e->arena, 3 * (size_t)e->other->n_pairs, sizeof *e->spread);
-    if (e->arena.failed) status = shb_fail(SHB_ERR_IO, __FILE__, __LINE__, "out of memory");
+    e->system = mhb_condensation_create(e->other);
   }
-  if (status == SHB_OK) status = mhb_condensation_create(e->other, &e->system);
   if (status != SHB_OK) {
     mhb_spatial_error_destroy(e);
     return status;

@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "mesh/base/arena.h"
+#include "mesh/base/memory.h"
 #include "mhb/numerics/blas_room.h"
 
 static const double SETTLED = 1e-14; /* residual, of the largest element of f */
@@ -32,12 +33,10 @@ struct mhb_stuck_solver {
   shb_arena               arena;
 };
 
-shb_status mhb_stuck_solver_create(mhb_receptance_product *product, int top,
-                                   mhb_stuck_solver **out) {
-  mhb_stuck_solver *s = calloc(1, sizeof *s);
+mhb_stuck_solver *mhb_stuck_solver_create(mhb_receptance_product *product, int top) {
+  mhb_stuck_solver *s = shb_alloc_zeroed(1, sizeof *s);
   mhb_receptance   *r = product->receptance;
-  SHB_CHECK(s, SHB_ERR_IO, "out of memory");
-  const size_t n = (size_t)r->n, m = (size_t)r->n_modes, room = MHB_BLAS_ROOM;
+  const size_t      n = (size_t)r->n, m = (size_t)r->n_modes, room = MHB_BLAS_ROOM;
   s->product    = product;
   s->receptance = r;
   s->n          = r->n;
@@ -51,12 +50,7 @@ shb_status mhb_stuck_solver_create(mhb_receptance_product *product, int top,
   s->small      = shb_arena_take(&s->arena, m * m + room, sizeof *s->small);
   s->force      = shb_arena_take(&s->arena, m + 1, sizeof *s->force);
   s->pivot      = shb_arena_take(&s->arena, m + 1, sizeof *s->pivot);
-  if (s->arena.failed) {
-    mhb_stuck_solver_destroy(s);
-    SHB_FAIL(SHB_ERR_IO, "out of memory for %d stuck pairs", r->n / 3);
-  }
-  *out = s;
-  return SHB_OK;
+  return s;
 }
 
 void mhb_stuck_solver_destroy(mhb_stuck_solver *s) {
@@ -84,16 +78,15 @@ static bool is_current(const mhb_stuck_solver *s, const factor *of, const mhb_la
   return of->known;
 }
 
-static bool take(mhb_stuck_solver *s, factor *of) {
+static void take(mhb_stuck_solver *s, factor *of) {
   const size_t n = (size_t)s->n, m = (size_t)s->modes, pairs = n / 3;
-  if (of->M) return true;
+  if (of->M) return;
   of->W     = shb_arena_take(&s->arena, n * m + MHB_BLAS_ROOM, sizeof *of->W);
   of->G     = shb_arena_take(&s->arena, m * m + 1, sizeof *of->G);
   of->pivot = shb_arena_take(&s->arena, n, sizeof *of->pivot);
   of->law   = shb_arena_take(&s->arena, pairs, sizeof *of->law);
   of->kind  = shb_arena_take(&s->arena, pairs, sizeof *of->kind);
-  if (!s->arena.failed) of->M = shb_arena_take(&s->arena, n * n + MHB_BLAS_ROOM, sizeof *of->M);
-  return !s->arena.failed;
+  of->M     = shb_arena_take(&s->arena, n * n + MHB_BLAS_ROOM, sizeof *of->M);
 }
 
 /* LU of M, W and G. */
@@ -103,8 +96,8 @@ static bool make(mhb_stuck_solver *s, int k, double middle, const mhb_law *law,
   factor               *of = &s->of[k];
   const int             n = s->n, m = s->modes;
   const double complex *B = r->B + (size_t)k * (size_t)n * (size_t)m;
-  double complex       *T;
-  if (!take(s, of) || !(T = calloc((size_t)n * (size_t)n, sizeof *T))) return false;
+  double complex       *T = shb_alloc_zeroed((size_t)n * (size_t)n, sizeof *T);
+  take(s, of);
   mhb_receptance_residual_terms(r, k, k * middle / r->nu, T);
   mhb_stick_matrix(n / 3, law, kind, k, T, of->M);
   free(T);

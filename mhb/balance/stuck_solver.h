@@ -17,16 +17,15 @@
 
 typedef struct mhb_stuck_solver mhb_stuck_solver;
 
-/* For harmonics 0 to top of a product, which must outlive it. SHB_ERR_IO: no memory. */
-shb_status mhb_stuck_solver_create(mhb_receptance_product *product, int top,
-                                   mhb_stuck_solver **solver);
-void       mhb_stuck_solver_destroy(mhb_stuck_solver *solver);
+/* For harmonics 0 to top of a product, which must outlive it. */
+mhb_stuck_solver *mhb_stuck_solver_create(mhb_receptance_product *product, int top);
+void              mhb_stuck_solver_destroy(mhb_stuck_solver *solver);
 
 /* u[n] <- (I + R_k S)^-1 u at the frequency of the receptance, whose load of harmonic k is up to
  * date; R_k is not needed.
  *   middle     in  rad/s, of w0: always the same, so that results do not depend on the order
  *   law, kind  in  [pairs]; the factor is made anew where stiffness or kind differ from the last
- * false: singular, no memory, or not converged; u is then as before. */
+ * false: singular, or not converged; u is then as before. */
 bool mhb_stuck_solver_solve(mhb_stuck_solver *solver, int k, double middle, const mhb_law *law,
                             const mhb_pair_kind *kind, double complex *u);
 

@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "mesh/base/constants.h"
+#include "mesh/base/memory.h"
 #include "mhb/numerics/fourier.h"
 #include "mhb/numerics/tail.h"
 #include "mhb/numerics/vector.h"
@@ -54,10 +55,9 @@ int mhb_truncation_highest(int m) {
 }
 
 shb_status mhb_truncation_create(const mhb_balance *balance, mhb_truncation **out) {
-  mhb_truncation *t = calloc(1, sizeof *t);
-  SHB_CHECK(t, SHB_ERR_IO, "out of memory");
-  int m   = balance->m;
-  int top = mhb_truncation_highest(m);
+  mhb_truncation *t   = shb_alloc_zeroed(1, sizeof *t);
+  int             m   = balance->m;
+  int             top = mhb_truncation_highest(m);
   if (balance->receptance->ring) top = 2 * m;
   t->balance            = balance;
   t->settings           = *balance->settings;
@@ -80,17 +80,16 @@ shb_status mhb_truncation_create(const mhb_balance *balance, mhb_truncation **ou
     t->basis  = shb_arena_take(&t->arena, times * (size_t)t->doubled->nb, sizeof(double));
     t->motion = shb_arena_take(&t->arena, times * 3 * (size_t)balance->n_pairs, sizeof(double));
     t->force  = shb_arena_take(&t->arena, 3 * (size_t)mhb_real_size(top), sizeof(double));
-    if (t->arena.failed) status = shb_fail(SHB_ERR_IO, __FILE__, __LINE__, "out of memory");
   }
   if (status == SHB_OK && !balance->receptance->ring)
     status = mhb_higher_harmonics_create(t->doubled, t->receptance, &t->higher);
-  if (status == SHB_OK)
-    status = mhb_condensation_create_within(t->doubled, MHB_MOST_DOUBLED, &t->system);
-  if (status == SHB_OK && balance->receptance->ring)
-    status = mhb_doubled_ring_create(balance, t->doubled, &t->ring);
-  if (status == SHB_OK && !balance->receptance->ring &&
-      (t->system->low_rank || t->doubled->n >= WORTH_BROYDEN))
-    status = mhb_truncation_step_create(balance, t->doubled, t->system->low_rank, &t->broyden);
+  if (status == SHB_OK) {
+    t->system = mhb_condensation_create_within(t->doubled, MHB_MOST_DOUBLED);
+    if (balance->receptance->ring)
+      t->ring = mhb_doubled_ring_create(balance, t->doubled);
+    else if (t->system->low_rank || t->doubled->n >= WORTH_BROYDEN)
+      t->broyden = mhb_truncation_step_create(balance, t->doubled, t->system->low_rank);
+  }
   if (status == SHB_OK && t->system->low_rank)
     status = mhb_contact_evaluator_create(m, top, balance->settings->tolerance, &t->contact);
   if (status != SHB_OK) {
@@ -276,6 +275,15 @@ static void set_powers(mhb_truncation *t) {
   }
 }
 
+/* The tail of solution and step, its order and what remains of the error with 2m harmonics. */
+static mhb_tail set_order(mhb_truncation *t) {
+  set_powers(t);
+  const mhb_tail tail = mhb_tail_of(t->doubled->m, t->power, ORDER_MARGIN);
+  t->order            = tail.order;
+  t->remaining        = fmin(SLOWEST, exp2(2 - (tail.order - ORDER_MARGIN)));
+  return tail;
+}
+
 static void set_basis(mhb_truncation *t) {
   const int nb = t->doubled->nb;
   if (t->basis[0] != 0) return;
@@ -300,36 +308,38 @@ static const double NO_BOUND = 1e30;
 /* Both norms of the error, from the step and the tail; t->trial <- the error up to 2m. size: of the
  * vibration. Returns the first. */
 static double set_errors(mhb_truncation *t, double size) {
-  const mhb_balance *b     = t->doubled;
-  const int          low   = t->balance->nb;
-  const bool         knows = t->kind == MHB_TRUNCATION_NEWTON;
-  set_powers(t);
-  const mhb_tail tail =
-      knows ? mhb_tail_of(b->m, t->power, ORDER_MARGIN) : (mhb_tail){.order = INFINITY};
-  const double ratio   = fmin(SLOWEST, exp2(2 - (tail.order - ORDER_MARGIN)));
-  double       highest = 0;
-  t->order             = tail.order;
-  for (int i = 0; i < b->n; i++) t->trial[i] = t->step[i] * (i % b->nb < low ? 1 / (1 - ratio) : 1);
+  const mhb_balance *b       = t->doubled;
+  const int          low     = t->balance->nb;
+  const bool         knows   = t->kind == MHB_TRUNCATION_NEWTON;
+  const mhb_tail     tail    = knows ? set_order(t) : (mhb_tail){.order = INFINITY};
+  double             highest = 0;
+  for (int i = 0; i < b->n; i++)
+    t->trial[i] = t->step[i] * (i % b->nb < low ? 1 / (1 - t->remaining) : 1);
   for (int k = b->m + 1; t->higher && k <= t->higher->last; k++)
     highest += sqrt(mhb_truncation_power(t, k));
   t->largest = fmin(NO_BOUND, (largest_in_period(t, t->trial) + fmax(highest, tail.sum)) / size);
   return fmin(NO_BOUND, hypot(mhb_norm(t->trial, b->n), fmax(t->higher_size, tail.rms)) / size);
 }
 
-double mhb_truncation_error(mhb_truncation *t, const double *x) {
-  mhb_balance *b    = t->doubled;
-  double       size = mhb_balance_vibration(t->balance, x);
+/* The doubled balance at the point of the balance. Nothing from an estimate before enters. */
+static void begin(mhb_truncation *t, const double *x) {
+  mhb_balance *b = t->doubled;
   copy_rows(3 * b->n_pairs, x, t->balance->nb, t->x, b->nb);
   memset(t->step, 0, sizeof(double) * (size_t)b->n);
-  t->higher_size = t->largest = 0;
-  t->order                    = INFINITY;
-  t->kind                     = MHB_TRUNCATION_NONE;
-  if (mhb_balance_is_linear(t->balance)) return 0;
+  t->higher_size = t->largest = t->remaining = 0;
+  t->order                                   = INFINITY;
+  t->kind                                    = MHB_TRUNCATION_NONE;
   mhb_balance_set_operating_point(b, &t->balance->eval->at);
-  for (int a = 0; a < b->n_pairs; a++) { /* nothing from an estimate before enters */
+  for (int a = 0; a < b->n_pairs; a++) {
     memcpy(b->eval->info[a].slider, t->balance->eval->info[a].slider, sizeof(double[2]));
     b->eval->kind[a] = t->balance->eval->kind[a];
   }
+}
+
+double mhb_truncation_error(mhb_truncation *t, const double *x) {
+  const double size = mhb_balance_vibration(t->balance, x);
+  begin(t, x);
+  if (mhb_balance_is_linear(t->balance)) return 0;
   set_step(t, t->broyden != NULL);
   return size > 0 ? set_errors(t, size) : 0;
 }
@@ -340,31 +350,87 @@ bool mhb_truncation_solve(mhb_truncation *t, double *change) {
   return mhb_condensation_solve(t->system, change);
 }
 
-double mhb_truncation_across(mhb_truncation *t, double value, const double *tangent,
-                             double *shift) {
+/* change[n + 1] <- from t->x to the nearest point of the curve of 2m harmonics, to first order. The
+ * motion is in units of `unit`, the value in its own. Of all solutions c + a y of the linearised
+ * balance, y along the curve, the shortest is taken. false: singular, or too large. */
+static bool find_nearest(mhb_truncation *t, double value, double unit, double *change) {
   mhb_balance  *b = t->doubled;
-  const int     n = b->n, own = t->balance->n;
-  const double  unit = mhb_norm(t->x, n), size = mhb_balance_vibration(t->balance, t->x);
-  const bool    knows = t->kind == MHB_TRUNCATION_NEWTON && !t->ring && !t->system->low_rank;
-  double        column[n + 1], row[n + 1], *change = column;
+  const int     n = b->n;
+  double        column[n + 1], row[n + 1], along[n + 1];
   mhb_parameter parameter = b->parameter;
-  if (!knows || !(size > 0)) return INFINITY;
   mhb_balance_set_parameter(b, t->balance->parameter);
   b->eval->near = true;
   mhb_balance_linearise(b, t->x, value, t->r, column);
   b->eval->near = false;
   mhb_balance_set_parameter(b, parameter);
-  memset(row, 0, sizeof row);
-  copy_rows(3 * b->n_pairs, tangent, t->balance->nb, row, b->nb);
-  for (int i = 0; i < n; i++) row[i] /= unit;
-  for (int i = 0; i < n; i++) column[i] *= fabs(value) / unit;
-  row[n] = column[n] = tangent[own] / fabs(value);
-  if (!mhb_condensation_factor(t->system, column, row)) return INFINITY;
-  for (int i = 0; i < n; i++) change[i] = -t->r[i] / unit;
+  for (int i = 0; i < n; i++) {
+    row[i] = t->x[i] / unit;
+    column[i] *= fabs(value) / unit;
+    change[i] = -t->r[i] / unit;
+    along[i]  = 0;
+  }
   change[n] = 0;
-  if (!mhb_condensation_solve(t->system, change)) return INFINITY;
+  row[n] = column[n] = along[n] = 1;
+  if (!mhb_condensation_factor(t->system, column, row) ||
+      !mhb_condensation_solve(t->system, change) || !mhb_condensation_solve(t->system, along))
+    return false;
+  const double part = mhb_dot(n + 1, change, along) / mhb_dot(n + 1, along, along);
+  for (int i = 0; i <= n; i++) change[i] -= part * along[i];
+  return true;
+}
+
+/* Whether the linearisation with 2m harmonics takes a border. */
+static bool takes_border(const mhb_truncation *t) {
+  return !t->ring && !t->system->low_rank;
+}
+
+double mhb_truncation_across(mhb_truncation *t, double value, double *shift) {
+  const int    n    = t->doubled->n;
+  const double unit = mhb_norm(t->x, n), size = mhb_balance_vibration(t->balance, t->x);
+  const double order = t->order, remaining = t->remaining;
+  double       change[n + 1], *step        = t->step;
+  if (t->kind != MHB_TRUNCATION_NEWTON || !takes_border(t) || !(size > 0)) return INFINITY;
+  if (!find_nearest(t, value, unit, change)) return INFINITY;
   *shift = fabs(change[n]);
-  return mhb_norm(change, n) * unit / size;
+  for (int i = 0; i < n; i++) change[i] *= unit;
+  t->step            = change;
+  const double error = set_errors(t, size);
+  t->step            = step;
+  t->order           = order;
+  t->remaining       = remaining;
+  return error;
+}
+
+/* Whether t->step is short enough for the linearisation. */
+static bool is_short(const mhb_truncation *t) {
+  return mhb_norm(t->step, t->doubled->n) <= FAR * mhb_balance_vibration(t->doubled, t->x);
+}
+
+/* t->step <- to the nearest point of the curve. Returns the relative change of the value; NAN: not
+ * known. */
+static double step_across(mhb_truncation *t, double value) {
+  const int    n    = t->doubled->n;
+  const double unit = mhb_norm(t->x, n);
+  double       change[n + 1];
+  if (!takes_border(t) || !(unit > 0) || !find_nearest(t, value, unit, change)) return NAN;
+  for (int i = 0; i < n; i++) t->step[i] = unit * change[i];
+  t->kind = MHB_TRUNCATION_NEWTON;
+  set_order(t);
+  return change[n];
+}
+
+bool mhb_truncation_correct(mhb_truncation *t, const double *x, double value) {
+  mhb_balance  *b         = t->doubled;
+  mhb_parameter parameter = b->parameter;
+  double        shift     = 0;
+  mhb_truncation_error(t, x);
+  if (t->kind == MHB_TRUNCATION_FIRST_ORDER || !is_short(t)) shift = step_across(t, value);
+  if (isnan(shift) || !is_short(t)) return false;
+  for (int i = 0; i < b->n; i++) t->x[i] += t->step[i];
+  mhb_balance_set_parameter(b, t->balance->parameter);
+  mhb_balance_evaluate(b, t->x, value + shift * fabs(value), t->r, NULL, NULL);
+  mhb_balance_set_parameter(b, parameter);
+  return true;
 }
 
 bool mhb_truncation_linearise(mhb_truncation *t) {

@@ -37,7 +37,8 @@ enum { MHB_LEAST_LOOKED_AT = 12, MHB_MOST_LOOKED_AT = 64 };
 typedef enum {
   MHB_TRUNCATION_NONE, /* all pairs are linear: the error is 0 */
   MHB_TRUNCATION_FIRST_ORDER,
-  MHB_TRUNCATION_NEWTON /* to the solution with 2m harmonics */
+  MHB_TRUNCATION_NEWTON, /* to the solution with 2m harmonics */
+  MHB_TRUNCATION_ACROSS  /* to their curve, of a point: mhb_truncation_across */
 } mhb_truncation_kind;
 
 typedef struct {
@@ -63,10 +64,11 @@ typedef struct {
   double                 higher_size; /* |u_k|, k > 2m, of the last estimate */
   double                 largest; /* largest |e(t)| over all axes, of the last estimate, relative */
   double                 order;   /* p of the tail |u_k| ~ k^-p seen there */
-  mhb_truncation_kind    kind;    /* of the last estimate */
-  bool                   by_broyden; /* its step; the system is not factored there */
-  bool                   by_gmres;   /* its step, from the ring; nor here */
-  shb_arena              arena;
+  double remaining;         /* rho of the last estimate: error of 2m harmonics over that of m */
+  mhb_truncation_kind kind; /* of the last estimate */
+  bool                by_broyden; /* its step; the system is not factored there */
+  bool                by_gmres;   /* its step, from the ring; nor here */
+  shb_arena           arena;
 } mhb_truncation;
 
 /* Highest harmonic that the estimate for m harmonics looks at. */
@@ -94,12 +96,19 @@ bool mhb_truncation_linearise(mhb_truncation *truncation);
 /* Distance across the curve to that of 2m harmonics, relative to the vibration. Beside a fold the
  * solution at the same value may be far off, or not exist, while the curve passes near by. The last
  * estimate must be of the point, the balance's evaluation in use.
+ * `largest` becomes that of the distance; step and order stay those of the estimate.
  *   value    of the balance's parameter
- *   tangent  [n + 1] d(x, value) along the curve
  *   shift    out: relative change of the value
  * INFINITY: not known (many pairs, a ring). */
-double mhb_truncation_across(mhb_truncation *truncation, double value, const double *tangent,
-                             double *shift);
+double mhb_truncation_across(mhb_truncation *truncation, double value, double *shift);
+
+/* Correct a solution x[n] by the harmonics left out, to first order, at the same value. Where that
+ * is farther than a tenth of the vibration, as beside a fold, the nearest point of their curve is
+ * taken. `x` of the truncation becomes the corrected solution, at which the doubled balance is
+ * evaluated. `remaining` is the part of the error left.
+ *   value    of the balance's parameter; the balance is linearised there
+ * false: not known, or farther than that. */
+bool mhb_truncation_correct(mhb_truncation *truncation, const double *x, double value);
 
 /* How much of a change of the solution, step[doubled->n], is left by the curvature of the residual:
  * 1 for a small one. A linearised change is far too long near a fold. The last estimate must be of

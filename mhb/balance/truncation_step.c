@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "mesh/base/constants.h"
+#include "mesh/base/memory.h"
 #include "mhb/balance/higher_harmonics.h"
 #include "mhb/low_rank/lone_harmonics.h"
 #include "mhb/numerics/lu.h"
@@ -21,45 +22,37 @@ static const double GAIN = 0.7;
 /* Error of the solutions with m harmonics and many pairs; the next residual removes it. */
 static const double ROUGH = 1e-2;
 
-static shb_status create_pairs(mhb_truncation_step *t) {
+static void create_pairs(mhb_truncation_step *t) {
   const mhb_balance *b       = t->balance;
   const double      *between = b->settings->frequency;
   const size_t       n = 3 * (size_t)b->n_pairs, above = (size_t)(t->doubled->m - b->m);
   t->D = shb_arena_take(&t->arena, 3 * n, sizeof *t->D);
   if (!t->above) {
-    t->A     = shb_arena_take(&t->arena, above * n * n, sizeof *t->A);
-    t->pivot = shb_arena_take(&t->arena, above * n, sizeof *t->pivot);
-    t->u     = shb_arena_take(&t->arena, n, sizeof *t->u);
-    return mhb_condensation_create(b, &t->system);
+    t->A      = shb_arena_take(&t->arena, above * n * n, sizeof *t->A);
+    t->pivot  = shb_arena_take(&t->arena, above * n, sizeof *t->pivot);
+    t->u      = shb_arena_take(&t->arena, n, sizeof *t->u);
+    t->system = mhb_condensation_create(b);
+    return;
   }
   t->form = shb_arena_take(&t->arena, (size_t)b->n_pairs, sizeof *t->form);
   t->jacobian =
       mhb_woodbury_create(b->product, b->law, SHB_TWO_PI * between[0], SHB_TWO_PI * between[1]);
-  return SHB_OK;
 }
 
-shb_status mhb_truncation_step_create(const mhb_balance *b, mhb_balance *doubled,
-                                      mhb_woodbury *above, mhb_truncation_step **out) {
-  mhb_truncation_step *t = calloc(1, sizeof *t);
-  SHB_CHECK(t, SHB_ERR_IO, "out of memory");
-  const size_t all  = (size_t)doubled->n;
-  t->balance        = b;
-  t->doubled        = doubled;
-  t->above          = above;
-  t->low            = shb_arena_take(&t->arena, (size_t)b->n, sizeof(double));
-  t->at             = shb_arena_take(&t->arena, all, sizeof(double));
-  t->r              = shb_arena_take(&t->arena, all, sizeof(double));
-  t->most           = above ? MHB_MOST_TRUNCATION_STEPS : MHB_MOST_STEPS_OF_FEW;
-  t->steps          = shb_arena_take(&t->arena, (size_t)t->most * all, sizeof(double));
-  shb_status status = create_pairs(t);
-  if (status == SHB_OK && t->arena.failed)
-    status = shb_fail(SHB_ERR_IO, __FILE__, __LINE__, "out of memory for %d harmonics", doubled->m);
-  if (status != SHB_OK) {
-    mhb_truncation_step_destroy(t);
-    return status;
-  }
-  *out = t;
-  return SHB_OK;
+mhb_truncation_step *mhb_truncation_step_create(const mhb_balance *b, mhb_balance *doubled,
+                                                mhb_woodbury *above) {
+  mhb_truncation_step *t   = shb_alloc_zeroed(1, sizeof *t);
+  const size_t         all = (size_t)doubled->n;
+  t->balance               = b;
+  t->doubled               = doubled;
+  t->above                 = above;
+  t->low                   = shb_arena_take(&t->arena, (size_t)b->n, sizeof(double));
+  t->at                    = shb_arena_take(&t->arena, all, sizeof(double));
+  t->r                     = shb_arena_take(&t->arena, all, sizeof(double));
+  t->most                  = above ? MHB_MOST_TRUNCATION_STEPS : MHB_MOST_STEPS_OF_FEW;
+  t->steps                 = shb_arena_take(&t->arena, (size_t)t->most * all, sizeof(double));
+  create_pairs(t);
+  return t;
 }
 
 void mhb_truncation_step_destroy(mhb_truncation_step *t) {

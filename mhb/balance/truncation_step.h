@@ -33,11 +33,10 @@ typedef struct {
   shb_arena         arena;
 } mhb_truncation_step;
 
-/* Both balances and `above`, of the doubled one, must outlive it; NULL: few pairs. SHB_ERR_IO: no
- * memory. */
-shb_status mhb_truncation_step_create(const mhb_balance *balance, mhb_balance *doubled,
-                                      mhb_woodbury *above, mhb_truncation_step **step);
-void       mhb_truncation_step_destroy(mhb_truncation_step *step);
+/* Both balances and `above`, of the doubled one, must outlive it; NULL: few pairs. */
+mhb_truncation_step *mhb_truncation_step_create(const mhb_balance *balance, mhb_balance *doubled,
+                                                mhb_woodbury *above);
+void                 mhb_truncation_step_destroy(mhb_truncation_step *step);
 
 /* step[doubled->n] <- the change of x[doubled->n], which has no harmonics above m. The balance's
  * evaluation in use is linearised near it, with few pairs at it.

@@ -5,6 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "mesh/base/memory.h"
 #include "mhb/branches/branch_stability.h"
 #include "mhb/branches/record.h"
 
@@ -24,7 +25,7 @@ static void unmark_hairlines(mhb_branch *branch, double range) {
   }
 }
 
-static shb_status set_reason(mhb_branch *branch, const mhb_completion *c) {
+static void set_reason(mhb_branch *branch, const mhb_completion *c) {
   char        text[256];
   mhb_end     end    = c->interrupted ? MHB_END_INTERRUPTED : c->end;
   bool        own    = c->other_reason && !c->interrupted;
@@ -37,12 +38,10 @@ static shb_status set_reason(mhb_branch *branch, const mhb_completion *c) {
     snprintf(text, sizeof text, "%s, with %d gap%s: %s", reason, c->n_gaps,
              c->n_gaps > 1 ? "s" : "", c->first_gap);
   free(branch->reason);
-  branch->reason = strdup(text);
+  branch->reason = shb_text(text);
   branch->complete =
       !own && c->n_gaps == 0 &&
       (end == MHB_END_HIGH || end == MHB_END_LOW || end == MHB_END_CLOSED || end == MHB_END_JOINED);
-  SHB_CHECK(branch->reason, SHB_ERR_IO, "out of memory");
-  return SHB_OK;
 }
 
 shb_status mhb_branch_complete(mhb_tracer *tracer, const mhb_chain *chain, mhb_response *response,
@@ -55,11 +54,14 @@ shb_status mhb_branch_complete(mhb_tracer *tracer, const mhb_chain *chain, mhb_r
   int                        n_begins, begins[chain->n + 1];
   branch->n_harmonics = tracer->store->n_harmonics;
   branch->order       = tracer->store->subharmonics;
-  SHB_TRY(mhb_chain_join(chain, tracer->store, response, index, begins, &n_begins));
+  mhb_chain_join(chain, tracer->store, response, index, begins, &n_begins);
   unmark_hairlines(branch, range);
   c->interrupted = c->end == MHB_END_INTERRUPTED;
-  if (c->by_folds) SHB_TRY(mhb_branch_stability_by_folds(branch, begins, n_begins, c->stable_at));
-  if (!mhb_judges_stability(settings) || c->interrupted) return set_reason(branch, c);
+  if (c->by_folds) mhb_branch_stability_by_folds(branch, begins, n_begins, c->stable_at);
+  if (!mhb_judges_stability(settings) || c->interrupted) {
+    set_reason(branch, c);
+    return SHB_OK;
+  }
   mhb_branch_stability *stability;
   bool                  finished = true;
   SHB_TRY(mhb_harmonic_levels_use(tracer->levels, levels->highest)); /* no point has more */
@@ -68,5 +70,6 @@ shb_status mhb_branch_complete(mhb_tracer *tracer, const mhb_chain *chain, mhb_r
       mhb_branch_stability_judge(stability, tracer, response, index, begins, n_begins, &finished);
   mhb_branch_stability_destroy(stability);
   c->interrupted = !finished;
-  return status == SHB_OK ? set_reason(branch, c) : status;
+  if (status == SHB_OK) set_reason(branch, c);
+  return status;
 }

@@ -15,8 +15,7 @@ typedef struct {
   bool        interrupted;  /* out: the judging of stability was stopped, or the tracing before */
 } mhb_completion;
 
-/* Join a chain of the tracer's segments into a branch of a response, and complete it.
- * SHB_ERR_IO: no memory. */
+/* Join a chain of the tracer's segments into a branch of a response, and complete it. */
 shb_status mhb_branch_complete(mhb_tracer *tracer, const mhb_chain *chain, mhb_response *response,
                                int branch, mhb_completion *completion);
 

@@ -26,21 +26,32 @@
 #include "mhb/floquet/floquet.h"
 #include "mhb/response/response.h"
 
-/* A workspace for multipliers with the sub-steps and dynamic modes that points of a branch get.
- * SHB_ERR_IO: no memory. */
+/* A workspace for multipliers with the sub-steps and dynamic modes that points of a branch get. */
 shb_status mhb_branch_floquet_create(mhb_balance *balance, mhb_floquet **floquet);
 
 /* Multipliers at the solution x[n] of the last evaluation of the balance. */
 void mhb_branch_floquet_evaluate(mhb_floquet *floquet, const mhb_balance *balance, const double *x,
                                  mhb_multipliers *multipliers);
 
+/* A solution to be judged. */
+typedef struct {
+  const double *x;     /* [n] */
+  double        value; /* of the balance's parameter */
+  double        error; /* its truncation error; INFINITY: not known */
+} mhb_judged_point;
+
+/* The same with the error of the largest modulus by the harmonics left out, and a verdict that is
+ * undecided within it. One routine for branches and studies. truncation: of the balance. */
+void mhb_branch_floquet_judge(mhb_floquet *floquet, mhb_balance *balance,
+                              mhb_truncation *truncation, const mhb_judged_point *at,
+                              mhb_multipliers *multipliers);
+
 /* Bytes of that workspace (mhb_floquet_bytes). */
 double mhb_branch_floquet_bytes(int blades, int pairs, int modes, bool mistuned);
 
 typedef struct mhb_branch_stability mhb_branch_stability; /* workspace; one a thread */
 
-/* settings->stability must not be never. The balance must outlive the workspace. SHB_ERR_IO: no
- * memory. */
+/* settings->stability must not be never. The balance must outlive the workspace. */
 shb_status mhb_branch_stability_create(mhb_balance *balance, mhb_branch_stability **stability);
 void       mhb_branch_stability_destroy(mhb_branch_stability *stability);
 
@@ -50,7 +61,7 @@ void       mhb_branch_stability_destroy(mhb_branch_stability *stability);
  *   begins     [n_begins] points at which the branch begins, or begins anew after a gap, rising; no
  *              conclusion is drawn across
  *   finished   out  false: the monitor stopped it before all points were judged
- * The curves so far are published meanwhile. SHB_ERR_IO: no memory; and errors of publication. */
+ * The curves so far are published meanwhile. Errors of publication. */
 shb_status mhb_branch_stability_judge(mhb_branch_stability *stability, mhb_tracer *tracer,
                                       mhb_response *response, int branch, const int *begins,
                                       int n_begins, bool *finished);
@@ -59,8 +70,8 @@ shb_status mhb_branch_stability_judge(mhb_branch_stability *stability, mhb_trace
  * beyond +1. Points behind an odd number of folds are unstable, all others are not judged.
  *
  * Two points in a row at one value tell that the curve left the range and came back to the same
- * end. It passed another fold there. SHB_ERR_IO: no memory. */
-shb_status mhb_branch_stability_by_folds(mhb_branch *branch, const int *begins, int n_begins,
-                                         int stable_at);
+ * end. It passed another fold there. */
+void mhb_branch_stability_by_folds(mhb_branch *branch, const int *begins, int n_begins,
+                                   int stable_at);
 
 #endif

@@ -3,23 +3,21 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "mesh/base/memory.h"
+
 void mhb_chain_free(mhb_chain *chain) {
   free(chain->link);
   *chain = (mhb_chain){0};
 }
 
-shb_status mhb_chain_insert(mhb_chain *chain, int at, mhb_link link) {
+void mhb_chain_insert(mhb_chain *chain, int at, mhb_link link) {
   if (chain->n == chain->room) {
-    int       room = 2 * chain->room + 8;
-    mhb_link *more = realloc(chain->link, sizeof *more * (size_t)room);
-    SHB_CHECK(more, SHB_ERR_IO, "out of memory for %d segments", room);
-    chain->link = more;
-    chain->room = room;
+    chain->room = 2 * chain->room + 8;
+    chain->link = shb_realloc(chain->link, (size_t)chain->room, sizeof *chain->link);
   }
   memmove(chain->link + at + 1, chain->link + at, sizeof link * (size_t)(chain->n - at));
   chain->link[at] = link;
   chain->n++;
-  return SHB_OK;
 }
 
 /* After reversal a link joins its predecessor if its former successor joined it. */
@@ -60,8 +58,8 @@ void mhb_chain_end(const mhb_chain *chain, const mhb_response *store, int end, i
   *point    = last ? store->branch[link->segment].n_points - 1 : 0;
 }
 
-shb_status mhb_chain_join(const mhb_chain *chain, const mhb_response *store, mhb_response *response,
-                          int branch, int *begins, int *n_begins) {
+void mhb_chain_join(const mhb_chain *chain, const mhb_response *store, mhb_response *response,
+                    int branch, int *begins, int *n_begins) {
   mhb_branch *b = &response->branch[branch];
   b->n_points   = 0;
   *n_begins     = 0;
@@ -71,9 +69,8 @@ shb_status mhb_chain_join(const mhb_chain *chain, const mhb_response *store, mhb
     if (points_of(link, store) == 0) continue;
     if (!link->joins || b->n_points == 0) begins[(*n_begins)++] = b->n_points;
     if (link->reversed)
-      SHB_TRY(mhb_response_copy_points(response, branch, store, link->segment, n - 1 - drop, 0));
+      mhb_response_copy_points(response, branch, store, link->segment, n - 1 - drop, 0);
     else
-      SHB_TRY(mhb_response_copy_points(response, branch, store, link->segment, drop, n - 1));
+      mhb_response_copy_points(response, branch, store, link->segment, drop, n - 1);
   }
-  return SHB_OK;
 }

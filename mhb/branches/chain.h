@@ -20,8 +20,8 @@ typedef struct {
 
 void mhb_chain_free(mhb_chain *chain);
 
-/* Insert a link before the one at a place, 0 to n. SHB_ERR_IO: no memory. */
-shb_status mhb_chain_insert(mhb_chain *chain, int at, mhb_link link);
+/* Insert a link before the one at a place, 0 to n. */
+void mhb_chain_insert(mhb_chain *chain, int at, mhb_link link);
 /* The links from `from` on in the opposite order and direction. */
 void mhb_chain_reverse(mhb_chain *chain, int from);
 
@@ -33,9 +33,8 @@ void mhb_chain_end(const mhb_chain *chain, const mhb_response *store, int end, i
 
 /* Replace the points of a branch by the chain's.
  *   begins  out  [n_begins] points at which the curve begins, and begins anew after a gap; room for
- *                chain->n
- * SHB_ERR_IO: no memory. */
-shb_status mhb_chain_join(const mhb_chain *chain, const mhb_response *store, mhb_response *response,
-                          int branch, int *begins, int *n_begins);
+ *                chain->n */
+void mhb_chain_join(const mhb_chain *chain, const mhb_response *store, mhb_response *response,
+                    int branch, int *begins, int *n_begins);
 
 #endif

@@ -6,6 +6,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "mesh/base/memory.h"
 #include "mhb/balance/truncation_error.h"
 #include "mhb/branches/branch_stability.h"
 #include "mhb/branches/harmonic_selection.h"
@@ -56,51 +57,43 @@ static void take(mhb_branch *to, mhb_branch *from) {
 }
 
 /* Append a branch beside a main one. Its arrays stay those of the preload. */
-static shb_status append_branch(mhb_response *response, const mhb_branch *branch, int main) {
-  int index;
-  SHB_TRY(mhb_response_branch(response, MHB_BRANCH_NONLINEAR, &index));
+static void append_branch(mhb_response *response, const mhb_branch *branch, int main) {
+  const int index              = mhb_response_branch(response, MHB_BRANCH_NONLINEAR);
   response->branch[index]      = *branch;
   response->branch[index].main = main;
-  return SHB_OK;
 }
 
 /* The curves handed over so far become the response's branches 2.. for the time of a call: main
  * branches in the order of the preloads, then the others, grouped by their main one. */
-static shb_status gather(sweep *s) {
-  mhb_response *r      = s->response;
-  shb_status    status = SHB_OK;
+static void gather(sweep *s) {
+  mhb_response *r = s->response;
   for (int i = 0; i < s->settings->n_preloads; i++) {
-    int index;
-    SHB_TRY(mhb_response_branch(r, MHB_BRANCH_NONLINEAR, &index));
+    const int index = mhb_response_branch(r, MHB_BRANCH_NONLINEAR);
     if (!s->preload[i].handed) continue;
     r->branch[index]      = s->preload[i].handed->branch[0];
     r->branch[index].main = index;
   }
-  for (int i = 0; i < s->settings->n_preloads && status == SHB_OK; i++) {
+  for (int i = 0; i < s->settings->n_preloads; i++) {
     const mhb_response *handed = s->preload[i].handed;
-    for (int k = 1; handed && k < handed->n_branches && status == SHB_OK; k++)
-      status = append_branch(r, &handed->branch[k], 2 + i);
+    for (int k = 1; handed && k < handed->n_branches; k++)
+      append_branch(r, &handed->branch[k], 2 + i);
   }
-  return status;
 }
 
 static shb_status publish(sweep *s) {
-  shb_status status = gather(s);
-  if (status == SHB_OK) status = mhb_publisher_write(&s->publisher, s->response);
+  gather(s);
+  const shb_status status = mhb_publisher_write(&s->publisher, s->response);
   s->response->n_branches = 2; /* the others belong to the preloads */
   return status;
 }
 
-/* Copy a preload's own curves. SHB_ERR_IO: no memory. */
-static shb_status copy_curves(const mhb_response *own, mhb_response **out) {
-  mhb_response *copy   = mhb_response_like(own);
-  shb_status    status = copy ? SHB_OK : shb_fail(SHB_ERR_IO, __FILE__, __LINE__, "out of memory");
-  for (int k = 0; k < own->n_branches && status == SHB_OK; k++) {
+/* A copy of a preload's own curves. */
+static mhb_response *copy_curves(const mhb_response *own) {
+  mhb_response *copy = mhb_response_like(own);
+  for (int k = 0; k < own->n_branches; k++) {
     const mhb_branch *from = &own->branch[k];
-    int               index;
     if (k > 0 && from->n_points == 0) continue; /* under way, or not there */
-    status = mhb_response_branch(copy, from->kind, &index);
-    if (status != SHB_OK) break;
+    const int   index  = mhb_response_branch(copy, from->kind);
     mhb_branch *to     = &copy->branch[index];
     to->origin         = from->origin;
     to->order          = from->order;
@@ -109,23 +102,15 @@ static shb_status copy_curves(const mhb_response *own, mhb_response **out) {
     to->searched       = from->searched;
     to->flips_untraced = from->flips_untraced;
     to->complete       = from->complete;
-    for (int i = 0; i < from->n_searches && status == SHB_OK; i++)
-      status = mhb_response_note_search(to, &from->search[i]);
-    to->reason = from->reason ? strdup(from->reason) : NULL;
-    if (status == SHB_OK) status = mhb_response_copy_lasting(to, from);
+    for (int i = 0; i < from->n_searches; i++) mhb_response_note_search(to, &from->search[i]);
+    to->reason = from->reason ? shb_text(from->reason) : NULL;
+    mhb_response_copy_lasting(to, from);
     const mhb_unfinished *under_way = from->unfinished;
-    if (status == SHB_OK && under_way)
-      status =
-          mhb_unfinished_copy(under_way->segments, under_way->n, under_way->state, &to->unfinished);
-    if (status == SHB_OK && from->n_points > 0)
-      status = mhb_response_copy_points(copy, index, own, k, 0, from->n_points - 1);
+    if (under_way)
+      to->unfinished = mhb_unfinished_copy(under_way->segments, under_way->n, under_way->state);
+    if (from->n_points > 0) mhb_response_copy_points(copy, index, own, k, 0, from->n_points - 1);
   }
-  if (status != SHB_OK) {
-    mhb_response_destroy(copy);
-    return status;
-  }
-  *out = copy;
-  return SHB_OK;
+  return copy;
 }
 
 /* Under the lock: a thread that ends a preload gives its curves away. */
@@ -190,15 +175,15 @@ static bool searching(mhb_monitor *monitor, mhb_sought what, double n0, double v
 static bool is_due(mhb_monitor *monitor, const mhb_response *own) {
   sweep          *s = (sweep *)monitor;
   preload_curves *p = preload_of(s, own);
-  return s->publisher.path && p && shb_seconds() - p->handed_at > PUBLISH_EVERY;
+  return s->publisher.path && p &&
+         shb_seconds() - p->handed_at > mhb_publisher_pause(&s->publisher, PUBLISH_EVERY);
 }
 
 /* Hand over a copy of a preload's curves, and write the file if it is old. */
 static shb_status hand_over(mhb_monitor *monitor, const mhb_response *own) {
-  sweep          *s = (sweep *)monitor;
-  preload_curves *p = preload_of(s, own);
-  mhb_response   *copy;
-  SHB_TRY(copy_curves(own, &copy));
+  sweep          *s    = (sweep *)monitor;
+  preload_curves *p    = preload_of(s, own);
+  mhb_response   *copy = copy_curves(own);
   mhb_publisher_lock(&s->publisher, true);
   mhb_response_destroy(p->handed);
   p->handed         = copy;
@@ -223,8 +208,7 @@ static shb_status linear_limits(const modal_model *model, const mhb_settings *se
   mhb_balance_set_parameter(balance, settings->parameter);
   shb_status status = mhb_stiffness_check(balance->receptance, settings);
   for (int stuck = 0; stuck < 2 && status == SHB_OK; stuck++) {
-    int branch;
-    status = mhb_response_branch(response, stuck ? MHB_BRANCH_STUCK : MHB_BRANCH_OPEN, &branch);
+    const int branch = mhb_response_branch(response, stuck ? MHB_BRANCH_STUCK : MHB_BRANCH_OPEN);
     if (status == SHB_OK && !settings->outline) /* an outline is of the curves between them */
       status = mhb_linear_limits(balance, response, branch);
   }
@@ -338,7 +322,7 @@ static preload_curves *wanted_for(sweep *s, const mhb_response *old, int branch,
 
 /* Take the branches beside a main one. Those of the small search depend on all preloads: with
  * other preloads the search is made anew. */
-static shb_status take_beside(preload_curves *p, mhb_response *old, int main, bool no_searches) {
+static void take_beside(preload_curves *p, mhb_response *old, int main, bool no_searches) {
   mhb_branch *first = &p->own->branch[0];
   if (no_searches) first->n_searches = 0;
   for (int i = main + 1; i < old->n_branches; i++) {
@@ -347,27 +331,23 @@ static shb_status take_beside(preload_curves *p, mhb_response *old, int main, bo
     if (b->main != main) continue;
     if (no_searches && b->origin == MHB_FROM_SEARCH) break;
     if (!(first->searched || b->origin == MHB_FROM_DETACHED)) continue;
-    SHB_TRY(mhb_response_branch(p->own, MHB_BRANCH_NONLINEAR, &index));
+    index = mhb_response_branch(p->own, MHB_BRANCH_NONLINEAR);
     first = &p->own->branch[0];
     take(&p->own->branch[index], b);
     p->own->branch[index].main = 0;
   }
-  return SHB_OK;
 }
 
 /* Take a main branch that an earlier run did not finish. It stays in the file until more of it is
  * there. */
-static shb_status take_unfinished(preload_curves *p, mhb_branch *old) {
+static void take_unfinished(preload_curves *p, mhb_branch *old) {
   const mhb_unfinished *u = old->unfinished;
-  int                   index;
-  if (p->handed) return SHB_OK;
-  SHB_TRY(mhb_unfinished_copy(u->segments, u->n, u->state, &p->own->branch[0].unfinished));
-  p->handed = mhb_response_like(p->own);
-  SHB_CHECK(p->handed, SHB_ERR_IO, "out of memory");
-  SHB_TRY(mhb_response_branch(p->handed, MHB_BRANCH_NONLINEAR, &index));
+  if (p->handed) return;
+  p->own->branch[0].unfinished = mhb_unfinished_copy(u->segments, u->n, u->state);
+  p->handed                    = mhb_response_like(p->own);
+  mhb_response_branch(p->handed, MHB_BRANCH_NONLINEAR);
   take(&p->handed->branch[0], old);
   p->handed->branch[0].main = 0;
-  return SHB_OK;
 }
 
 /* Take over the curves of an earlier run: an interrupted one of the same settings, or one with
@@ -389,15 +369,15 @@ static shb_status resume(sweep *s) {
     preload_curves *p = wanted_for(s, old, i, part);
     if (!p) continue;
     if (!old->branch[i].complete) {
-      status = take_unfinished(p, &old->branch[i]);
+      take_unfinished(p, &old->branch[i]);
       continue;
     }
     take(&p->own->branch[0], &old->branch[i]);
     p->own->branch[0].main = 0;
     old->branch[i].main    = i; /* the empty branch is in its place */
     p->done                = p->own->branch[0].searched ? 1 : s->main_share;
-    status                 = take_beside(p, old, i, peaks && part == TAKE_EQUAL_PRELOADS);
-    if (status == SHB_OK) status = copy_curves(p->own, &p->handed); /* they stay in the file */
+    take_beside(p, old, i, peaks && part == TAKE_EQUAL_PRELOADS);
+    p->handed = copy_curves(p->own); /* they stay in the file */
   }
   mhb_response_destroy(old);
   return status;
@@ -407,10 +387,8 @@ static shb_status all_preloads(sweep *s, const modal_model *model) {
   int n = s->settings->n_preloads;
   for (int i = 0; i < n; i++) {
     preload_curves *p = &s->preload[i];
-    int             index;
-    p->own = mhb_response_like(s->response);
-    SHB_CHECK(p->own, SHB_ERR_IO, "out of memory");
-    SHB_TRY(mhb_response_branch(p->own, MHB_BRANCH_NONLINEAR, &index));
+    p->own            = mhb_response_like(s->response);
+    mhb_response_branch(p->own, MHB_BRANCH_NONLINEAR);
     p->own->branch[0].searched    = !mhb_secondary_branches_wanted(s->settings);
     p->own->branch[0].n_harmonics = s->response->n_harmonics;
   }
@@ -473,27 +451,20 @@ static shb_status lasting_motion(sweep *s, const modal_model *model) {
 }
 
 /* The response takes over the curves of all preloads. */
-static shb_status take_curves(sweep *s) {
-  shb_status status = gather(s);
-  if (status != SHB_OK) {
-    s->response->n_branches = 2; /* the others belong to the preloads */
-    return status;
-  }
+static void take_curves(sweep *s) {
+  gather(s);
   for (int i = 0; i < s->settings->n_preloads; i++) {
     s->preload[i].handed->n_branches = 0;
     mhb_response_destroy(s->preload[i].handed);
     s->preload[i].handed = NULL;
   }
-  return SHB_OK;
 }
 
 /* All branches have as many harmonics as the one with the most. */
-static shb_status widen_all(mhb_response *r) {
+static void widen_all(mhb_response *r) {
   for (int i = 0; i < r->n_branches; i++)
     if (r->branch[i].n_harmonics > r->n_harmonics) r->n_harmonics = r->branch[i].n_harmonics;
-  for (int i = 0; i < r->n_branches; i++)
-    SHB_TRY(mhb_response_widen(r, &r->branch[i], r->n_harmonics));
-  return SHB_OK;
+  for (int i = 0; i < r->n_branches; i++) mhb_response_widen(r, &r->branch[i], r->n_harmonics);
 }
 
 /* A secondary branch that does not cover its range is noted in the file only. The sweep has its
@@ -534,8 +505,8 @@ static shb_status all_curves(sweep *s, const modal_model *model, mhb_settings *s
   if (status == SHB_OK) status = all_preloads(s, model);
   if (status == SHB_OK) status = lasting_motion(s, model);
   if (status == SHB_OK) s->response->unfinished = shb_interrupted() || settings->ring;
-  if (status == SHB_OK) status = take_curves(s);
-  if (status == SHB_OK && !shb_interrupted()) status = widen_all(s->response);
+  if (status == SHB_OK) take_curves(s);
+  if (status == SHB_OK && !shb_interrupted()) widen_all(s->response);
   if (status == SHB_OK) status = mhb_modal_motion_keep(model, settings, s->response);
   if (alike) settings->alike = NULL;
   mhb_receptance_destroy(alike);
@@ -564,11 +535,9 @@ shb_status mhb_forced_response(const modal_model *model, const mhb_settings *ask
   mhb_publisher_start(&s.publisher, path, provenance);
   s.response =
       mhb_response_create(model->n_pairs, model->n_probes, mhb_harmonic_levels_usual(n_levels, m));
-  s.preload = calloc((size_t)settings->n_preloads, sizeof *s.preload);
-  shb_status status =
-      s.response && s.preload ? SHB_OK : shb_fail(SHB_ERR_IO, __FILE__, __LINE__, "out of memory");
-  if (status == SHB_OK) s.response->unfinished = true;
-  if (status == SHB_OK) status = mhb_response_describe(s.response, model, settings);
+  s.preload              = shb_alloc_zeroed((size_t)settings->n_preloads, sizeof *s.preload);
+  s.response->unfinished = true;
+  shb_status status      = mhb_response_describe(s.response, model, settings);
   if (status == SHB_OK) status = all_curves(&s, model, &first);
   if (status == SHB_OK && settings->face) {
     s.response->face = settings->face;
@@ -576,7 +545,7 @@ shb_status mhb_forced_response(const modal_model *model, const mhb_settings *ask
   }
   if (status == SHB_OK) status = mhb_publisher_write(&s.publisher, s.response);
   mhb_publisher_stop(&s.publisher);
-  for (int i = 0; s.preload && i < settings->n_preloads; i++) {
+  for (int i = 0; i < settings->n_preloads; i++) {
     mhb_response_destroy(s.preload[i].own);
     mhb_response_destroy(s.preload[i].handed);
   }

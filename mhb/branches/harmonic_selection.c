@@ -4,13 +4,18 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "mesh/base/memory.h"
 #include "mhb/numerics/fourier.h"
 
 /* Parts of the tolerance: an estimate that is accepted, and one that a lower level must keep. */
 static const double SAFETY = 0.7, DOWNWARD_MARGIN = 0.35;
 
-/* Factor on an estimate of first order. */
+/* Factor on an estimate of first order, which can be several times too small. */
 static const double FIRST_ORDER = 3;
+
+/* Without a tolerance the curve is looked at from this error on: a hundred times the default
+ * tolerance. Beside a fold the error is far more. */
+static const double WITHOUT_TOLERANCE = 1e-2;
 
 /* Share of the period that is nearly all of it. */
 static const double NEARLY_ALL = 0.75;
@@ -84,8 +89,7 @@ static void level_destroy(mhb_harmonic_level *level) {
 /* balance: NULL, or the one to use. */
 static shb_status level_create(const mhb_harmonic_levels *h, int m, mhb_balance *balance,
                                mhb_harmonic_level **out) {
-  mhb_harmonic_level *level = calloc(1, sizeof *level);
-  SHB_CHECK(level, SHB_ERR_IO, "out of memory");
+  mhb_harmonic_level *level = shb_alloc_zeroed(1, sizeof *level);
   level->settings           = *h->settings;
   level->settings.harmonics = m;
   level->balance            = balance;
@@ -99,8 +103,7 @@ static shb_status level_create(const mhb_harmonic_levels *h, int m, mhb_balance 
   if (status == SHB_OK) status = mhb_truncation_create(level->balance, &level->truncation);
   if (status == SHB_OK && h->settings->other_pairs && !h->settings->outline)
     status = mhb_spatial_error_create(level->balance, &level->spatial);
-  if (status == SHB_OK)
-    status = mhb_balance_curve_create(level->balance, h->low, h->high, &level->curve);
+  if (status == SHB_OK) level->curve = mhb_balance_curve_create(level->balance, h->low, h->high);
   if (status != SHB_OK) {
     level_destroy(level);
     return status;
@@ -117,17 +120,16 @@ int mhb_harmonic_levels_of(const mhb_harmonic_levels *h, int m) {
 }
 
 shb_status mhb_harmonic_levels_create(mhb_balance *balance, mhb_harmonic_levels **out) {
-  mhb_harmonic_levels *h = calloc(1, sizeof *h);
-  SHB_CHECK(h, SHB_ERR_IO, "out of memory");
-  h->settings  = balance->settings;
-  h->model     = balance->receptance->model;
-  h->at_start  = balance->eval->at;
-  h->parameter = balance->parameter;
-  h->low       = mhb_parameter_end(h->settings, h->parameter, 0);
-  h->high      = mhb_parameter_end(h->settings, h->parameter, 1);
-  h->n         = mhb_harmonic_levels_ladder(h->model, h->settings, h->m);
-  h->at        = mhb_harmonic_levels_of(h, balance->m);
-  h->m[h->at]  = balance->m;
+  mhb_harmonic_levels *h = shb_alloc_zeroed(1, sizeof *h);
+  h->settings            = balance->settings;
+  h->model               = balance->receptance->model;
+  h->at_start            = balance->eval->at;
+  h->parameter           = balance->parameter;
+  h->low                 = mhb_parameter_end(h->settings, h->parameter, 0);
+  h->high                = mhb_parameter_end(h->settings, h->parameter, 1);
+  h->n                   = mhb_harmonic_levels_ladder(h->model, h->settings, h->m);
+  h->at                  = mhb_harmonic_levels_of(h, balance->m);
+  h->m[h->at]            = balance->m;
   h->highest = h->wanted = h->at;
   shb_status status      = level_create(h, balance->m, balance, &h->level[h->at]);
   if (status != SHB_OK) {
@@ -220,23 +222,21 @@ static bool is_nearly_linear(const mhb_evaluation *e, int n_pairs) {
   return true;
 }
 
-static double factor_of(const mhb_curve_point *point) {
-  return point->truncation_kind == MHB_TRUNCATION_FIRST_ORDER ? FIRST_ORDER : 1;
-}
-
 void mhb_harmonic_levels_errors(mhb_harmonic_levels *h, mhb_curve_point *point) {
   if (h->settings->outline && h->n == 1) {
     point->truncation_kind = MHB_TRUNCATION_NONE;
-    point->truncation = point->truncation_max = point->miss = point->modal = NAN;
+    point->truncation = point->truncation_max = point->modal = NAN;
     return;
   }
   mhb_harmonic_level *level = mhb_harmonic_levels_current(h);
   mhb_balance_use(level->balance, point->evaluation);
-  point->truncation      = mhb_truncation_error(level->truncation, point->x);
-  point->truncation_max  = level->truncation->largest;
+  const double error     = mhb_truncation_error(level->truncation, point->x);
+  const bool   rough     = level->truncation->kind == MHB_TRUNCATION_FIRST_ORDER;
+  const double factor    = rough ? FIRST_ORDER : 1;
+  point->truncation      = factor * error;
+  point->truncation_max  = factor * level->truncation->largest;
   point->truncation_kind = level->truncation->kind;
-  point->miss            = factor_of(point) * point->truncation;
-  bool newton            = point->truncation_kind == MHB_TRUNCATION_NEWTON;
+  const bool newton      = point->truncation_kind == MHB_TRUNCATION_NEWTON;
   point->modal = mhb_modal_error(level->balance, point->x, newton ? level->truncation : NULL);
 }
 
@@ -256,15 +256,25 @@ static double unit_of_shift(const mhb_harmonic_levels *h) {
   return least;
 }
 
-void mhb_harmonic_levels_miss(mhb_harmonic_levels *h, mhb_curve_point *point) {
-  mhb_harmonic_level *level = mhb_harmonic_levels_current(h);
-  double              shift = 0;
-  mhb_balance_use(level->balance, point->evaluation);
-  const double distance =
-      mhb_truncation_across(level->truncation, point->value, point->tangent, &shift);
-  const double unit = unit_of_shift(h);
-  const double miss = unit > 0 ? fmax(distance, shift / unit) : INFINITY;
-  if (miss < point->miss) point->miss = miss;
+/* The error that is too large to be told without a look at the curve. */
+static bool is_large(const mhb_harmonic_levels *h, const mhb_curve_point *point) {
+  const double tolerance = h->settings->motion_tolerance;
+  return point->truncation_kind == MHB_TRUNCATION_NEWTON &&
+         point->truncation > (tolerance > 0 ? tolerance : WITHOUT_TOLERANCE);
+}
+
+void mhb_harmonic_levels_settle(mhb_harmonic_levels *h, mhb_curve_point *point) {
+  mhb_truncation *t     = mhb_harmonic_levels_current(h)->truncation;
+  double          shift = 0;
+  if (!is_large(h, point)) return;
+  mhb_balance_use(mhb_harmonic_levels_current(h)->balance, point->evaluation);
+  const double distance = mhb_truncation_across(t, point->value, &shift);
+  const double unit     = unit_of_shift(h);
+  const double moved    = unit > 0 ? shift / unit : INFINITY;
+  if (fmax(distance, moved) >= point->truncation) return;
+  point->truncation      = fmax(distance, moved);
+  point->truncation_max  = fmax(t->largest, moved);
+  point->truncation_kind = MHB_TRUNCATION_ACROSS;
 }
 
 void mhb_harmonic_levels_estimate(mhb_harmonic_levels *h, mhb_curve_point *point) {
@@ -272,33 +282,40 @@ void mhb_harmonic_levels_estimate(mhb_harmonic_levels *h, mhb_curve_point *point
   mhb_harmonic_levels_errors(h, point);
   h->wanted = h->at;
   h->linear = point->truncation_kind == MHB_TRUNCATION_NONE;
-  if (h->n == 1) return;
-  const mhb_truncation *t       = mhb_harmonic_levels_current(h)->truncation;
-  const bool            exceeds = point->miss > h->settings->motion_tolerance;
-  const bool            judges  = exceeds && mhb_harmonic_levels_all_usual(h);
-  if (judges && !t->by_broyden) mhb_harmonic_levels_miss(h, point);
-  h->wanted  = choose(h, point->x, point->miss, mhb_balance_vibration(b, point->x));
+  if (h->n == 1) {
+    mhb_harmonic_levels_settle(h, point);
+    return;
+  }
+  const mhb_truncation *t     = mhb_harmonic_levels_current(h)->truncation;
+  const bool            usual = mhb_harmonic_levels_all_usual(h);
+  if (usual && !t->by_broyden) mhb_harmonic_levels_settle(h, point);
+  h->wanted  = choose(h, point->x, point->truncation, mhb_balance_vibration(b, point->x));
   bool onset = h->from_linear || is_nearly_linear(point->evaluation, b->n_pairs);
   int  least = mhb_harmonic_levels_of(h, AT_ONSET * h->settings->subharmonics);
   if (!h->linear && onset && h->wanted < least) h->wanted = least;
   if (h->wanted < h->least) h->wanted = h->least;
   /* the curve is dear to look at where Broyden's method gave the estimate */
-  if (judges && t->by_broyden && h->wanted <= h->at) mhb_harmonic_levels_miss(h, point);
+  if (usual && t->by_broyden && h->wanted <= h->at) mhb_harmonic_levels_settle(h, point);
 }
 
 int mhb_harmonic_levels_of_event(mhb_harmonic_levels *h, mhb_curve_point *point) {
   mhb_balance *b = mhb_harmonic_levels_current(h)->balance;
   mhb_harmonic_levels_errors(h, point);
-  const double error = point->miss, tolerance = h->settings->motion_tolerance;
+  const double error = point->truncation, tolerance = h->settings->motion_tolerance;
   if (!(tolerance > 0) || !(error > tolerance)) return -1;
-  mhb_harmonic_levels_miss(h, point);
-  if (point->miss <= tolerance || h->at == h->n - 1) return -1;
+  mhb_harmonic_levels_settle(h, point);
+  if (point->truncation <= tolerance || h->at == h->n - 1) return -1;
   const int level = choose(h, point->x, error, mhb_balance_vibration(b, point->x));
   return level > h->at ? level : -1;
 }
 
 int mhb_harmonic_levels_higher(const mhb_harmonic_levels *h) {
   return h->wanted > h->at ? h->wanted : -1;
+}
+
+int mhb_harmonic_levels_needed(const mhb_harmonic_levels *h) {
+  const int usual = mhb_harmonic_levels_of(h, MHB_USUAL_HARMONICS);
+  return h->wanted < usual ? h->wanted : usual;
 }
 
 void mhb_harmonic_levels_accept(mhb_harmonic_levels *h) {

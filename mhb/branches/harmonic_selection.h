@@ -59,7 +59,7 @@ int mhb_harmonic_levels_ladder(const modal_model *model, const mhb_settings *set
 int mhb_harmonic_levels_usual(int n, const int *m);
 
 /* Starts at the given balance, which must outlive it, with its settings, operating point and
- * parameter. SHB_ERR_IO: no memory. */
+ * parameter. */
 shb_status mhb_harmonic_levels_create(mhb_balance *balance, mhb_harmonic_levels **levels);
 void       mhb_harmonic_levels_destroy(mhb_harmonic_levels *levels);
 
@@ -79,8 +79,8 @@ bool mhb_harmonic_levels_all_usual(const mhb_harmonic_levels *levels);
 /* Unknowns at the highest level. */
 int mhb_harmonic_levels_most_unknowns(const mhb_harmonic_levels *levels);
 
-/* Fill truncation and modal error of a point of the level in use, linearised there. miss is the
- * truncation error, three times that where it is of first order. */
+/* Fill truncation and modal error of a point of the level in use, linearised there. An estimate of
+ * first order is told threefold. */
 void mhb_harmonic_levels_errors(mhb_harmonic_levels *levels, mhb_curve_point *point);
 
 /* Spatial error of a point of the level in use (mhb_spatial_error_at), which is linearised there;
@@ -92,11 +92,12 @@ double mhb_harmonic_levels_spatial(const mhb_harmonic_levels *levels, const mhb_
  * curve of fewer harmonics may go on smoothly there where that of many turns back. */
 void mhb_harmonic_levels_estimate(mhb_harmonic_levels *levels, mhb_curve_point *point);
 
-/* Fill miss of a point whose errors were estimated last. Beside a fold the curve with twice the
- * harmonics may pass near by where its solution at the same value is far off. What counts there is
- * the distance of the curve, and how far it is moved along the parameter. A frequency is compared
- * with the least damping ratio: no linear resonance is steeper. */
-void mhb_harmonic_levels_miss(mhb_harmonic_levels *levels, mhb_curve_point *point);
+/* Look at the curve where the truncation error of a point is above the tolerance, the errors being
+ * those estimated last. Beside a fold the curve with twice the harmonics may pass near by where its
+ * solution at the same value is far off. There the error told is the distance of the curve: the
+ * motion, or how far it is moved along the parameter. A frequency is compared with the least
+ * damping ratio: no linear resonance is steeper. */
+void mhb_harmonic_levels_settle(mhb_harmonic_levels *levels, mhb_curve_point *point);
 
 /* The level that a point between two others asks for, which only the whole tolerance moves; -1: the
  * one in use suffices. */
@@ -104,6 +105,11 @@ int mhb_harmonic_levels_of_event(mhb_harmonic_levels *levels, mhb_curve_point *p
 
 /* The level above the one in use that the last estimate asks for; -1: the one in use suffices. */
 int mhb_harmonic_levels_higher(const mhb_harmonic_levels *levels);
+
+/* The least level of another attempt at a curve that ended because the one asked for was out of
+ * reach. It is a usual one: a whole curve of more takes a hundred times as long, and those are for
+ * the points that need them. */
+int mhb_harmonic_levels_needed(const mhb_harmonic_levels *levels);
 
 /* The last estimate was that of an accepted point. */
 void mhb_harmonic_levels_accept(mhb_harmonic_levels *levels);

@@ -7,6 +7,7 @@
 #include <string.h>
 
 #include "mesh/base/constants.h"
+#include "mesh/base/memory.h"
 #include "mhb/problem/parameter.h"
 #include "mhb/ring/slow_sweep.h"
 
@@ -107,15 +108,14 @@ const char *mhb_lasting_refusal(const modal_model *model, const mhb_settings *s)
   return NULL;
 }
 
-static shb_status choose(const lasting *l, work *w) {
+static void choose(const lasting *l, work *w) {
   const mhb_branch *b    = w->branch;
   double            peak = 0;
   w->refused             = mhb_lasting_refusal(l->model, l->settings);
-  if (w->refused) return SHB_OK;
-  w->size      = calloc((size_t)b->n_points + 1, sizeof *w->size);
-  w->asked     = calloc((size_t)b->n_points + 1, sizeof *w->asked);
-  w->modulated = calloc((size_t)b->n_points + 1, sizeof *w->modulated);
-  SHB_CHECK(w->size && w->asked && w->modulated, SHB_ERR_IO, "out of memory");
+  if (w->refused) return;
+  w->size      = shb_alloc_zeroed((size_t)b->n_points, sizeof *w->size);
+  w->asked     = shb_alloc_zeroed((size_t)b->n_points, sizeof *w->asked);
+  w->modulated = shb_alloc_zeroed((size_t)b->n_points, sizeof *w->modulated);
   for (int i = 0; i < b->n_points; i++) {
     w->size[i] = size_of(w->curves, b, i);
     peak       = fmax(peak, w->size[i]);
@@ -130,7 +130,6 @@ static shb_status choose(const lasting *l, work *w) {
       w->lowest = b->frequency[i];
   }
   if (w->n_modulated == 0) w->refused = "nothing to compute: no point is modulated";
-  return SHB_OK;
 }
 
 /* Refuse, with auto, rings whose periods take too long. */
@@ -217,15 +216,14 @@ static void choose_points(const lasting *l, work *w, double swept, bool *settle)
     if (w->modulated[i]) mark(w, i, settle);
 }
 
-static shb_status store_sweep(const mhb_slow_sweep *sweep, mhb_branch *branch) {
+static void store_sweep(const mhb_slow_sweep *sweep, mhb_branch *branch) {
   mhb_lasting_curve *c    = &branch->lasting_curve;
   size_t             size = sizeof(double) * (size_t)sweep->n;
-  SHB_TRY(mhb_response_lasting_curve(branch, sweep->n));
-  if (sweep->n == 0) return SHB_OK;
+  mhb_response_lasting_curve(branch, sweep->n);
+  if (sweep->n == 0) return;
   memcpy(c->frequency, sweep->frequency, size);
   memcpy(c->mean, sweep->mean, size);
   memcpy(c->worst, sweep->worst, size);
-  return SHB_OK;
 }
 
 /* A failure of this thread, if it is the first. Under the lock. */
@@ -260,8 +258,8 @@ static void sweep_branch(lasting *l, work *w, bool *settle) {
   }
   lock(l, true);
   w->stopped = !goes_on(l);
-  if (status == SHB_OK && !w->stopped) status = store_sweep(&w->sweep, w->branch);
   if (status == SHB_OK && !w->stopped) {
+    store_sweep(&w->sweep, w->branch);
     choose_points(l, w, w->sweep.n > 0 ? w->sweep.largest : 0, settle);
     status = stored(l, w, low < 0 ? w->branch->frequency[0] : w->branch->frequency[low]);
   }
@@ -346,24 +344,21 @@ static void sort_points(work *w) {
   }
 }
 
-static shb_status list_tasks(lasting *l, bool *const *settle) {
+static void list_tasks(lasting *l, bool *const *settle) {
   int n = 0;
   for (int i = 0; i < l->n; i++) n += l->work[i].n_points;
-  l->tasks = calloc((size_t)n + 1, sizeof *l->tasks);
-  SHB_CHECK(l->tasks, SHB_ERR_IO, "out of memory");
+  l->tasks = shb_alloc_zeroed((size_t)n, sizeof *l->tasks);
   for (int i = 0; i < l->n; i++) {
     work *w = &l->work[i];
     int   k = 0;
     if (!settle[i]) continue;
-    w->at = calloc((size_t)w->n_points + 1, sizeof *w->at);
-    SHB_CHECK(w->at, SHB_ERR_IO, "out of memory");
+    w->at = shb_alloc_zeroed((size_t)w->n_points, sizeof *w->at);
     for (int p = 0; p < w->branch->n_points; p++)
       if (settle[i][p]) w->at[k++].point = p;
     sort_points(w);
     for (k = 0; k < w->n_points; k++) l->tasks[l->n_tasks++] = (task){w, k};
   }
   l->total += n;
-  return SHB_OK;
 }
 
 /* ---- neighbours ---- */
@@ -403,17 +398,15 @@ static void carry_on(lasting *l) {
 }
 
 /* What was computed, or why not. A branch that was stopped has no text. */
-static shb_status set_text(const work *w) {
+static void set_text(const work *w) {
   char text[160];
-  if (!w->branch || w->stopped) return SHB_OK;
+  if (!w->branch || w->stopped) return;
   snprintf(text, sizeof text, "%d point%s of %d modulated%s", w->n_points,
            w->n_points == 1 ? "" : "s", w->n_modulated,
            w->branch->lasting_curve.n > 0 ? ", and a sweep" : "");
   const char *said = w->refused ? w->refused : text;
   if (w->stiff) said = "not computed: the contacts are too stiff for 4096 steps a period";
-  w->branch->lasting = strdup(said);
-  SHB_CHECK(w->branch->lasting, SHB_ERR_IO, "out of memory");
-  return SHB_OK;
+  w->branch->lasting = shb_text(said);
 }
 
 /* ---- all branches ---- */
@@ -424,11 +417,10 @@ static shb_status prepare(lasting *l, mhb_response *const *curves, bool **settle
     if (!curves[i] || curves[i]->branch[0].lasting || curves[i]->branch[0].n_points == 0) continue;
     w->curves = curves[i];
     w->branch = &curves[i]->branch[0];
-    SHB_TRY(choose(l, w));
+    choose(l, w);
     SHB_TRY(weigh(l, w));
     if (w->refused) continue;
-    settle[i] = calloc((size_t)w->branch->n_points + 1, sizeof **settle);
-    SHB_CHECK(settle[i], SHB_ERR_IO, "out of memory");
+    settle[i] = shb_alloc_zeroed((size_t)w->branch->n_points, sizeof **settle);
     l->total++;
   }
   return SHB_OK;
@@ -439,7 +431,7 @@ static shb_status run(lasting *l, mhb_response *const *curves, bool **settle) {
 #pragma omp parallel for schedule(dynamic, 1) num_threads(l->host->threads)
   for (int i = 0; i < l->n; i++)
     if (settle[i] && goes_on(l)) sweep_branch(l, &l->work[i], settle[i]);
-  if (l->status == SHB_OK) SHB_TRY(list_tasks(l, settle));
+  if (l->status == SHB_OK) list_tasks(l, settle);
 #pragma omp parallel for schedule(dynamic, 1) num_threads(l->host->threads)
   for (int i = 0; i < l->n_tasks; i++)
     if (goes_on(l)) settle_point(l, &l->tasks[i]);
@@ -447,7 +439,7 @@ static shb_status run(lasting *l, mhb_response *const *curves, bool **settle) {
   if (l->status != SHB_OK) return shb_fail(l->status, __FILE__, __LINE__, "%s", l->text);
   for (int i = 0; i < l->n; i++) {
     l->work[i].stopped = l->work[i].stopped || !goes_on(l);
-    SHB_TRY(set_text(&l->work[i]));
+    set_text(&l->work[i]);
   }
   return SHB_OK;
 }
@@ -466,13 +458,11 @@ static void release(work *w) {
 
 shb_status mhb_lasting_motion(const modal_model *model, const mhb_settings *settings, int n,
                               mhb_response *const *curves, const mhb_lasting_host *host) {
-  lasting l      = {.model = model, .settings = settings, .host = host, .n = n};
-  bool  **settle = calloc((size_t)n + 1, sizeof *settle);
-  l.work         = calloc((size_t)n + 1, sizeof *l.work);
-  shb_status status =
-      settle && l.work ? SHB_OK : shb_fail(SHB_ERR_IO, __FILE__, __LINE__, "out of memory");
-  if (status == SHB_OK) status = run(&l, curves, settle);
-  for (int i = 0; settle && l.work && i < n; i++) {
+  lasting l               = {.model = model, .settings = settings, .host = host, .n = n};
+  bool  **settle          = shb_alloc_zeroed((size_t)n, sizeof *settle);
+  l.work                  = shb_alloc_zeroed((size_t)n, sizeof *l.work);
+  const shb_status status = run(&l, curves, settle);
+  for (int i = 0; i < n; i++) {
     free(settle[i]);
     release(&l.work[i]);
   }

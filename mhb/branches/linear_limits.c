@@ -2,6 +2,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "mesh/base/memory.h"
 #include "mesh/base/progress.h"
 #include "mhb/balance/modal_error.h"
 #include "mhb/branches/linear_limits.h"
@@ -57,8 +58,7 @@ static shb_status record(sampler *s, double value, int later) {
   }
   mhb_curve_point point = {.x = s->x, .value = value};
   point.modal           = mhb_modal_error(s->balance, s->x, NULL);
-  SHB_TRY(mhb_record(s->response, s->branch, s->balance, &point, MHB_ORDINARY,
-                     shb_seconds() - started));
+  mhb_record(s->response, s->branch, s->balance, &point, MHB_ORDINARY, shb_seconds() - started);
   mhb_branch *branch                   = &s->response->branch[s->branch];
   branch->stable[branch->n_points - 1] = 1;
   mhb_response_place(s->response, s->branch, branch->n_points - 1 - later);
@@ -106,18 +106,18 @@ static int by_value(const void *a, const void *b) {
 
 /* A uniform grid, the natural frequencies, and the ends of their half-power widths.
  *   narrowest  out  the least half width, INFINITY without resonances */
-static shb_status make_grid(const sampler *s, grid *g, double *narrowest) {
+static void make_grid(const sampler *s, grid *g, double *narrowest) {
   const mhb_balance *b    = s->balance;
   const double       from = mhb_parameter_end(b->settings, b->parameter, 0);
   const double       to   = mhb_parameter_end(b->settings, b->parameter, 1);
   const int          n    = first_grid(b);
   mhb_resonances     all;
   *narrowest = INFINITY;
-  SHB_TRY(mhb_resonances_of_limit(b, s->stuck, from, to, &all));
-  g->at = malloc((size_t)(n + 1 + 3 * all.n) * sizeof *g->at);
+  mhb_resonances_of_limit(b, s->stuck, from, to, &all);
+  g->at = shb_alloc((size_t)n + 1 + 3 * (size_t)all.n, sizeof *g->at);
   g->n  = 0;
-  for (int i = 0; g->at && i <= n; i++) g->at[g->n++] = i == n ? to : from + i * ((to - from) / n);
-  for (int i = 0; g->at && i < all.n; i++) {
+  for (int i = 0; i <= n; i++) g->at[g->n++] = i == n ? to : from + i * ((to - from) / n);
+  for (int i = 0; i < all.n; i++) {
     *narrowest = fmin(*narrowest, all.at[i].half_width);
     for (int side = -1; side <= 1; side++) {
       const double value = all.at[i].value + side * all.at[i].half_width;
@@ -125,14 +125,12 @@ static shb_status make_grid(const sampler *s, grid *g, double *narrowest) {
     }
   }
   mhb_resonances_destroy(&all);
-  SHB_CHECK(g->at, SHB_ERR_IO, "out of memory");
   qsort(g->at, (size_t)g->n, sizeof *g->at, by_value);
   int kept = 1;
   for (int i = 1; i < g->n; i++)
     if (g->at[i] - g->at[kept - 1] > 1e-12 * fabs(to)) g->at[kept++] = g->at[i];
   g->at[kept - 1] = to;
   g->n            = kept;
-  return SHB_OK;
 }
 
 /* Halvings of an interval: to a small part of the narrowest resonance. */
@@ -155,10 +153,10 @@ static shb_status sample_grid(sampler *s, const grid *g, double narrowest) {
 }
 
 static shb_status sample(sampler *s) {
-  grid       g = {0};
-  double     narrowest;
-  shb_status status = make_grid(s, &g, &narrowest);
-  if (status == SHB_OK) status = sample_grid(s, &g, narrowest);
+  grid   g = {0};
+  double narrowest;
+  make_grid(s, &g, &narrowest);
+  const shb_status status = sample_grid(s, &g, narrowest);
   free(g.at);
   return status;
 }
@@ -185,18 +183,17 @@ static void mark_peaks(mhb_branch *branch, const mhb_balance *b, int n_probes, i
 }
 
 shb_status mhb_linear_limits(mhb_balance *balance, mhb_response *response, int branch) {
-  sampler s = {.balance   = balance,
-               .response  = response,
-               .branch    = branch,
-               .stuck     = response->branch[branch].kind == MHB_BRANCH_STUCK,
-               .n_outputs = all_outputs(balance)};
-  s.x       = calloc((size_t)balance->n, sizeof(double));
-  SHB_CHECK(s.x, SHB_ERR_IO, "out of memory");
+  sampler s         = {.balance   = balance,
+                       .response  = response,
+                       .branch    = branch,
+                       .stuck     = response->branch[branch].kind == MHB_BRANCH_STUCK,
+                       .n_outputs = all_outputs(balance)};
+  s.x               = shb_alloc_zeroed((size_t)balance->n, sizeof(double));
   shb_status status = sample(&s);
   free(s.x);
   SHB_TRY(status);
   mark_peaks(&response->branch[branch], balance, response->n_probes, response->n_harmonics);
-  response->branch[branch].reason   = strdup("end of range");
+  response->branch[branch].reason   = shb_text("end of range");
   response->branch[branch].complete = true;
   return SHB_OK;
 }

@@ -4,6 +4,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 
+#include "mesh/base/memory.h"
 #include "mesh/base/progress.h"
 #include "mhb/branches/branch_completion.h"
 #include "mhb/continuation/first_solution.h"
@@ -59,13 +60,13 @@ static shb_status trace(main_branch *m, const mhb_segment_plan *plan, int *segme
   mhb_segment_plan next = *plan;
   next.recorded         = n_points(m);
   SHB_TRY(mhb_tracer_trace(m->tracer, &next, segment, end));
-  if (*end == MHB_END_HARMONICS) m->needed = m->tracer->levels->wanted;
+  if (*end == MHB_END_HARMONICS) m->needed = mhb_harmonic_levels_needed(m->tracer->levels);
   if (*end == MHB_END_INTERRUPTED || *end == MHB_END_HARMONICS) m->stopped = true;
   return SHB_OK;
 }
 
-static shb_status append(main_branch *m, mhb_link link) {
-  return mhb_chain_insert(&m->chain, m->chain.n, link);
+static void append(main_branch *m, mhb_link link) {
+  mhb_chain_insert(&m->chain, m->chain.n, link);
 }
 
 /* A search for a first solution is shown. */
@@ -109,7 +110,7 @@ static bool first_solution(main_branch *m, double value, double share) {
  * own. */
 static shb_status detach(main_branch *m, int from, mhb_end end) {
   mhb_chain *own = &m->detached[m->n_detached];
-  for (int i = from; i < m->chain.n; i++) SHB_TRY(mhb_chain_insert(own, own->n, m->chain.link[i]));
+  for (int i = from; i < m->chain.n; i++) mhb_chain_insert(own, own->n, m->chain.link[i]);
   m->chain.n                       = from;
   m->detached_end[m->n_detached++] = end;
   return SHB_OK;
@@ -136,7 +137,7 @@ static shb_status trace_from_low_end(main_branch *m, mhb_end *end) {
   if (*end == MHB_END_NO_START)
     *end = MHB_END_LOW;
   else
-    SHB_TRY(append(m, (mhb_link){.segment = segment}));
+    append(m, (mhb_link){.segment = segment});
   return SHB_OK;
 }
 
@@ -149,7 +150,7 @@ static shb_status trace_upwards(main_branch *m, double value, int harmonics, boo
                            .closes = true};
   SHB_TRY(trace(m, &plan, &segment, end));
   if (*end == MHB_END_NO_START) return SHB_OK;
-  SHB_TRY(append(m, (mhb_link){.segment = segment, .joins = joins}));
+  append(m, (mhb_link){.segment = segment, .joins = joins});
   while (*end == MHB_END_LOW) {
     SHB_TRY(trace_from_low_end(m, end));
     if (*end == MHB_END_LOW) break;
@@ -173,7 +174,7 @@ static shb_status trace_both_ways(main_branch *m, double value, const mhb_curve_
   SHB_TRY(trace(m, &plan, &segment, &down));
   *found = down != MHB_END_NO_START;
   if (!*found || m->stopped) {
-    if (*found) SHB_TRY(append(m, (mhb_link){.segment = segment, .reversed = true}));
+    if (*found) append(m, (mhb_link){.segment = segment, .reversed = true});
     *end = MHB_END_INTERRUPTED;
     return SHB_OK;
   }
@@ -182,7 +183,7 @@ static shb_status trace_both_ways(main_branch *m, double value, const mhb_curve_
                           mhb_curve_place_distance(lost, curve_of(m), last) <= ACROSS_KINK);
   m->from_high                   = false;
   if (!lost && down == MHB_END_CLOSED && m->n_detached < MAX_DETACHED) {
-    SHB_TRY(append(m, (mhb_link){.segment = segment}));
+    append(m, (mhb_link){.segment = segment});
     *found = false;
     return detach(m, from, down);
   }
@@ -204,7 +205,7 @@ static shb_status trace_both_ways(main_branch *m, double value, const mhb_curve_
     m->start     = from;
     m->from_high = down == MHB_END_HIGH;
   }
-  SHB_TRY(append(m, link));
+  append(m, link);
   SHB_TRY(trace_upwards(m, value, harmonics, true, end));
   *found = *end != MHB_END_NO_START;
   return SHB_OK;
@@ -230,8 +231,7 @@ static shb_status go_beyond(main_branch *m, mhb_end *end, bool *over) {
   } else if (n_points(m) > 0) {
     note_gap(m, mhb_end_text(*end), curve->current.value);
     if (m->n_gaps > MAX_GAPS) return SHB_OK;
-    SHB_TRY(
-        mhb_curve_place_note(&lost, curve->system, &curve->current, mhb_tracer_same(m->tracer)));
+    mhb_curve_place_note(&lost, curve->system, &curve->current, mhb_tracer_same(m->tracer));
     mhb_curve_place_turn(&lost);
   }
   shb_status status = SHB_OK;
@@ -289,7 +289,7 @@ static shb_status trace_returns(main_branch *m, int end) {
     SHB_TRY(trace(m, &plan, &segment, &how));
     if (how == MHB_END_NO_START) break;
     mhb_link link = {.segment = segment, .reversed = end < 0};
-    SHB_TRY(mhb_chain_insert(&m->chain, end > 0 ? m->chain.n : 0, link));
+    mhb_chain_insert(&m->chain, end > 0 ? m->chain.n : 0, link);
     if (how == MHB_END_HIGH || how == MHB_END_LOW || m->stopped) continue;
     if (how != MHB_END_CLOSED) note_gap(m, mhb_end_text(how), curve_of(m)->current.value);
     break;
@@ -313,18 +313,15 @@ static shb_status publish(void *context) {
   main_branch *m = context;
   int          n_begins, begins[m->chain.n + 2];
   mhb_chain    chain  = {0};
-  shb_status   status = SHB_OK;
   bool         listed = false;
   if (!m->monitor->is_due(m->monitor, m->response)) return SHB_OK;
-  for (int i = 0; i < m->chain.n && status == SHB_OK; i++) {
-    status = mhb_chain_insert(&chain, chain.n, m->chain.link[i]);
+  for (int i = 0; i < m->chain.n; i++) {
+    mhb_chain_insert(&chain, chain.n, m->chain.link[i]);
     listed = listed || m->chain.link[i].segment == m->tracer->segment;
   }
-  if (status == SHB_OK && !listed)
-    status = mhb_chain_insert(&chain, chain.n, (mhb_link){.segment = m->tracer->segment});
-  if (status == SHB_OK)
-    status = mhb_chain_join(&chain, m->tracer->store, m->response, 0, begins, &n_begins);
-  if (status == SHB_OK) status = note_unfinished(m);
+  if (!listed) mhb_chain_insert(&chain, chain.n, (mhb_link){.segment = m->tracer->segment});
+  mhb_chain_join(&chain, m->tracer->store, m->response, 0, begins, &n_begins);
+  shb_status status = note_unfinished(m);
   if (status == SHB_OK) status = m->monitor->publish(m->monitor, m->response);
   mhb_chain_free(&chain);
   return status;
@@ -345,7 +342,7 @@ static shb_status complete(main_branch *m, mhb_end end, int stable_at) {
   for (int i = 0; i < m->n_detached; i++) {
     int            index;
     mhb_completion detached = {.end = own.interrupted ? MHB_END_INTERRUPTED : m->detached_end[i]};
-    SHB_TRY(mhb_response_branch(m->response, MHB_BRANCH_NONLINEAR, &index));
+    index                   = mhb_response_branch(m->response, MHB_BRANCH_NONLINEAR);
     m->response->branch[index].origin = MHB_FROM_DETACHED;
     m->response->branch[index].main   = 0;
     SHB_TRY(mhb_branch_complete(m->tracer, &m->detached[i], m->response, index, &detached));
@@ -385,8 +382,7 @@ static shb_status prepare(main_branch *m, mhb_balance *balance, int least,
   m->tracer->earlier          = earlier;
   m->tracer->publish          = publish;
   m->tracer->context          = m;
-  m->x = calloc((size_t)mhb_harmonic_levels_most_unknowns(levels), sizeof *m->x);
-  SHB_CHECK(m->x, SHB_ERR_IO, "out of memory");
+  m->x = shb_alloc_zeroed((size_t)mhb_harmonic_levels_most_unknowns(levels), sizeof *m->x);
   return SHB_OK;
 }
 

@@ -11,7 +11,7 @@
  * appended to the response. The main branch is then sought beyond it, both ways. The same happens
  * beyond a place where no step converged, which is a gap. Beyond both ends of the range the curve
  * is followed a little, for it may come back. The reason of a branch that does not cover the range
- * is noted in it. SHB_ERR_IO: no memory. */
+ * is noted in it. */
 shb_status mhb_trace_main_branch(mhb_balance *balance, mhb_response *response,
                                  mhb_monitor *monitor);
 

@@ -11,9 +11,8 @@
  *   value   in   of the balance's parameter
  *   along   out  [n] of length 1, odd harmonics only
  *   *least  out  the singular value. Without contact the Jacobian is I. Well above 0: the flip does
- *                not have the form of the wave
- * SHB_ERR_IO: no memory. */
-shb_status mhb_period_doubling_direction(mhb_balance *balance, const double *x, double value,
-                                         double *along, double *least);
+ *                not have the form of the wave */
+void mhb_period_doubling_direction(mhb_balance *balance, const double *x, double value,
+                                   double *along, double *least);
 
 #endif

@@ -39,31 +39,23 @@ static bool has_free_mean(const mhb_balance *b, int a) {
   return law->mu > 0 && (law->ku[0] > 0 || law->ku[2] > 0) && b->eval->info[a].undetermined;
 }
 
-/* The mean friction of a pair that sticks loads others: one that moves, or pairs that touch on the
- * same contact. Alone on its contact, with all others stuck or open, it changes no motion. */
 static bool has_undetermined_friction(const mhb_balance *b) {
-  const mhb_ring_receptance *ring   = b->receptance->ring;
-  const int                  own    = ring ? ring->ring->n_pairs : b->n_pairs; /* of a contact */
-  bool                       sticks = false, moves = false, shares = false;
-  for (int first = 0; first < b->n_pairs; first += own) {
-    int touch = 0, stuck = 0;
-    for (int a = first; a < first + own; a++) {
-      const mhb_contact_info *info = &b->eval->info[a];
-      touch += info->share[MHB_SEPARATE] < 1;
-      stuck += has_free_mean(b, a);
-      moves = moves || (info->share[MHB_SEPARATE] < 1 && info->share[MHB_STICK] < 1);
-    }
-    sticks = sticks || stuck > 0;
-    shares = shares || (stuck > 0 && touch > 1);
+  const mhb_ring_receptance *ring = b->receptance->ring;
+  bool                       free_mean[b->n_pairs];
+  double                     share[3 * b->n_pairs];
+  for (int a = 0; a < b->n_pairs; a++) {
+    free_mean[a] = has_free_mean(b, a);
+    memcpy(share + 3 * a, b->eval->info[a].share, 3 * sizeof *share);
   }
-  return shares || (sticks && moves);
+  return mhb_friction_loads_others(b->n_pairs, ring ? ring->ring->n_pairs : b->n_pairs, free_mean,
+                                   share);
 }
 
 static int mark_of(const mhb_balance *b, const mhb_curve_point *point) {
   const double tolerance = b->settings->motion_tolerance;
   int          mark      = has_undetermined_friction(b) ? MHB_TRACTION_UNDETERMINED : 0;
   if (!isfinite(point->truncation)) return mark | MHB_ERROR_NOT_JUDGED;
-  return tolerance > 0 && point->miss > tolerance ? mark | MHB_ABOVE_TOLERANCE : mark;
+  return tolerance > 0 && point->truncation > tolerance ? mark | MHB_ABOVE_TOLERANCE : mark;
 }
 
 static void record_states(mhb_branch *branch, int point, const mhb_balance *b) {
@@ -90,12 +82,12 @@ static void record_ring(const mhb_response *response, mhb_branch *branch, int po
       mhb_ring_kind_of(branch->ring_participation[point], wave[0], branch->ring_standing[point]);
 }
 
-shb_status mhb_record(mhb_response *response, int index, mhb_balance *b,
-                      const mhb_curve_point *point, int special, double seconds) {
+void mhb_record(mhb_response *response, int index, mhb_balance *b, const mhb_curve_point *point,
+                int special, double seconds) {
   int at;
   mhb_balance_use(b, point->evaluation);
-  SHB_TRY(mhb_response_widen(response, &response->branch[index], b->m));
-  SHB_TRY(mhb_response_point(response, index, &at));
+  mhb_response_widen(response, &response->branch[index], b->m);
+  at                    = mhb_response_point(response, index);
   mhb_branch *branch    = &response->branch[index];
   branch->frequency[at] = b->eval->at.omega / SHB_TWO_PI;
   branch->n0[at]        = b->eval->at.n0;
@@ -113,11 +105,11 @@ shb_status mhb_record(mhb_response *response, int index, mhb_balance *b,
   if (branch->error_truncation_max) branch->error_truncation_max[at] = point->truncation_max;
   if (branch->harmonics) branch->harmonics[at] = b->m;
   if (branch->error_spatial) branch->error_spatial[at] = -1;
+  if (branch->error_multiplier) branch->error_multiplier[at] = -1;
   if (branch->truncation_kind) branch->truncation_kind[at] = point->truncation_kind;
   branch->error_modal[at] = point->modal;
   branch->mark[at]        = mark_of(b, point);
   if (branch->ring_kind) record_ring(response, branch, at, b);
-  return SHB_OK;
 }
 
 void mhb_recorded_motion(const mhb_branch *branch, int point, const mhb_balance *b, double *x) {

@@ -5,10 +5,10 @@
 #include "mhb/continuation/curve.h"
 #include "mhb/response/response.h"
 
-/* Append a point of a balance's curve to a branch. special: MHB_ORDINARY ...; seconds: spent on it.
- * SHB_ERR_IO: no memory. */
-shb_status mhb_record(mhb_response *response, int branch, mhb_balance *balance,
-                      const mhb_curve_point *point, int special, double seconds);
+/* Append a point of a balance's curve to a branch. special: MHB_ORDINARY ...; seconds: spent on
+ * it. */
+void mhb_record(mhb_response *response, int branch, mhb_balance *balance,
+                const mhb_curve_point *point, int special, double seconds);
 
 /* x[n] <- the motion recorded at a point, as unknowns of a balance. Harmonics not recorded are 0.
  */

@@ -4,6 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "mesh/base/memory.h"
 #include "mhb/balance/subharmonics.h"
 #include "mhb/branches/branch_completion.h"
 #include "mhb/branches/period_doubling.h"
@@ -92,7 +93,8 @@ static shb_status problem_fill(branch_search *h, subharmonic_problem *s) {
   SHB_TRY(mhb_balance_create(h->model, &s->settings, &s->balance));
   mhb_balance_set_preload(s->balance, branch_at(h, 0)->n0[0]);
   mhb_balance_set_parameter(s->balance, asked->parameter);
-  return mhb_newton_create(s->balance->n, &s->newton);
+  s->newton = mhb_newton_create(s->balance->n);
+  return SHB_OK;
 }
 
 /* *out: NULL if there is no such wave. */
@@ -101,10 +103,9 @@ static shb_status problem_of(branch_search *h, int order, subharmonic_problem **
   for (int i = 0; i < h->n_problems; i++)
     if (h->problem[i]->order == order) *out = h->problem[i];
   if (*out || h->n_problems == MAX_PROBLEMS) return SHB_OK;
-  subharmonic_problem *s = calloc(1, sizeof *s);
-  SHB_CHECK(s, SHB_ERR_IO, "out of memory");
-  s->order          = order;
-  shb_status status = problem_fill(h, s);
+  subharmonic_problem *s = shb_alloc_zeroed(1, sizeof *s);
+  s->order               = order;
+  shb_status status      = problem_fill(h, s);
   if (status != SHB_OK) problem_destroy(s);
   if (status == SHB_ERR_INPUT) return SHB_OK;
   SHB_TRY(status);
@@ -139,51 +140,47 @@ static double value_at(const branch_search *h, const mhb_branch *b, int point) {
 }
 
 /* The branch crosses a value between points i and i + 1. The solution there becomes known. */
-static shb_status add_crossing(const branch_search *h, const mhb_branch *b, int i, double share,
-                               subharmonic_problem *s, double value) {
+static void add_crossing(const branch_search *h, const mhb_branch *b, int i, double share,
+                         subharmonic_problem *s, double value) {
   const double shares[] = {share, 0, 1};
   double       x[s->balance->n];
   int          iterations;
   for (int k = 0; k < 3; k++) {
     interpolate(h, b, i, shares[k], s, x);
-    if (mhb_newton_solve(s->newton, s->balance, value, TOLERANCE, x, &iterations) == MHB_CONVERGED)
-      return mhb_solution_set_add_copies(&s->known, s->balance, x);
+    if (mhb_newton_solve(s->newton, s->balance, value, TOLERANCE, x, &iterations) != MHB_CONVERGED)
+      continue;
+    mhb_solution_set_add_copies(&s->known, s->balance, x);
+    return;
   }
-  return SHB_OK;
 }
 
-static shb_status add_crossings(const branch_search *h, const mhb_branch *b, subharmonic_problem *s,
-                                double value) {
-  if (s->order % b->order) return SHB_OK;
+static void add_crossings(const branch_search *h, const mhb_branch *b, subharmonic_problem *s,
+                          double value) {
+  if (s->order % b->order) return;
   for (int i = 0; i + 1 < b->n_points; i++) {
     double from = value_at(h, b, i) - value, to = value_at(h, b, i + 1) - value;
     if (from * to > 0 || (from == 0 && to == 0)) continue;
-    SHB_TRY(add_crossing(h, b, i, from / (from - to), s, value));
+    add_crossing(h, b, i, from / (from - to), s, value);
   }
-  return SHB_OK;
 }
 
 /* Collect the known solutions at a value, of all branches but one (-1: of all). Those detached from
  * the main one count too. */
-static shb_status collect_known(const branch_search *h, subharmonic_problem *s, double value,
-                                int but) {
+static void collect_known(const branch_search *h, subharmonic_problem *s, double value, int but) {
   s->known.n_solutions = 0;
   for (int i = 0; i < h->response->n_branches; i++)
-    if (i != but) SHB_TRY(add_crossings(h, branch_at(h, i), s, value));
-  return SHB_OK;
+    if (i != but) add_crossings(h, branch_at(h, i), s, value);
 }
 
 /* ---- tracing ---- */
 
-static shb_status append(branch_search *h, const subharmonic_problem *s, mhb_origin origin,
-                         int *index) {
-  SHB_TRY(mhb_response_branch(h->response, MHB_BRANCH_NONLINEAR, index));
+static void append(branch_search *h, const subharmonic_problem *s, mhb_origin origin, int *index) {
+  *index         = mhb_response_branch(h->response, MHB_BRANCH_NONLINEAR);
   mhb_branch *b  = branch_at(h, *index);
   b->origin      = origin;
   b->order       = s->order;
   b->n_harmonics = usual_harmonics(h, s);
   b->main        = 0;
-  return SHB_OK;
 }
 
 /* Points that a curve may have. In a ring curves wander from blade to blade, nearly without end.
@@ -209,8 +206,9 @@ static shb_status trace_both_ways(mhb_tracer *tracer, const mhb_seed *seed, mhb_
   *none = end == MHB_END_NO_START || end == MHB_END_HARMONICS;
   if (*none) return SHB_OK;
   bool       both   = end != MHB_END_CLOSED && end != MHB_END_INTERRUPTED && !seed->along;
-  shb_status status = mhb_chain_insert(&chain, 0, (mhb_link){.segment = up, .reversed = both});
-  if (status == SHB_OK && both) {
+  shb_status status = SHB_OK;
+  mhb_chain_insert(&chain, 0, (mhb_link){.segment = up, .reversed = both});
+  if (both) {
     plan.seed.direction  = -seed->direction;
     plan.seed.skip_first = true;
     plan.closes          = false;
@@ -218,7 +216,7 @@ static shb_status trace_both_ways(mhb_tracer *tracer, const mhb_seed *seed, mhb_
     status               = mhb_tracer_trace(tracer, &plan, &down, &other);
     *none                = other == MHB_END_HARMONICS;
     if (status == SHB_OK && other != MHB_END_NO_START)
-      status = mhb_chain_insert(&chain, 1, (mhb_link){.segment = down, .joins = true});
+      mhb_chain_insert(&chain, 1, (mhb_link){.segment = down, .joins = true});
     bool first_ended = end == MHB_END_HIGH || end == MHB_END_LOW || end == MHB_END_JOINED;
     if (other == MHB_END_INTERRUPTED || (other != MHB_END_NO_START && first_ended)) end = other;
   }
@@ -253,8 +251,9 @@ static shb_status trace_with_enough(branch_search *h, const subharmonic_problem 
     tracer->levels->least = least;
     const shb_status status =
         trace_both_ways(tracer, seed, h->response, index, shortened, none, interrupted);
-    again = tracer->host.out_of_reach && tracer->levels->wanted > least;
-    least = tracer->levels->wanted;
+    const int needed = mhb_harmonic_levels_needed(tracer->levels);
+    again            = tracer->host.out_of_reach && needed > least;
+    least            = needed;
     mhb_tracer_destroy(tracer);
     SHB_TRY(status);
   }
@@ -285,7 +284,7 @@ static shb_status is_another(branch_search *h, subharmonic_problem *s, int index
   *another = false;
   if (mhb_newton_solve(s->newton, s->balance, value, TOLERANCE, x, &iterations) != MHB_CONVERGED)
     return SHB_OK;
-  SHB_TRY(collect_known(h, s, value, index));
+  collect_known(h, s, value, index);
   *another = mhb_solution_set_has(&s->known, x);
   return SHB_OK;
 }
@@ -303,7 +302,7 @@ static shb_status trace(branch_search *h, subharmonic_problem *s, mhb_origin ori
     return SHB_OK;
   }
   s->settings.max_points = most;
-  SHB_TRY(append(h, s, origin, &index));
+  append(h, s, origin, &index);
   const char *shortened = most < h->settings->max_points ? USED_UP : NULL;
   shb_status  status    = trace_with_enough(h, s, seed, index, shortened, &none, &interrupted);
   if (interrupted) h->go_on = false;
@@ -341,7 +340,7 @@ static shb_status trace_flip(branch_search *h, subharmonic_problem *s, int point
     return SHB_OK;
   mhb_subharmonic_component(s->balance, x, s->order / 2, part);
   for (int i = 0; i < n; i++) x[i] -= part[i];
-  SHB_TRY(mhb_period_doubling_direction(s->balance, x, value, along, &least));
+  mhb_period_doubling_direction(s->balance, x, value, along, &least);
   if (!(least < SINGULAR)) return SHB_OK;
   return trace(h, s, MHB_FROM_FLIP,
                &(mhb_seed){.kind = MHB_SEED_CROSSING, .x = x, .value = value, .along = along});
@@ -414,13 +413,13 @@ static shb_status search_at(branch_search *h, subharmonic_problem *s, double val
   for (; size > 0 && done < starts && go_on_searching(h, value, share); done++) {
     bool is_new;
     SHB_TRY(publish(h));
-    SHB_TRY(mhb_multistart_once(s->newton, s->balance, value, size * sizes[done % 4], &seed,
-                                &s->known, x, &is_new));
+    mhb_multistart_once(s->newton, s->balance, value, size * sizes[done % 4], &seed, &s->known, x,
+                        &is_new);
     if (!is_new) continue;
     SHB_TRY(trace_found(h, s, x, value));
-    SHB_TRY(collect_known(h, s, value, -1));
+    collect_known(h, s, value, -1);
     /* whether it was traced or not */
-    SHB_TRY(mhb_solution_set_add_copies(&s->known, s->balance, x));
+    mhb_solution_set_add_copies(&s->known, s->balance, x);
   }
   mhb_search made = {.value    = mhb_parameter_shown(h->settings->parameter, value),
                      .order    = s->order,
@@ -428,7 +427,8 @@ static shb_status search_at(branch_search *h, subharmonic_problem *s, double val
                      .seed     = seeded,
                      .found    = n_branches(h) - before,
                      .untraced = h->untraced - untraced};
-  return mhb_response_note_search(branch_at(h, 0), &made);
+  mhb_response_note_search(branch_at(h, 0), &made);
+  return SHB_OK;
 }
 
 /* Value number i of the search: given, or even over the range. */
@@ -446,7 +446,7 @@ static shb_status search_everywhere(branch_search *h) {
     SHB_TRY(problem_of(h, c->order[o] * h->settings->subharmonics, &s));
     for (int i = 0; s && i < n && h->go_on; i++) {
       double value = value_of_search(h->settings, i);
-      SHB_TRY(collect_known(h, s, value, -1));
+      collect_known(h, s, value, -1);
       SHB_TRY(search_at(h, s, value, expected_size(h, s), c->starts,
                         (unsigned long long)(1000 * c->order[o] + i + 1),
                         (double)(o * n + i) / (c->n_orders * n)));
@@ -470,7 +470,7 @@ static shb_status search_values(branch_search *h, int n, const double *value, in
   SHB_TRY(problem_of(h, h->settings->subharmonics, &s));
   for (int i = 0; s && i < n && h->go_on; i++) {
     double at = mhb_parameter_value(h->settings->parameter, value[i]);
-    SHB_TRY(collect_known(h, s, at, -1));
+    collect_known(h, s, at, -1);
     SHB_TRY(
         search_at(h, s, at, size_at(h, s, at), starts, (unsigned long long)(i + 1), (double)i / n));
   }

@@ -12,8 +12,7 @@ bool mhb_secondary_branches_wanted(const mhb_settings *settings);
 
 /* Trace them, and append them to a response. Its branch 0 is the main one, and its others were
  * detached from it. Sets searched of branch 0, unless interrupted, and flips_untraced: there are 24
- * others at most. The branches depend on the settings and on the main branch alone. SHB_ERR_IO: no
- * memory. */
+ * others at most. The branches depend on the settings and on the main branch alone. */
 shb_status mhb_secondary_branches(const modal_model *model, const mhb_settings *settings,
                                   mhb_response *response, mhb_monitor *monitor);
 

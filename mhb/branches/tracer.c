@@ -4,6 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "mesh/base/memory.h"
 #include "mesh/base/progress.h"
 #include "mhb/balance/subharmonics.h"
 #include "mhb/branches/record.h"
@@ -66,7 +67,7 @@ static void return_to(mhb_tracer *t, const mhb_curve_place *place) {
 /* The curve starts at its current point, and ends where it comes back. */
 static shb_status note_start(mhb_tracer *t) {
   mhb_arclength *curve = t->host.curve;
-  SHB_TRY(mhb_curve_place_note(&t->start, curve->system, &curve->current, mhb_tracer_same(t)));
+  mhb_curve_place_note(&t->start, curve->system, &curve->current, mhb_tracer_same(t));
   return_to(t, &t->start);
   return SHB_OK;
 }
@@ -81,14 +82,15 @@ static shb_status estimate(mhb_segment_host *host, mhb_curve_point *point, bool 
   if (higher < 0) return SHB_OK;
   SHB_TRY(mhb_harmonic_levels_move(t->levels, higher, is_start, raised));
   use_level(t);
-  if (!*raised) mhb_harmonic_levels_miss(t->levels, point);
+  if (!*raised) mhb_harmonic_levels_settle(t->levels, point);
   host->out_of_reach = !*raised && !t->accepts_all && !mhb_harmonic_levels_all_usual(t->levels) &&
-                       !(point->miss <= t->levels->settings->motion_tolerance);
+                       !(point->truncation <= t->levels->settings->motion_tolerance);
   return *raised && is_start && t->returns_to_start ? note_start(t) : SHB_OK;
 }
 
 static void estimate_event(mhb_segment_host *host, mhb_curve_point *point) {
   mhb_harmonic_levels_errors(of(host)->levels, point);
+  mhb_harmonic_levels_settle(of(host)->levels, point);
 }
 
 static shb_status estimate_between(mhb_segment_host *host, mhb_curve_point *point, bool *raised) {
@@ -180,7 +182,7 @@ static shb_status started(mhb_segment_host *host, const mhb_seed *seed, mhb_end 
 static shb_status record(mhb_segment_host *host, mhb_curve_point *point, int special, bool *go_on) {
   mhb_tracer *t   = of(host);
   double      now = shb_seconds();
-  SHB_TRY(mhb_record(t->store, t->segment, mhb_tracer_balance(t), point, special, now - t->clock));
+  mhb_record(t->store, t->segment, mhb_tracer_balance(t), point, special, now - t->clock);
   const mhb_branch *branch                    = &t->store->branch[t->segment];
   branch->error_spatial[branch->n_points - 1] = mhb_harmonic_levels_spatial(t->levels, point);
   if (special == MHB_ORDINARY) t->farthest = fmax(t->farthest, point->value);
@@ -264,13 +266,12 @@ static void limit_step(mhb_segment_host *host) {
   }
 }
 
-static shb_status make_tests(mhb_tracer *t, const mhb_balance *b) {
+static void make_tests(mhb_tracer *t, const mhb_balance *b) {
   int copies = mhb_motion_copies(b), n = 0;
-  int outputs  = b->settings->outline ? 0 : mhb_outputs(b);
-  t->returns   = calloc((size_t)copies, sizeof *t->returns);
-  t->output    = calloc((size_t)outputs + 1, sizeof *t->output);
-  t->host.test = calloc((size_t)(copies + outputs) + 4, sizeof *t->host.test);
-  SHB_CHECK(t->returns && t->output && t->host.test, SHB_ERR_IO, "out of memory");
+  int outputs          = b->settings->outline ? 0 : mhb_outputs(b);
+  t->returns           = shb_alloc_zeroed((size_t)copies, sizeof *t->returns);
+  t->output            = shb_alloc_zeroed((size_t)outputs, sizeof *t->output);
+  t->host.test         = shb_alloc_zeroed((size_t)(copies + outputs) + 4, sizeof *t->host.test);
   mhb_event_test *test = t->host.test;
   for (int j = 0; j < copies; j++)
     test[n++] = (mhb_event_test){.name      = "closed curve",
@@ -299,7 +300,6 @@ static shb_status make_tests(mhb_tracer *t, const mhb_balance *b) {
                                     .special   = MHB_PEAK};
   }
   t->host.n_tests = n;
-  return SHB_OK;
 }
 
 /* ---- states of segments ---- */
@@ -318,13 +318,8 @@ static void pass_place(mhb_trace_state *s, mhb_curve_place *p) {
     *p = (mhb_curve_place){.rows       = rows,
                            .row_length = length,
                            .copies     = copies,
-                           .x          = calloc(n, sizeof(double)),
-                           .tangent    = calloc(n, sizeof(double))};
-    if (!p->x || !p->tangent) {
-      mhb_curve_place_free(p);
-      s->failed = true;
-      return;
-    }
+                           .x          = shb_alloc_zeroed(n, sizeof(double)),
+                           .tangent    = shb_alloc_zeroed(n, sizeof(double))};
   }
   if (n == 0) return;
   mhb_trace_state_numbers(s, p->x, n);
@@ -355,7 +350,6 @@ static void pass_current(mhb_trace_state *s, mhb_arclength *curve) {
   mhb_trace_state_whole(s, &p->iterations);
   mhb_trace_state_numbers(s, &p->residual, 1);
   mhb_trace_state_numbers(s, &p->truncation, 1);
-  mhb_trace_state_numbers(s, &p->miss, 1);
   mhb_trace_state_numbers(s, &p->truncation_max, 1);
   mhb_trace_state_numbers(s, &p->modal, 1);
   mhb_trace_state_whole(s, &p->truncation_kind);
@@ -416,14 +410,10 @@ int mhb_tracer_least_level(const mhb_unfinished *earlier) {
 
 /* The state of the last segment. */
 static shb_status keep_state(mhb_tracer *t) {
-  mhb_trace_state *more = realloc(t->state, sizeof *more * ((size_t)t->n_states + 1));
-  SHB_CHECK(more, SHB_ERR_IO, "out of memory");
-  t->state               = more;
+  t->state               = shb_realloc(t->state, (size_t)t->n_states + 1, sizeof *t->state);
   mhb_trace_state *state = &t->state[t->n_states++];
   *state                 = (mhb_trace_state){0};
-  SHB_TRY(pass_state(state, t));
-  SHB_CHECK(!state->failed, SHB_ERR_IO, "out of memory");
-  return SHB_OK;
+  return pass_state(state, t);
 }
 
 /* The points and the state of a segment of the earlier run. */
@@ -433,8 +423,7 @@ static shb_status take_segment(mhb_tracer *t, int i) {
   mhb_trace_state     state    = t->earlier->state[i];
   state.at                     = 0;
   state.reads                  = true;
-  if (from->n_points > 0)
-    SHB_TRY(mhb_response_copy_points(t->store, i, segments, i, 0, from->n_points - 1));
+  if (from->n_points > 0) mhb_response_copy_points(t->store, i, segments, i, 0, from->n_points - 1);
   SHB_TRY(pass_state(&state, t));
   SHB_CHECK(!state.failed && state.at == state.n, SHB_ERR_INPUT,
             "the curve under way of the earlier response file does not fit; run with --force");
@@ -456,24 +445,22 @@ static shb_status go_on_from_current(mhb_tracer *t) {
 
 shb_status mhb_tracer_create(mhb_balance *balance, const mhb_response *response, int branch,
                              bool joins, mhb_monitor *monitor, mhb_tracer **out) {
-  mhb_tracer *t = calloc(1, sizeof *t);
-  SHB_CHECK(t, SHB_ERR_IO, "out of memory");
-  t->host           = (mhb_segment_host){.estimate         = estimate,
-                                         .estimate_event   = estimate_event,
-                                         .estimate_between = estimate_between,
-                                         .accept           = accept,
-                                         .started          = started,
-                                         .before_step      = before_step,
-                                         .record           = record};
-  t->monitor        = monitor;
-  t->segment        = -1;
-  t->joins          = joins;
-  t->clock          = shb_seconds();
-  t->farthest       = mhb_parameter_end(balance->settings, balance->parameter, 0);
-  t->store          = mhb_response_like(response);
-  shb_status status = t->store ? SHB_OK : shb_fail(SHB_ERR_IO, __FILE__, __LINE__, "out of memory");
-  if (status == SHB_OK) status = mhb_harmonic_levels_create(balance, &t->levels);
-  if (status == SHB_OK) status = make_tests(t, balance);
+  mhb_tracer *t = shb_alloc_zeroed(1, sizeof *t);
+  t->host       = (mhb_segment_host){.estimate         = estimate,
+                                     .estimate_event   = estimate_event,
+                                     .estimate_between = estimate_between,
+                                     .accept           = accept,
+                                     .started          = started,
+                                     .before_step      = before_step,
+                                     .record           = record};
+  t->monitor    = monitor;
+  t->segment    = -1;
+  t->joins      = joins;
+  t->clock      = shb_seconds();
+  t->farthest   = mhb_parameter_end(balance->settings, balance->parameter, 0);
+  t->store      = mhb_response_like(response);
+  make_tests(t, balance);
+  const shb_status status = mhb_harmonic_levels_create(balance, &t->levels);
   if (status != SHB_OK) {
     mhb_tracer_destroy(t);
     return status;
@@ -501,7 +488,7 @@ void mhb_tracer_destroy(mhb_tracer *t) {
 shb_status mhb_tracer_trace(mhb_tracer *t, const mhb_segment_plan *plan, int *segment,
                             mhb_end *end) {
   const mhb_settings *settings = t->levels->settings;
-  SHB_TRY(mhb_response_branch(t->store, MHB_BRANCH_NONLINEAR, segment));
+  *segment                     = mhb_response_branch(t->store, MHB_BRANCH_NONLINEAR);
   SHB_TRY(mhb_harmonic_levels_use(t->levels, mhb_harmonic_levels_of(t->levels, plan->m)));
   use_level(t);
   t->plan            = *plan;
@@ -522,9 +509,9 @@ shb_status mhb_tracer_trace(mhb_tracer *t, const mhb_segment_plan *plan, int *se
 shb_status mhb_tracer_unfinished(mhb_tracer *t, mhb_unfinished **out) {
   bool under_way = t->n_states <= t->segment;
   if (under_way) SHB_TRY(keep_state(t));
-  shb_status status = mhb_unfinished_copy(t->store, t->n_states, t->state, out);
+  *out = mhb_unfinished_copy(t->store, t->n_states, t->state);
   if (under_way) mhb_trace_state_free(&t->state[--t->n_states]);
-  return status;
+  return SHB_OK;
 }
 
 void mhb_tracer_forget(mhb_tracer *t, int segment) {

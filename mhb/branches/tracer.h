@@ -52,20 +52,17 @@ struct mhb_tracer {
 };
 
 /* For a branch of a response. joins: segments end where they meet a curve of lower order, or in a
- * ring the wave.
- * SHB_ERR_IO: no memory. */
+ * ring the wave. */
 shb_status mhb_tracer_create(mhb_balance *balance, const mhb_response *response, int branch,
                              bool joins, mhb_monitor *monitor, mhb_tracer **tracer);
 void       mhb_tracer_destroy(mhb_tracer *tracer);
 
 /* Trace a segment.
- *   segment  out  branch of the store, perhaps without points
- * SHB_ERR_IO: no memory. */
+ *   segment  out  branch of the store, perhaps without points */
 shb_status mhb_tracer_trace(mhb_tracer *tracer, const mhb_segment_plan *plan, int *segment,
                             mhb_end *end);
 
-/* The segments so far with their states, for a later run; also from t->publish. SHB_ERR_IO: no
- * memory. */
+/* The segments so far with their states, for a later run; also from t->publish. */
 shb_status mhb_tracer_unfinished(mhb_tracer *tracer, mhb_unfinished **unfinished);
 
 /* The least level of an earlier run; 0 without one. */

@@ -135,16 +135,20 @@ static int run_closed(mhb_contact_evaluator *c, slider *s, double end, int openi
   return 1;
 }
 
-/* Length and accuracy of the panels. A recorded lap must resolve the highest harmonic too:
- * panel_error in slip.c. */
-static void set_panels(mhb_contact_evaluator *c, double tolerance) {
+/* Length and accuracy of the panels. A lap that is resolved as a recorded one has the highest
+ * harmonic too: panel_error in slip.c. */
+static void set_panels_of(mhb_contact_evaluator *c, double tolerance, int resolved) {
   double reach          = sqrt(sqrt(sqrt(sqrt(.2 * tolerance / 1.7e-23))));
-  double wanted         = c->record ? c->H : 0;
+  double wanted         = resolved ? c->H : 0;
   c->slip.top_harmonic  = wanted + .5 * c->mean_harmonic;
   c->slip.longest_panel = mhb_least(1.5, reach / (wanted + 2 * c->mean_harmonic + 1));
   c->slip.tolerance     = .2 * tolerance * c->force_level;
   c->slip.mild          = 4 * sqrt(sqrt(sqrt(400 * tolerance)));
   c->slip.newton_mild   = mhb_most(3, mhb_least(8, 3 * sqrt(sqrt(sqrt(3e7 * c->slip.tolerance)))));
+}
+
+static void set_panels(mhb_contact_evaluator *c, double tolerance) {
+  set_panels_of(c, tolerance, c->record);
 }
 
 /* theta may be held over tau before an opening: the error in force is about mu |n'| tau^2/2. */
@@ -270,6 +274,7 @@ typedef struct {
   double last_step; /* infinite before the first */
   double left;      /* expected error of z */
   int    linear;    /* convergence is linear: the error is of the size of the step */
+  int    resolved;  /* laps have the panels of the recorded one */
 } newton_progress;
 
 /* Error after a step. Quadratic convergence: the step squared, times the contraction of the lap,
@@ -287,7 +292,9 @@ static double remaining_error(const mhb_contact_evaluator *c, newton_progress *a
 
 /* Newton's method on P(z) = z. 0: not reached. A plain iteration z <- P(z), which never expands,
  * replaces it where it does not gain. At a double root, where slip just begins, the step is
- * extrapolated. Each lap is as accurate as its step requires. */
+ * extrapolated. Each lap is as accurate as its step requires. After a recorded lap that did not
+ * close it has the same panels. Longer ones miss a reversal of small harmonics, and close
+ * elsewhere. */
 static int iterate_slider(mhb_contact_evaluator *c, newton_progress *a, double z[2]) {
   double before = INFINITY, left = a->last_step < 1 ? a->last_step : a->left, P[2], step[2];
   int    plain = 0, newton = 0;
@@ -295,7 +302,7 @@ static int iterate_slider(mhb_contact_evaluator *c, newton_progress *a, double z
   c->mode   = MHB_SLIDER_COLUMN;
   for (; c->info->laps < MAX_LAPS; c->info->laps++) {
     double accuracy = mhb_most(a->tolerance, mhb_least(1e-2, .3 * left));
-    set_panels(c, accuracy);
+    set_panels_of(c, a->resolved ? c->tolerance : accuracy, a->resolved);
     if (!run_lap(c, z, P)) return 0;
     double r[2] = {P[0] - z[0], P[1] - z[1]}, size = length_of(r[0], r[1]);
     if (newton && size > .9 * before) plain = 2;
@@ -393,6 +400,7 @@ int mhb_slider_periodic(mhb_contact_evaluator *c, int near, double z[2]) {
     a.linear    = left > .1 * last;
     close       = left < (a.linear ? 10 * sharp : accept) && step * step < c->tolerance;
     a.tolerance = sharp;
+    a.resolved  = 1;
   }
   /* a time history shows the lap itself: it is repeated until it closes */
   for (int tries = 0; c->dense_output.enabled && gap > 1e-12 && tries < MAX_RECORDS; tries++)

@@ -4,6 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "mesh/base/memory.h"
 #include "mhb/continuation/corrector.h"
 #include "mhb/continuation/resonance_detection.h"
 #include "mhb/search/ring_symmetry.h"
@@ -32,8 +33,8 @@ static void destroy(mhb_curve_system *system) {
   free(s);
 }
 
-static shb_status evaluation_create(mhb_curve_system *system, mhb_evaluation **evaluation) {
-  return mhb_evaluation_create(of(system)->balance, evaluation);
+static mhb_evaluation *evaluation_create(mhb_curve_system *system) {
+  return mhb_evaluation_create(of(system)->balance);
 }
 
 static void evaluation_destroy(mhb_curve_system *system, mhb_evaluation *evaluation) {
@@ -144,49 +145,46 @@ static bool resonance_skipped(mhb_arclength *curve) {
                                &mhb_balance_curve_of(curve)->resonances);
 }
 
-shb_status mhb_balance_curve_create(mhb_balance *b, double low, double high, mhb_arclength **out) {
-  mhb_balance_curve *s = calloc(1, sizeof *s);
-  SHB_CHECK(s, SHB_ERR_IO, "out of memory");
-  bool frequency = b->parameter == MHB_IN_FREQUENCY;
-  s->balance     = b;
-  s->base        = (mhb_curve_system){.n                  = b->n,
-                                      .least              = mhb_parameter_least(b->parameter),
-                                      .relative           = frequency,
-                                      .smooth             = b->settings->tolerance <= SMOOTH,
-                                      .costly             = b->receptance->ring != NULL,
-                                      .bends              = b->receptance->ring || b->product,
-                                      .brief_events       = b->receptance->ring != NULL,
-                                      .row_length         = b->nb,
-                                      .copies             = mhb_motion_copies(b),
-                                      .copy               = copy,
-                                      .destroy            = destroy,
-                                      .evaluation_create  = evaluation_create,
-                                      .evaluation_destroy = evaluation_destroy,
-                                      .linearise          = linearise,
-                                      .evaluate           = evaluate,
-                                      .factor             = factor,
-                                      .solve              = solve,
-                                      .sign               = sign,
-                                      .solve_at_value     = solve_at_value,
-                                      .start_of_newton    = start_of_newton,
-                                      .is_linear          = is_linear};
+mhb_arclength *mhb_balance_curve_create(mhb_balance *b, double low, double high) {
+  mhb_balance_curve *s         = shb_alloc_zeroed(1, sizeof *s);
+  bool               frequency = b->parameter == MHB_IN_FREQUENCY;
+  s->balance                   = b;
+
+  s->base = (mhb_curve_system){.n                  = b->n,
+                               .least              = mhb_parameter_least(b->parameter),
+                               .relative           = frequency,
+                               .smooth             = b->settings->tolerance <= SMOOTH,
+                               .costly             = b->receptance->ring != NULL,
+                               .bends              = b->receptance->ring || b->product,
+                               .brief_events       = b->receptance->ring != NULL,
+                               .row_length         = b->nb,
+                               .copies             = mhb_motion_copies(b),
+                               .copy               = copy,
+                               .destroy            = destroy,
+                               .evaluation_create  = evaluation_create,
+                               .evaluation_destroy = evaluation_destroy,
+                               .linearise          = linearise,
+                               .evaluate           = evaluate,
+                               .factor             = factor,
+                               .solve              = solve,
+                               .sign               = sign,
+                               .solve_at_value     = solve_at_value,
+                               .start_of_newton    = start_of_newton,
+                               .is_linear          = is_linear};
   if (frequency && !b->receptance->ring) {
     s->base.correct_linear       = correct_linear;
     s->base.resonance_step_limit = resonance_step_limit;
     s->base.resonance_skipped    = resonance_skipped;
   }
   if (b->parameter == MHB_IN_N0) s->base.unit_of_value = unit_of_preload;
-  shb_status status = mhb_newton_create(b->n, &s->newton);
-  if (status == SHB_OK) status = mhb_newton_bind(s->newton, b);
-  if (status == SHB_OK && !b->receptance->ring) status = mhb_linear_corrector_create(b, &s->linear);
-  if (status == SHB_OK && !b->receptance->ring)
-    status = mhb_resonances_create(b, low, high, &s->resonances);
-  if (status != SHB_OK) {
-    destroy(&s->base);
-    return status;
+  s->newton = mhb_newton_create(b->n);
+  mhb_newton_bind(s->newton, b);
+  if (!b->receptance->ring) {
+    s->linear = mhb_linear_corrector_create(b);
+    mhb_resonances_create(b, low, high, &s->resonances);
   }
-  SHB_TRY(mhb_arclength_create(&s->base, low, high, out));
-  (*out)->roundoff_level = fmax((*out)->roundoff_level, 0.1 * b->settings->tolerance);
-  if (b->settings->outline) (*out)->tolerance = OUTLINE;
-  return SHB_OK;
+  mhb_arclength *curve  = mhb_arclength_create(&s->base, low, high);
+  curve->roundoff_level = fmax(curve->roundoff_level, 0.1 * b->settings->tolerance);
+  if (b->settings->outline) curve->tolerance = OUTLINE;
+  return curve;
 }

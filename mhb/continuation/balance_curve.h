@@ -14,10 +14,8 @@ typedef struct {
   mhb_resonances        resonances; /* in the range; none unless the frequency is followed */
 } mhb_balance_curve;
 
-/* Curves of a balance, which must outlive it, in its parameter from low to high.
- * SHB_ERR_IO: no memory. */
-shb_status mhb_balance_curve_create(mhb_balance *balance, double low, double high,
-                                    mhb_arclength **curve);
+/* Curves of a balance, which must outlive it, in its parameter from low to high. */
+mhb_arclength *mhb_balance_curve_create(mhb_balance *balance, double low, double high);
 
 /* The system of a curve that mhb_balance_curve_create made, and its balance. */
 static inline mhb_balance_curve *mhb_balance_curve_of(const mhb_arclength *curve) {

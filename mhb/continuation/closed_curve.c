@@ -4,6 +4,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "mesh/base/memory.h"
+
 /* Closure is tested only if the chord passes the place within so many step lengths. */
 static const double NEAR_CHORD = 0.3;
 
@@ -13,8 +15,8 @@ void mhb_curve_place_free(mhb_curve_place *place) {
   *place = (mhb_curve_place){0};
 }
 
-shb_status mhb_curve_place_note(mhb_curve_place *place, const mhb_curve_system *s,
-                                const mhb_curve_point *point, double tolerance) {
+void mhb_curve_place_note(mhb_curve_place *place, const mhb_curve_system *s,
+                          const mhb_curve_point *point, double tolerance) {
   int    copies = s->copies > 1 ? s->copies : 1;
   size_t n      = (size_t)s->n;
   double size   = mhb_norm(point->x, s->n);
@@ -22,23 +24,18 @@ shb_status mhb_curve_place_note(mhb_curve_place *place, const mhb_curve_system *
   *place = (mhb_curve_place){.rows       = s->n / s->row_length,
                              .row_length = s->row_length,
                              .copies     = copies,
-                             .x          = calloc(n * (size_t)copies, sizeof(double)),
-                             .tangent    = calloc(n * (size_t)copies, sizeof(double)),
+                             .x          = shb_alloc_zeroed(n * (size_t)copies, sizeof(double)),
+                             .tangent    = shb_alloc_zeroed(n * (size_t)copies, sizeof(double)),
                              .value      = point->value,
                              .rate       = point->tangent[s->n],
                              .size       = size > 0 ? size : 1,
                              .tolerance  = tolerance};
-  if (!place->x || !place->tangent) {
-    mhb_curve_place_free(place);
-    SHB_FAIL(SHB_ERR_IO, "out of memory");
-  }
   memcpy(place->x, point->x, sizeof(double) * n);
   memcpy(place->tangent, point->tangent, sizeof(double) * n);
   for (int j = 1; j < copies; j++) {
     s->copy(s, point->x, j, place->x + (size_t)j * n);
     s->copy(s, point->tangent, j, place->tangent + (size_t)j * n);
   }
-  return SHB_OK;
 }
 
 void mhb_curve_place_turn(mhb_curve_place *place) {

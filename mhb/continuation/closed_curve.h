@@ -14,9 +14,9 @@ typedef struct {
   double  tolerance;                /* distance in y that counts as the same place */
 } mhb_curve_place;
 
-/* The place and direction of a point. tolerance: of the motion, relative. SHB_ERR_IO: no memory. */
-shb_status mhb_curve_place_note(mhb_curve_place *place, const mhb_curve_system *system,
-                                const mhb_curve_point *point, double tolerance);
+/* The place and direction of a point. tolerance: of the motion, relative. */
+void mhb_curve_place_note(mhb_curve_place *place, const mhb_curve_system *system,
+                          const mhb_curve_point *point, double tolerance);
 /* The place is empty then: a zeroed one. */
 void mhb_curve_place_free(mhb_curve_place *place);
 

@@ -21,8 +21,7 @@ typedef struct {
   int             iterations;  /* corrections that led here */
   bool            near;        /* x is near that of the last evaluation, which may help the next */
   double          residual;    /* |r|/|x| */
-  double          truncation;  /* relative error of the harmonics left out */
-  double          miss;        /* the same, beside a fold the distance to the curve itself */
+  double          truncation;  /* relative error of the harmonics left out, of the kind below */
   double          truncation_max;  /* the largest within the period, over the same amplitude */
   double          modal;           /* relative error of the modes left out */
   int             truncation_kind; /* mhb_truncation_kind */
@@ -44,8 +43,8 @@ struct mhb_curve_system {
   int    copies;       /* of a solution that are the same motion, itself included; 1: none */
 
   void (*destroy)(mhb_curve_system *system); /* the system and all that it owns */
-  /* NULL where points need none. SHB_ERR_IO: no memory. */
-  shb_status (*evaluation_create)(mhb_curve_system *system, mhb_evaluation **evaluation);
+  /* NULL where points need none. */
+  mhb_evaluation *(*evaluation_create)(mhb_curve_system *system);
   void (*evaluation_destroy)(mhb_curve_system *system, mhb_evaluation *evaluation);
 
   /* r, slope and all derivatives at the point, into the point. */
@@ -106,14 +105,13 @@ struct mhb_arclength {
   double         *column, *row, *delta; /* [n + 1] of the bordered system */
 };
 
-/* Takes over the system, also if it fails. SHB_ERR_IO: no memory. */
-shb_status mhb_arclength_create(mhb_curve_system *system, double low, double high,
-                                mhb_arclength **curve);
-void       mhb_arclength_destroy(mhb_arclength *curve);
+/* Takes over the system. */
+mhb_arclength *mhb_arclength_create(mhb_curve_system *system, double low, double high);
+void           mhb_arclength_destroy(mhb_arclength *curve);
 
-/* A point of a curve with its own arrays; destroy accepts a zeroed one. SHB_ERR_IO: no memory. */
-shb_status mhb_curve_point_create(mhb_curve_system *system, mhb_curve_point *point);
-void       mhb_curve_point_destroy(mhb_curve_system *system, mhb_curve_point *point);
+/* A point of a curve with its own arrays; destroy accepts a zeroed one. */
+void mhb_curve_point_create(mhb_curve_system *system, mhb_curve_point *point);
+void mhb_curve_point_destroy(mhb_curve_system *system, mhb_curve_point *point);
 
 /* current <- next */
 void mhb_arclength_advance(mhb_arclength *curve);

@@ -98,14 +98,12 @@ static bool find(mhb_arclength *curve, const mhb_event_test *t, double *place) {
 }
 
 /* The trial becomes an event. */
-static shb_status keep(mhb_events *events, mhb_arclength *curve, const mhb_event_test *t,
-                       double place) {
+static void keep(mhb_events *events, mhb_arclength *curve, const mhb_event_test *t, double place) {
   mhb_curve_point *point = &events->point[events->n];
   events->system         = curve->system;
-  if (!point->x) SHB_TRY(mhb_curve_point_create(curve->system, point));
+  if (!point->x) mhb_curve_point_create(curve->system, point);
   swap(point, &curve->trial);
   events->event[events->n++] = (mhb_curve_event){t, place, point};
-  return SHB_OK;
 }
 
 static bool coincide(const mhb_curve_event *a, const mhb_curve_event *b) {
@@ -134,8 +132,8 @@ static void sort_and_merge(mhb_events *events) {
   events->n = kept;
 }
 
-shb_status mhb_events_locate(mhb_arclength *curve, int n_tests, mhb_event_test *test,
-                             mhb_events *events, mhb_end *end) {
+void mhb_events_locate(mhb_arclength *curve, int n_tests, mhb_event_test *test, mhb_events *events,
+                       mhb_end *end) {
   double place;
   *end                     = MHB_END_NONE;
   events->n                = 0;
@@ -156,12 +154,11 @@ shb_status mhb_events_locate(mhb_arclength *curve, int n_tests, mhb_event_test *
     if (t->end != MHB_END_NONE) continue;
     t->value_next = t->g(curve, &curve->next, t->context);
     if (find(curve, t, &place))
-      SHB_TRY(keep(events, curve, t, place));
+      keep(events, curve, t, place);
     else if (t->g == mhb_fold_test && changes_sign(t))
       events->fold_not_located = true;
   }
   sort_and_merge(events);
-  return SHB_OK;
 }
 
 bool mhb_events_miss_fold(const mhb_arclength *curve, const mhb_events *events) {

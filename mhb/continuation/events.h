@@ -72,9 +72,9 @@ void mhb_events_destroy(mhb_events *events);
 void mhb_events_begin(mhb_arclength *curve, int n_tests, mhb_event_test *test);
 
 /* Locate the events of a step. *end: of the event that ends the segment, whose point has become
- * next; or MHB_END_NONE. SHB_ERR_IO: no memory. */
-shb_status mhb_events_locate(mhb_arclength *curve, int n_tests, mhb_event_test *test,
-                             mhb_events *events, mhb_end *end);
+ * next; or MHB_END_NONE. */
+void mhb_events_locate(mhb_arclength *curve, int n_tests, mhb_event_test *test, mhb_events *events,
+                       mhb_end *end);
 
 /* Whether the parameter runs back between two points of the step without a fold. Two or more folds
  * then lie between them, which the signs at the ends do not show. */

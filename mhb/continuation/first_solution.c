@@ -4,6 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "mesh/base/memory.h"
 #include "mesh/base/progress.h"
 #include "mhb/continuation/balance_curve.h"
 
@@ -12,7 +13,7 @@
 enum { MAX_STAGES = 200, STAGES_A_PAIR = 10 };
 
 /* Linearisations after which a search is given up. The hardest of the tests, 20 pairs with stiff
- * contact, takes 3018; one pair of rigid friction with 31 to 63 harmonics 20 to 2800. */
+ * contact, takes 3018; one pair of rigid friction with 31 to 63 harmonics 20 to 370. */
 enum { MOST_LINEARISED = 4000, LINEARISED_A_PAIR = 800 };
 
 /* Steps of a released balance, the shortest that is tried first, and the length below which they
@@ -135,11 +136,10 @@ static mhb_reason by_homotopy(const search *s, double omega) {
 /* x <- the solution at `to`, along the curve from a solution x at `from`. plain: no step is tried
  * where the ordinary ones fail. */
 static bool continue_to(const search *s, double from, double to, bool plain) {
-  mhb_balance   *b = s->b;
-  mhb_arclength *curve;
+  mhb_balance   *b         = s->b;
+  mhb_arclength *curve     = mhb_balance_curve_create(b, fmin(from, to), fmax(from, to));
   const int      direction = to > from ? 1 : -1, most = MAX_STAGES + STAGES_A_PAIR * b->n_pairs;
-  bool           arrived = false;
-  if (mhb_balance_curve_create(b, fmin(from, to), fmax(from, to), &curve) != SHB_OK) return false;
+  bool           arrived                       = false;
   mhb_balance_curve_of(curve)->newton->go_on   = watch;
   mhb_balance_curve_of(curve)->newton->context = s;
   curve->system->plain                         = plain;
@@ -219,8 +219,8 @@ static void released_destroy(mhb_curve_system *system) {
   free(system);
 }
 
-static shb_status released_evaluation(mhb_curve_system *system, mhb_evaluation **evaluation) {
-  return mhb_evaluation_create(released(system)->search->b, evaluation);
+static mhb_evaluation *released_evaluation(mhb_curve_system *system) {
+  return mhb_evaluation_create(released(system)->search->b);
 }
 
 static void released_discard(mhb_curve_system *system, mhb_evaluation *evaluation) {
@@ -272,41 +272,36 @@ static mhb_reason released_at_value(mhb_curve_system *system, double tolerance,
                                                                     : MHB_NO_DESCENT;
 }
 
-static shb_status released_create(const search *s, double omega, mhb_arclength **curve) {
-  released_balance *w = calloc(1, sizeof *w);
-  SHB_CHECK(w, SHB_ERR_IO, "out of memory");
-  w->base   = (mhb_curve_system){.n                  = s->b->n,
-                                 .least              = -1,
-                                 .plain              = true,
-                                 .row_length         = s->b->nb,
-                                 .copies             = 1,
-                                 .destroy            = released_destroy,
-                                 .evaluation_create  = released_evaluation,
-                                 .evaluation_destroy = released_discard,
-                                 .linearise          = released_linearise,
-                                 .evaluate           = released_evaluate,
-                                 .factor             = released_factor,
-                                 .solve              = released_solve,
-                                 .sign               = released_sign,
-                                 .solve_at_value     = released_at_value};
-  w->search = s;
-  w->omega  = omega;
-  w->start  = calloc((size_t)s->b->n, sizeof(double));
-  if (!w->start || mhb_newton_bind(s->newton, s->b) != SHB_OK) {
-    released_destroy(&w->base);
-    SHB_FAIL(SHB_ERR_IO, "out of memory");
-  }
+static mhb_arclength *released_create(const search *s, double omega) {
+  released_balance *w = shb_alloc_zeroed(1, sizeof *w);
+  w->base             = (mhb_curve_system){.n                  = s->b->n,
+                                           .least              = -1,
+                                           .plain              = true,
+                                           .row_length         = s->b->nb,
+                                           .copies             = 1,
+                                           .destroy            = released_destroy,
+                                           .evaluation_create  = released_evaluation,
+                                           .evaluation_destroy = released_discard,
+                                           .linearise          = released_linearise,
+                                           .evaluate           = released_evaluate,
+                                           .factor             = released_factor,
+                                           .solve              = released_solve,
+                                           .sign               = released_sign,
+                                           .solve_at_value     = released_at_value};
+  w->search           = s;
+  w->omega            = omega;
+  w->start            = shb_alloc_zeroed((size_t)s->b->n, sizeof(double));
+  mhb_newton_bind(s->newton, s->b);
   mhb_balance_evaluate(s->b, s->x, omega, w->start, NULL, NULL);
-  return mhb_arclength_create(&w->base, 0, 1, curve);
+  return mhb_arclength_create(&w->base, 0, 1);
 }
 
 /* x <- a solution, along the curve of the released balance from x. */
 static mhb_reason release(const search *s, double omega) {
-  mhb_arclength *curve;
+  mhb_arclength *curve   = released_create(s, omega);
   const int      most    = MAX_RELEASED + STAGES_A_PAIR * s->b->n_pairs;
   bool           arrived = false;
-  if (released_create(s, omega, &curve) != SHB_OK) return MHB_SINGULAR;
-  bool on = mhb_arclength_start(curve, s->x, 0, 1) == MHB_CONVERGED;
+  bool           on      = mhb_arclength_start(curve, s->x, 0, 1) == MHB_CONVERGED;
   for (int i = 0; i < most && on && !arrived && goes_on(s); i++) {
     curve->step                   = fmax(curve->step, BOLD);
     mhb_arclength_outcome outcome = mhb_arclength_step(curve);
@@ -337,20 +332,18 @@ static void smaller_destroy(smaller_balance *w) {
 }
 
 static shb_status smaller_create(const search *s, int m, smaller_balance **out) {
-  smaller_balance *w = calloc(1, sizeof *w);
-  SHB_CHECK(w, SHB_ERR_IO, "out of memory");
+  smaller_balance *w    = shb_alloc_zeroed(1, sizeof *w);
   w->settings           = *s->b->settings;
   w->settings.harmonics = m;
   search *own           = &w->search;
   *own = (search){.tolerance = s->tolerance, .iterations = &w->iterations, .watcher = s->watcher};
   shb_status status = mhb_balance_create_on(s->b->receptance, &w->settings, &own->b);
-  if (status == SHB_OK) status = mhb_newton_create(own->b->n, &own->newton);
-  if (status == SHB_OK) own->x = calloc((size_t)own->b->n, sizeof *own->x);
-  if (status == SHB_OK && !own->x) status = shb_fail(SHB_ERR_IO, __FILE__, __LINE__, "no memory");
   if (status != SHB_OK) {
     smaller_destroy(w);
     return status;
   }
+  own->newton = mhb_newton_create(own->b->n);
+  own->x      = shb_alloc_zeroed((size_t)own->b->n, sizeof *own->x);
   mhb_balance_set_operating_point(own->b, &s->b->eval->at);
   own->last = last_of(own->b, s->watcher);
   *out      = w;

@@ -4,28 +4,23 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "mesh/base/memory.h"
 #include "mhb/balance/stick_stiffness.h"
 #include "mhb/numerics/lu.h"
 
 enum { MAX_ITERATIONS = 8 };
 
-shb_status mhb_linear_corrector_create(const mhb_balance *b, mhb_linear_corrector **out) {
-  mhb_linear_corrector *s = calloc(1, sizeof *s);
-  SHB_CHECK(s, SHB_ERR_IO, "out of memory");
-  size_t pairs = (size_t)b->n_pairs, n = 3 * pairs;
+mhb_linear_corrector *mhb_linear_corrector_create(const mhb_balance *b) {
+  mhb_linear_corrector *s     = shb_alloc_zeroed(1, sizeof *s);
+  size_t                pairs = (size_t)b->n_pairs, n = 3 * pairs;
   s->n     = (int)n;
-  s->A     = calloc(n * n, sizeof(double complex));
-  s->pivot = calloc(n, sizeof(int));
-  s->u     = calloc(n, sizeof(double complex));
-  s->p     = calloc(n, sizeof(double complex));
-  s->slope = calloc((size_t)b->n, sizeof(double));
-  s->kind  = calloc(pairs, sizeof *s->kind);
-  if (!(s->A && s->pivot && s->u && s->p && s->slope && s->kind)) {
-    mhb_linear_corrector_destroy(s);
-    SHB_FAIL(SHB_ERR_IO, "out of memory for %zu pairs", pairs);
-  }
-  *out = s;
-  return SHB_OK;
+  s->A     = shb_alloc_zeroed(n * n, sizeof(double complex));
+  s->pivot = shb_alloc_zeroed(n, sizeof(int));
+  s->u     = shb_alloc_zeroed(n, sizeof(double complex));
+  s->p     = shb_alloc_zeroed(n, sizeof(double complex));
+  s->slope = shb_alloc_zeroed((size_t)b->n, sizeof(double));
+  s->kind  = shb_alloc_zeroed(pairs, sizeof *s->kind);
+  return s;
 }
 
 void mhb_linear_corrector_destroy(mhb_linear_corrector *s) {

@@ -21,8 +21,8 @@ typedef struct {
   mhb_pair_kind  *kind;  /* [pairs] noted */
 } mhb_linear_corrector;
 
-shb_status mhb_linear_corrector_create(const mhb_balance *balance, mhb_linear_corrector **linear);
-void       mhb_linear_corrector_destroy(mhb_linear_corrector *linear);
+mhb_linear_corrector *mhb_linear_corrector_create(const mhb_balance *balance);
+void                  mhb_linear_corrector_destroy(mhb_linear_corrector *linear);
 
 /* Set the regime: which pairs are stuck and which open at a linear evaluation. */
 void mhb_linear_set_states(mhb_linear_corrector *linear, const mhb_evaluation *evaluation,

@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "mesh/base/constants.h"
+#include "mesh/base/memory.h"
 
 /* In half widths: the window resolved around a resonance and the shortest step there; the distance
  * between places assumed between free and stuck. Resonances farther apart than FARTHEST need no
@@ -29,21 +30,17 @@ typedef struct {
   int               *pivot;
 } stuck_modes;
 
-static shb_status add(mhb_resonances *s, mhb_resonance place) {
+static void add(mhb_resonances *s, mhb_resonance place) {
   if (s->n == s->capacity) {
-    int            room = 2 * s->capacity + 32;
-    mhb_resonance *more = realloc(s->at, (size_t)room * sizeof *more);
-    SHB_CHECK(more, SHB_ERR_IO, "out of memory for %d resonances", room);
-    s->at       = more;
-    s->capacity = room;
+    s->capacity = 2 * s->capacity + 32;
+    s->at       = shb_realloc(s->at, (size_t)s->capacity, sizeof *s->at);
   }
   s->at[s->n++] = place;
-  return SHB_OK;
 }
 
-static shb_status add_inside(const stuck_modes *w, mhb_resonances *s, mhb_resonance place) {
+static void add_inside(const stuck_modes *w, mhb_resonances *s, mhb_resonance place) {
   bool inside = place.value > w->low && place.value < w->high;
-  return inside && place.half_width > 0 ? add(s, place) : SHB_OK;
+  if (inside && place.half_width > 0) add(s, place);
 }
 
 /* The resonance of free mode i at harmonic k. */
@@ -143,17 +140,20 @@ static int closest_free_mode(int m, const double complex *q) {
 }
 
 /* Places between a mode's free and its stuck resonance. */
-static shb_status add_between(const stuck_modes *w, mhb_resonances *s, mhb_resonance stuck,
-                              mhb_resonance own) {
+static void add_between(const stuck_modes *w, mhb_resonances *s, mhb_resonance stuck,
+                        mhb_resonance own) {
   double gap = stuck.value - own.value;
-  if (fabs(gap) > FARTHEST * own.half_width) return add_inside(w, s, stuck);
+  if (fabs(gap) > FARTHEST * own.half_width) {
+    add_inside(w, s, stuck);
+    return;
+  }
   stuck.mode = own.mode;
   int n      = (int)(fabs(gap) / (APART * own.half_width));
   for (int i = 1; i <= n; i++) {
     own.value += gap / (n + 1);
-    SHB_TRY(add_inside(w, s, own));
+    add_inside(w, s, own);
   }
-  return fabs(gap) < SHORTEST * own.half_width ? SHB_OK : add_inside(w, s, stuck);
+  if (!(fabs(gap) < SHORTEST * own.half_width)) add_inside(w, s, stuck);
 }
 
 /* The resonance of stuck mode j of harmonic k, as solved. */
@@ -170,14 +170,13 @@ static mhb_resonance stuck_one(const stuck_modes *w, int k, int j) {
   return (mhb_resonance){turns * omega, turns * decay, k, -1, false};
 }
 
-static shb_status add_stuck(const stuck_modes *w, mhb_resonances *s, int k) {
+static void add_stuck(const stuck_modes *w, mhb_resonances *s, int k) {
   const mhb_receptance *r = w->b->receptance;
   int                   m = r->n_modes;
-  if (!solve(w, k)) return SHB_OK;
+  if (!solve(w, k)) return;
   for (int j = 0; j < m; j++)
-    SHB_TRY(add_between(w, s, stuck_one(w, k, j),
-                        free_one(r, k, closest_free_mode(m, w->M + (size_t)j * (size_t)m))));
-  return SHB_OK;
+    add_between(w, s, stuck_one(w, k, j),
+                free_one(r, k, closest_free_mode(m, w->M + (size_t)j * (size_t)m)));
 }
 
 /* ---- run-up: places omega = nu w_i(omega)/k ---- */
@@ -219,40 +218,37 @@ static bool meets(const mhb_resonance *a, double low, const mhb_resonance *b, do
   return true;
 }
 
-static shb_status add_meetings(const stuck_modes *w, mhb_resonances *s, const mode_at *a,
-                               double low, const mode_at *b, double high) {
+static void add_meetings(const stuck_modes *w, mhb_resonances *s, const mode_at *a, double low,
+                         const mode_at *b, double high) {
   mhb_resonance place;
   double        rate;
-  if (meets(&a->free, low, &b->free, high, &place, &rate)) SHB_TRY(add_inside(w, s, place));
+  if (meets(&a->free, low, &b->free, high, &place, &rate)) add_inside(w, s, place);
   if (!(a->stuck.half_width > 0 && b->stuck.half_width > 0) ||
       !meets(&a->stuck, low, &b->stuck, high, &place, &rate))
-    return SHB_OK;
+    return;
   const bool    near = place.value - low < high - place.value;
   mhb_resonance own  = near ? a->own : b->own;
   own.value          = place.value + (own.value - (near ? a : b)->stuck.value) / rate;
   own.half_width /= rate;
-  return add_between(w, s, place, own);
+  add_between(w, s, place, own);
 }
 
-static shb_status add_run_up(const stuck_modes *w, mhb_resonances *s) {
+static void add_run_up(const stuck_modes *w, mhb_resonances *s) {
   size_t   all = (size_t)(w->b->m + 1) * (size_t)w->b->receptance->n_modes;
-  mode_at *at = calloc(2 * all, sizeof *at), *a = at, *b = at + all;
-  SHB_CHECK(at, SHB_ERR_IO, "out of memory for the resonances of a run-up");
-  shb_status status = SHB_OK;
-  double     low    = w->low;
+  mode_at *at = shb_alloc_zeroed(2 * all, sizeof *at), *a = at, *b = at + all;
+  double   low = w->low;
   sample_modes(w, low, a);
-  for (int i = 1; i <= N_SAMPLES && status == SHB_OK; i++) {
+  for (int i = 1; i <= N_SAMPLES; i++) {
     double high = w->low + (w->high - w->low) * i / N_SAMPLES;
     sample_modes(w, high, b);
-    for (size_t j = 0; j < all && status == SHB_OK; j++)
-      if (a[j].free.k > 0) status = add_meetings(w, s, &a[j], low, &b[j], high);
+    for (size_t j = 0; j < all; j++)
+      if (a[j].free.k > 0) add_meetings(w, s, &a[j], low, &b[j], high);
     mode_at *swap = a;
     a             = b;
     b             = swap;
     low           = high;
   }
   free(at);
-  return status;
 }
 
 static int by_value(const void *a, const void *b) {
@@ -260,29 +256,25 @@ static int by_value(const void *a, const void *b) {
   return (x > y) - (x < y);
 }
 
-static shb_status add_all(const stuck_modes *w, mhb_resonances *s) {
+static void add_all(const stuck_modes *w, mhb_resonances *s) {
   const mhb_receptance *r = w->b->receptance;
-  if (r->at) SHB_TRY(add_run_up(w, s));
+  if (r->at) add_run_up(w, s);
   for (int k = 1; k <= w->b->m && !r->at; k++) {
-    for (int i = 0; i < r->n_modes; i++) SHB_TRY(add_inside(w, s, free_one(r, k, i)));
-    if (r->driven[k]) SHB_TRY(add_stuck(w, s, k));
+    for (int i = 0; i < r->n_modes; i++) add_inside(w, s, free_one(r, k, i));
+    if (r->driven[k]) add_stuck(w, s, k);
   }
   if (s->n > 0) qsort(s->at, (size_t)s->n, sizeof *s->at, by_value);
-  return SHB_OK;
 }
 
-static shb_status open_work(const mhb_balance *b, double low, double high, stuck_modes *w) {
+static void open_work(const mhb_balance *b, double low, double high, stuck_modes *w) {
   size_t n = (size_t)b->receptance->n, m = (size_t)b->receptance->n_modes;
   *w        = (stuck_modes){.b = b, .low = low, .high = high};
-  w->R      = calloc(n * n, sizeof *w->R);
-  w->A      = calloc(n * n, sizeof *w->A);
-  w->X      = calloc(n * m, sizeof *w->X);
-  w->M      = calloc(m * m, sizeof *w->M);
-  w->square = calloc(m, sizeof *w->square);
-  w->pivot  = calloc(n, sizeof *w->pivot);
-  SHB_CHECK(w->R && w->A && w->X && w->M && w->square && w->pivot, SHB_ERR_IO,
-            "out of memory for the resonances of %zu modes", m);
-  return SHB_OK;
+  w->R      = shb_alloc_zeroed(n * n, sizeof *w->R);
+  w->A      = shb_alloc_zeroed(n * n, sizeof *w->A);
+  w->X      = shb_alloc_zeroed(n * m, sizeof *w->X);
+  w->M      = shb_alloc_zeroed(m * m, sizeof *w->M);
+  w->square = shb_alloc_zeroed(m, sizeof *w->square);
+  w->pivot  = shb_alloc_zeroed(n, sizeof *w->pivot);
 }
 
 static void close_work(stuck_modes *w) {
@@ -294,22 +286,19 @@ static void close_work(stuck_modes *w) {
   free(w->pivot);
 }
 
-shb_status mhb_resonances_create(const mhb_balance *b, double low, double high,
-                                 mhb_resonances *out) {
+void mhb_resonances_create(const mhb_balance *b, double low, double high, mhb_resonances *out) {
   *out = (mhb_resonances){0};
-  if (b->parameter != MHB_IN_FREQUENCY) return SHB_OK;
+  if (b->parameter != MHB_IN_FREQUENCY) return;
   stuck_modes w;
-  shb_status  status = open_work(b, low, high, &w);
-  if (status == SHB_OK) status = add_all(&w, out);
+  open_work(b, low, high, &w);
+  add_all(&w, out);
   close_work(&w);
-  if (status != SHB_OK) mhb_resonances_destroy(out);
-  return status;
 }
 
 /* ---- of one linear limit ---- */
 
 /* The stuck resonances of harmonic k in sections of the range. R changes little over each. */
-static shb_status add_stuck_sections(stuck_modes *w, mhb_resonances *s, int k) {
+static void add_stuck_sections(stuck_modes *w, mhb_resonances *s, int k) {
   const mhb_receptance *r     = w->b->receptance;
   const double         *f     = mhb_receptance_model(r, k)->frequency;
   const double          turns = SHB_TWO_PI * r->nu / k, low = w->low, high = w->high;
@@ -319,36 +308,34 @@ static shb_status add_stuck_sections(stuck_modes *w, mhb_resonances *s, int k) {
     w->low  = at;
     w->high = fmin(last, SECTION * at);
     if (!solve(w, k)) continue;
-    for (int j = 0; j < r->n_modes; j++) SHB_TRY(add_inside(w, s, stuck_one(w, k, j)));
+    for (int j = 0; j < r->n_modes; j++) add_inside(w, s, stuck_one(w, k, j));
   }
   w->low  = low;
   w->high = high;
-  return SHB_OK;
 }
 
-static shb_status add_limit(stuck_modes *w, bool stuck, mhb_resonances *s) {
+static void add_limit(stuck_modes *w, bool stuck, mhb_resonances *s) {
   const mhb_receptance *r = w->b->receptance;
   for (int k = 1; k <= w->b->m; k++) {
     if (!r->driven[k]) continue;
-    if (stuck) SHB_TRY(add_stuck_sections(w, s, k));
-    for (int i = 0; i < r->n_modes && !stuck; i++) SHB_TRY(add_inside(w, s, free_one(r, k, i)));
+    if (stuck) add_stuck_sections(w, s, k);
+    for (int i = 0; i < r->n_modes && !stuck; i++) add_inside(w, s, free_one(r, k, i));
   }
   if (s->n > 0) qsort(s->at, (size_t)s->n, sizeof *s->at, by_value);
-  return SHB_OK;
 }
 
-shb_status mhb_resonances_of_limit(const mhb_balance *b, bool stuck, double low, double high,
-                                   mhb_resonances *out) {
+void mhb_resonances_of_limit(const mhb_balance *b, bool stuck, double low, double high,
+                             mhb_resonances *out) {
   *out = (mhb_resonances){0};
-  if (b->receptance->ring) return SHB_OK;
-  if (b->parameter != MHB_IN_FREQUENCY || b->receptance->at)
-    return mhb_resonances_create(b, low, high, out);
+  if (b->receptance->ring) return;
+  if (b->parameter != MHB_IN_FREQUENCY || b->receptance->at) {
+    mhb_resonances_create(b, low, high, out);
+    return;
+  }
   stuck_modes w;
-  shb_status  status = open_work(b, low, high, &w);
-  if (status == SHB_OK) status = add_limit(&w, stuck, out);
+  open_work(b, low, high, &w);
+  add_limit(&w, stuck, out);
   close_work(&w);
-  if (status != SHB_OK) mhb_resonances_destroy(out);
-  return status;
 }
 
 /* ---- of one nodal diameter ---- */
@@ -373,6 +360,7 @@ shb_status mhb_stuck_frequencies(const modal_model *model, const mhb_settings *s
   mhb_balance *balance = NULL;
   stuck_modes  w       = {0};
   one.engine_order     = diameter;
+  one.turns_right      = false;
   one.harmonics = one.subharmonics = 1;
   one.motion_tolerance             = 0;
   one.run_up                       = NULL;
@@ -380,11 +368,11 @@ shb_status mhb_stuck_frequencies(const modal_model *model, const mhb_settings *s
   one.ring                         = NULL; /* equal blades */
   one.other_pairs                  = NULL;
   SHB_TRY(mhb_balance_create(model, &one, &balance));
-  shb_status status = open_work(balance, 0, 0, &w);
-  for (int j = 0; j < n && status == SHB_OK; j++) frequency[j] = settle(&w, j) / SHB_TWO_PI;
+  open_work(balance, 0, 0, &w);
+  for (int j = 0; j < n; j++) frequency[j] = settle(&w, j) / SHB_TWO_PI;
   close_work(&w);
   mhb_balance_destroy(balance);
-  return status;
+  return SHB_OK;
 }
 
 void mhb_resonances_destroy(mhb_resonances *s) {

@@ -28,15 +28,14 @@ typedef struct {
   int            n, capacity;
 } mhb_resonances;
 
-/* Those of harmonics 1..m between low and high, rad/s. None unless the frequency is the parameter.
- * SHB_ERR_IO: no memory. */
-shb_status mhb_resonances_create(const mhb_balance *balance, double low, double high,
-                                 mhb_resonances *resonances);
+/* Those of harmonics 1..m between low and high, rad/s; none unless the frequency is followed. */
+void mhb_resonances_create(const mhb_balance *balance, double low, double high,
+                           mhb_resonances *resonances);
 /* Those of one linear limit at the harmonics of the load: free modes, or stuck ones with R near
  * each frequency. In a run-up all places of mhb_resonances_create. */
-shb_status mhb_resonances_of_limit(const mhb_balance *balance, bool stuck, double low, double high,
-                                   mhb_resonances *resonances);
-void       mhb_resonances_destroy(mhb_resonances *resonances);
+void mhb_resonances_of_limit(const mhb_balance *balance, bool stuck, double low, double high,
+                             mhb_resonances *resonances);
+void mhb_resonances_destroy(mhb_resonances *resonances);
 
 /* Lowest natural frequencies of a wave of one nodal diameter with every contact stuck, Hz, rising.
  *

@@ -46,7 +46,7 @@ int mhb_nearest_solution(mhb_newton *newton, mhb_balance *balance, const double 
                          double scale, double span, double tolerance, double *x, double *omega) {
   plane  p   = {newton, balance, scale, span};
   double way = 0;
-  if (mhb_newton_bind(newton, balance) != SHB_OK) return 0;
+  mhb_newton_bind(newton, balance);
   double now = measure(&p, x, *omega);
   for (int i = 0; i < MAX_ITERATIONS && isfinite(now); i++) {
     if (now <= tolerance) return 1;

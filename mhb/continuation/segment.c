@@ -94,7 +94,7 @@ static shb_status located_step(mhb_segment_host *host, mhb_end *end) {
       if (shorter == 0 || shorter > MAX_SHORTER) return SHB_OK;
       continue;
     }
-    SHB_TRY(mhb_events_locate(host->curve, host->n_tests, host->test, host->events, end));
+    mhb_events_locate(host->curve, host->n_tests, host->test, host->events, end);
     if (*end != MHB_END_NONE && *end != MHB_END_HIGH && *end != MHB_END_LOW)
       host->estimate_event(host, &host->curve->next); /* it has moved */
     if (*end != MHB_END_NONE || !mhb_events_miss_fold(host->curve, host->events)) return SHB_OK;

@@ -64,7 +64,7 @@ struct mhb_segment_host {
 };
 
 /* Trace a segment from a seed; its points go to host->record. *end is never MHB_END_NONE.
- * SHB_ERR_IO: no memory. */
+ * Errors: those of the host. */
 shb_status mhb_trace_segment(mhb_segment_host *host, const mhb_seed *seed, mhb_end *end);
 
 #endif

@@ -17,7 +17,7 @@ enum { INVERSE_STEPS = 12 };
 
 static const double ROOT_TWO = 1.4142135623730952; /* rounded up */
 
-shb_status mhb_bloch_create(int cells, int capacity, mhb_bloch *b) {
+void mhb_bloch_create(int cells, int capacity, mhb_bloch *b) {
   size_t n = (size_t)capacity, square = n * n;
   *b         = (mhb_bloch){.cells = cells, .capacity = capacity, .size = 34 * capacity};
   b->real    = shb_arena_take(&b->arena, square + 1, sizeof *b->real);
@@ -28,10 +28,7 @@ shb_status mhb_bloch_create(int cells, int capacity, mhb_bloch *b) {
   b->value   = shb_arena_take(&b->arena, 2 * n + 1, sizeof *b->value);
   b->aligned = shb_arena_take(&b->arena, n + 1, sizeof *b->aligned);
   b->pivot   = shb_arena_take(&b->arena, n + 1, sizeof *b->pivot);
-  int ok     = cells <= 2 || mhb_hessenberg_qr_create(capacity, &b->qr);
-  if (ok && !b->arena.failed) return SHB_OK;
-  mhb_bloch_destroy(b);
-  SHB_FAIL(SHB_ERR_IO, "out of memory for the multipliers of %d states", capacity);
+  if (cells > 2) mhb_hessenberg_qr_create(capacity, &b->qr);
 }
 
 void mhb_bloch_destroy(mhb_bloch *b) {

@@ -36,9 +36,9 @@ typedef struct {
   shb_arena         arena;
 } mhb_bloch;
 
-/* For up to capacity states a cell. SHB_ERR_IO: no memory. */
-shb_status mhb_bloch_create(int cells, int capacity, mhb_bloch *bloch);
-void       mhb_bloch_destroy(mhb_bloch *bloch);
+/* For up to capacity states a cell. */
+void mhb_bloch_create(int cells, int capacity, mhb_bloch *bloch);
+void mhb_bloch_destroy(mhb_bloch *bloch);
 
 /* Number of Bloch problems that are solved: kappa of l = 0 to cells/2. The others are their
  * conjugates. */

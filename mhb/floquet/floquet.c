@@ -6,6 +6,7 @@
 
 #include "mesh/base/arena.h"
 #include "mesh/base/constants.h"
+#include "mesh/base/memory.h"
 #include "mhb/floquet/bloch.h"
 #include "mhb/floquet/linear_exponents.h"
 
@@ -51,6 +52,7 @@ struct mhb_floquet {
   double          statical;   /* rad/s, the lowest mode without dynamics; INFINITY: all have */
   int            *state;      /* [pair] */
   double complex *multiplier; /* [states] */
+  double complex *kept;       /* [states] while those of another solution are computed */
   shb_arena       arena;      /* of coarse too, which changes places with the monodromy's M */
 };
 
@@ -120,27 +122,27 @@ static shb_status fill(mhb_floquet *s, const mhb_receptance *receptance,
   const mhb_modal_structure *all_modes = &s->structure;
   int                        m         = settings->harmonics,
       all = 2 * (all_modes->modes * all_modes->blades + all_modes->contacts);
-  SHB_TRY(mhb_transition_schedule_create(all_modes->blades, all_modes->pairs, all_modes->wave,
-                                         all_modes->mistuned, &s->schedule));
+  mhb_transition_schedule_create(all_modes->blades, all_modes->pairs, all_modes->wave,
+                                 all_modes->mistuned, &s->schedule);
   SHB_TRY(mhb_contact_evaluator_create(m, m, settings->tolerance, &s->contact));
   if (modes_of(s) > 0) {
     SHB_TRY(mhb_modal_structure_create(receptance, settings, modes_of(s), MHB_STRUCTURE_WHOLE,
                                        &s->reduced));
-    SHB_TRY(mhb_monodromy_create(&s->reduced, &s->schedule, s->contact, m, (substeps + 1) / 2,
-                                 FINEST, is_condensed(&s->reduced), &s->monodromy));
-    int cells  = mhb_floquet_cells(s),
-        states = 2 * s->schedule.cell * (s->reduced.modes + all_modes->pairs);
-    SHB_TRY(mhb_bloch_create(cells, states, &s->bloch));
+    s->monodromy = mhb_monodromy_create(&s->reduced, &s->schedule, s->contact, m,
+                                        (substeps + 1) / 2, FINEST, is_condensed(&s->reduced));
+    int cells    = mhb_floquet_cells(s),
+        states   = 2 * s->schedule.cell * (s->reduced.modes + all_modes->pairs);
+    mhb_bloch_create(cells, states, &s->bloch);
     s->coarse = shb_arena_take(&s->arena, (size_t)cells * (size_t)states * (size_t)states,
                                sizeof *s->coarse);
   }
   const mhb_modal_structure *linear = all_modes->mistuned && s->monodromy ? &s->reduced : all_modes;
-  SHB_TRY(mhb_linear_exponents_create(linear, &s->exponents));
+  mhb_linear_exponents_create(linear, &s->exponents);
   note_statical(s);
   s->nu         = settings->subharmonics;
   s->state      = shb_arena_take(&s->arena, (size_t)s->schedule.orbits, sizeof(int));
   s->multiplier = shb_arena_take(&s->arena, (size_t)all, sizeof(double complex));
-  SHB_CHECK(!s->arena.failed, SHB_ERR_IO, "out of memory for the stability of %d states", all);
+  s->kept       = shb_arena_take(&s->arena, (size_t)all, sizeof(double complex));
   return SHB_OK;
 }
 
@@ -148,8 +150,7 @@ shb_status mhb_floquet_create(const mhb_receptance *receptance, const mhb_settin
                               int substeps, int max_states, mhb_floquet **out) {
   SHB_CHECK(substeps >= 1, SHB_ERR_INPUT, "stability needs at least one sub-step a period, not %d",
             substeps);
-  mhb_floquet *s = calloc(1, sizeof *s);
-  SHB_CHECK(s, SHB_ERR_IO, "out of memory");
+  mhb_floquet *s    = shb_alloc_zeroed(1, sizeof *s);
   s->max_states     = max_states > 0 ? max_states : MAX_STATES;
   s->highest        = SHB_TWO_PI * fmax(settings->frequency[0], settings->frequency[1]);
   shb_status status = fill(s, receptance, settings, substeps);
@@ -376,8 +377,12 @@ static void count_left_out(const mhb_floquet *s, const mhb_solution *solution,
   }
 }
 
+static double margin_of(const mhb_multipliers *m) {
+  return 1 + fmax(MARGIN, m->change);
+}
+
 static void set_verdict(mhb_multipliers *out) {
-  double margin = 1 + fmax(MARGIN, out->change);
+  const double margin = margin_of(out);
   for (int i = 0; i < out->n; i++) out->n_unstable += cabs(out->multiplier[i]) > margin;
   if (out->reason) {
     out->verdict = MHB_UNDECIDED;
@@ -390,7 +395,7 @@ static void set_verdict(mhb_multipliers *out) {
 
 void mhb_floquet_evaluate(mhb_floquet *s, const mhb_solution *solution, mhb_multipliers *out) {
   double omega  = solution->omega / s->nu;
-  *out          = (mhb_multipliers){.change = -1};
+  *out          = (mhb_multipliers){.change = -1, .error = -1};
   s->refinement = 0;
   if (!mhb_transition_schedule_set(&s->schedule, solution->info)) {
     out->reason = "the contact law lost its way, or has too many transitions";
@@ -402,7 +407,28 @@ void mhb_floquet_evaluate(mhb_floquet *s, const mhb_solution *solution, mhb_mult
   if (!out->reason) count_left_out(s, solution, out);
   set_verdict(out);
   for (int i = 0; out->verdict == MHB_UNSTABLE && i < s->bloch.n_aligned; i++)
-    out->n_fold += s->bloch.aligned[i] > 1 + fmax(MARGIN, out->change);
+    out->n_fold += s->bloch.aligned[i] > margin_of(out);
+}
+
+double mhb_floquet_distance(const mhb_multipliers *m) {
+  return fabs(m->largest - margin_of(m));
+}
+
+void mhb_floquet_set_error(double error, mhb_multipliers *m) {
+  m->error = error;
+  if (!(error < mhb_floquet_distance(m))) m->verdict = MHB_UNDECIDED;
+}
+
+void mhb_floquet_judge_error(mhb_floquet *s, const mhb_solution *better, double remaining,
+                             mhb_multipliers *m) {
+  double complex *own = s->multiplier;
+  mhb_multipliers of_better;
+  s->multiplier = s->kept;
+  mhb_floquet_evaluate(s, better, &of_better);
+  s->kept             = s->multiplier;
+  s->multiplier       = own;
+  const double change = of_better.reason ? INFINITY : fabs(of_better.largest - m->largest);
+  mhb_floquet_set_error(change / (1 - remaining), m);
 }
 
 int mhb_floquet_refinement(const mhb_floquet *s) {

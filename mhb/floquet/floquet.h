@@ -41,7 +41,8 @@ typedef struct {
   int                   modes; /* with dynamics; fewer than the model's if max_states was reached */
   double                largest; /* modulus of the first */
   double                change;  /* of largest by the last halving of the sub-steps; -1: none */
-  const char           *reason;  /* of MHB_UNDECIDED, else NULL */
+  double                error;   /* of largest by the harmonics left out; -1 before it is judged */
+  const char           *reason;  /* why there are no multipliers, else NULL */
 } mhb_multipliers;
 
 typedef struct mhb_floquet mhb_floquet; /* workspace; one a thread */
@@ -50,7 +51,7 @@ typedef struct mhb_floquet mhb_floquet; /* workspace; one a thread */
  *   substeps    in  of a period of the fundamental, to begin with
  *   max_states  in  0: 600. In a mistuned ring it bounds the states of linear motions too
  * The receptance must outlive it.
- * Errors: SHB_ERR_INPUT substeps < 1; SHB_ERR_IO no memory. */
+ * Errors: SHB_ERR_INPUT substeps < 1; SHB_ERR_IO no memory for a contact evaluator. */
 shb_status mhb_floquet_create(const mhb_receptance *receptance, const mhb_settings *settings,
                               int substeps, int max_states, mhb_floquet **floquet);
 void       mhb_floquet_destroy(mhb_floquet *floquet);
@@ -78,6 +79,19 @@ int mhb_floquet_states(const mhb_floquet *floquet);
  *                  a mode within three times the excitation has no dynamics */
 void mhb_floquet_evaluate(mhb_floquet *floquet, const mhb_solution *solution,
                           mhb_multipliers *multipliers);
+
+/* Distance of the largest modulus from that above which a solution is unstable. */
+double mhb_floquet_distance(const mhb_multipliers *multipliers);
+
+/* The error of `largest` by the harmonics left out, from a better solution of more harmonics:
+ * |largest_better - largest|/(1 - remaining). The verdict is MHB_UNDECIDED within the error.
+ *   multipliers  inout  of the last evaluation
+ *   remaining    in     the error of the better solution over that of the first */
+void mhb_floquet_judge_error(mhb_floquet *floquet, const mhb_solution *better, double remaining,
+                             mhb_multipliers *multipliers);
+
+/* Set the error. The verdict is MHB_UNDECIDED within it. */
+void mhb_floquet_set_error(double error, mhb_multipliers *multipliers);
 
 /* The same multipliers at fixed sub-steps, one Bloch problem at a time (followed_multiplier.h). */
 

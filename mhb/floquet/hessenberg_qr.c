@@ -10,7 +10,7 @@
 /* QR steps an eigenvalue at most, and how often one takes an exceptional shift. */
 enum { MOST_STEPS = 40, EXCEPTIONAL = 10 };
 
-int mhb_hessenberg_qr_create(int capacity, mhb_hessenberg_qr *qr) {
+void mhb_hessenberg_qr_create(int capacity, mhb_hessenberg_qr *qr) {
   size_t n = (size_t)capacity, wide = (n + MHB_COLUMNS) * n;
   *qr          = (mhb_hessenberg_qr){.capacity = capacity, .size = 34 * capacity + 1};
   qr->re       = shb_arena_take(&qr->arena, wide, sizeof(double));
@@ -23,9 +23,6 @@ int mhb_hessenberg_qr_create(int capacity, mhb_hessenberg_qr *qr) {
   qr->scale    = shb_arena_take(&qr->arena, n, sizeof(double));
   qr->tau      = shb_arena_take(&qr->arena, n, sizeof *qr->tau);
   qr->work     = shb_arena_take(&qr->arena, (size_t)qr->size, sizeof *qr->work);
-  if (!qr->arena.failed) return 1;
-  mhb_hessenberg_qr_destroy(qr);
-  return 0;
 }
 
 void mhb_hessenberg_qr_destroy(mhb_hessenberg_qr *qr) {

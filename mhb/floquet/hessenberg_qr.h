@@ -25,8 +25,8 @@ typedef struct {
   shb_arena       arena;
 } mhb_hessenberg_qr;
 
-/* For matrices of up to capacity rows. Returns 0 without memory. */
-int  mhb_hessenberg_qr_create(int capacity, mhb_hessenberg_qr *qr);
+/* For matrices of up to capacity rows. */
+void mhb_hessenberg_qr_create(int capacity, mhb_hessenberg_qr *qr);
 void mhb_hessenberg_qr_destroy(mhb_hessenberg_qr *qr);
 
 /* value[n] <- eigenvalues of A [n][n] column-major, which is overwritten. Returns 0 if the steps do

@@ -7,7 +7,7 @@
 
 #include "mesh/base/constants.h"
 
-shb_status mhb_linear_exponents_create(const mhb_modal_structure *s, mhb_linear_exponents *x) {
+void mhb_linear_exponents_create(const mhb_modal_structure *s, mhb_linear_exponents *x) {
   *x       = (mhb_linear_exponents){.structure = s,
                                     .n         = 2 * s->modes * s->blades,
                                     .orbits    = s->mistuned ? s->contacts : s->pairs};
@@ -26,9 +26,6 @@ shb_status mhb_linear_exponents_create(const mhb_modal_structure *s, mhb_linear_
     x->work  = shb_arena_take(&x->arena, 40 * m, sizeof *x->work);
     x->rwork = shb_arena_take(&x->arena, 4 * m, sizeof *x->rwork);
   }
-  if (!x->arena.failed) return SHB_OK;
-  mhb_linear_exponents_destroy(x);
-  SHB_FAIL(SHB_ERR_IO, "out of memory for the exponents of %d modes", s->modes);
 }
 
 void mhb_linear_exponents_destroy(mhb_linear_exponents *x) {

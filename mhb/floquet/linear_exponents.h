@@ -35,10 +35,10 @@ typedef struct {
   shb_arena                  arena;
 } mhb_linear_exponents;
 
-/* SHB_ERR_IO: no memory. The structure must outlive it; a mistuned one has flexibility of all. */
-shb_status mhb_linear_exponents_create(const mhb_modal_structure *structure,
-                                       mhb_linear_exponents      *exponents);
-void       mhb_linear_exponents_destroy(mhb_linear_exponents *exponents);
+/* The structure must outlive it; a mistuned one has flexibility of all. */
+void mhb_linear_exponents_create(const mhb_modal_structure *structure,
+                                 mhb_linear_exponents      *exponents);
+void mhb_linear_exponents_destroy(mhb_linear_exponents *exponents);
 
 /* Exponents for states (mhb_state) and laws [orbit]; equal blades have equal contacts. Returns 0 if
  * the eigensolver failed. */

@@ -1,5 +1,6 @@
 #include "mhb/floquet/monodromy.h"
 #include "mesh/base/constants.h"
+#include "mesh/base/memory.h"
 #include "mhb/numerics/lu.h"
 
 #include <math.h>
@@ -9,22 +10,21 @@
 /* Shorter intervals between events, in periods, are skipped. */
 static const double SHORT = 1e-13;
 
-shb_status mhb_monodromy_create(const mhb_modal_structure     *s,
-                                const mhb_transition_schedule *schedule,
-                                mhb_contact_evaluator *contact, int m, int substeps, int finest,
-                                bool condensed, mhb_monodromy **out) {
-  mhb_monodromy *d = calloc(1, sizeof *d);
-  SHB_CHECK(d, SHB_ERR_IO, "out of memory");
-  int    blades = schedule->cell, capacity = 2 * blades * (s->modes + s->pairs);
-  int    pieces = schedule->capacity + 1;
-  int    steps  = finest * ((int)(substeps * schedule->span) + 1 + pieces);
-  size_t cells  = (size_t)(s->blades / blades);
-  d->blades     = blades;
-  d->structure  = s;
-  d->schedule   = schedule;
-  d->substeps   = substeps;
-  d->column     = shb_arena_take(&d->arena, (size_t)s->contacts, sizeof *d->column);
-  d->u          = shb_arena_take(&d->arena, 3 * (size_t)s->contacts, sizeof *d->u);
+mhb_monodromy *mhb_monodromy_create(const mhb_modal_structure     *s,
+                                    const mhb_transition_schedule *schedule,
+                                    mhb_contact_evaluator *contact, int m, int substeps, int finest,
+                                    bool condensed) {
+  mhb_monodromy *d      = shb_alloc_zeroed(1, sizeof *d);
+  int            blades = schedule->cell, capacity = 2 * blades * (s->modes + s->pairs);
+  int            pieces = schedule->capacity + 1;
+  int            steps  = finest * ((int)(substeps * schedule->span) + 1 + pieces);
+  size_t         cells  = (size_t)(s->blades / blades);
+  d->blades             = blades;
+  d->structure          = s;
+  d->schedule           = schedule;
+  d->substeps           = substeps;
+  d->column             = shb_arena_take(&d->arena, (size_t)s->contacts, sizeof *d->column);
+  d->u                  = shb_arena_take(&d->arena, 3 * (size_t)s->contacts, sizeof *d->u);
   d->matrix =
       shb_arena_take(&d->arena, 9 * (size_t)s->contacts * (size_t)s->contacts, sizeof *d->matrix);
   d->is_spring = shb_arena_take(&d->arena, (size_t)s->contacts, sizeof *d->is_spring);
@@ -34,20 +34,10 @@ shb_status mhb_monodromy_create(const mhb_modal_structure     *s,
   d->steps     = shb_arena_take(&d->arena, (size_t)pieces, sizeof *d->steps);
   d->n_events  = -1;
   d->M = shb_arena_take(&d->arena, cells * (size_t)capacity * (size_t)capacity, sizeof *d->M);
-  shb_status status = SHB_OK;
-  if (d->arena.failed)
-    status = shb_fail(SHB_ERR_IO, __FILE__, __LINE__,
-                      "out of memory for the stability of %d states", capacity);
-  if (status == SHB_OK && condensed) status = mhb_stuck_springs_create(s, &d->springs);
-  if (status == SHB_OK) status = mhb_variational_create(s, d->springs, capacity, &d->variational);
-  if (status == SHB_OK)
-    status = mhb_orbit_contacts_create(s, schedule, contact, m, steps + pieces + 1, &d->orbit);
-  if (status != SHB_OK) {
-    mhb_monodromy_destroy(d);
-    return status;
-  }
-  *out = d;
-  return SHB_OK;
+  if (condensed) d->springs = mhb_stuck_springs_create(s);
+  d->variational = mhb_variational_create(s, d->springs, capacity);
+  d->orbit       = mhb_orbit_contacts_create(s, schedule, contact, m, steps + pieces + 1);
+  return d;
 }
 
 void mhb_monodromy_destroy(mhb_monodromy *d) {

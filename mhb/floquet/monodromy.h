@@ -36,11 +36,11 @@ typedef struct {
 /* finest: the greatest refinement. condensed: stuck contacts are springs of the structure, which is
  * cheaper with many contacts; of a blade on the ground without Coriolis terms only. SHB_ERR_IO: no
  * memory. Structure, schedule and contact must outlive it. */
-shb_status mhb_monodromy_create(const mhb_modal_structure     *structure,
-                                const mhb_transition_schedule *schedule,
-                                mhb_contact_evaluator *contact, int m, int substeps, int finest,
-                                bool condensed, mhb_monodromy **monodromy);
-void       mhb_monodromy_destroy(mhb_monodromy *monodromy);
+mhb_monodromy *mhb_monodromy_create(const mhb_modal_structure     *structure,
+                                    const mhb_transition_schedule *schedule,
+                                    mhb_contact_evaluator *contact, int m, int substeps, int finest,
+                                    bool condensed);
+void           mhb_monodromy_destroy(mhb_monodromy *monodromy);
 
 /* The structure has changed. */
 void mhb_monodromy_forget(mhb_monodromy *monodromy);

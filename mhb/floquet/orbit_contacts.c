@@ -6,18 +6,18 @@
 #include <string.h>
 
 #include "mesh/base/constants.h"
+#include "mesh/base/memory.h"
 #include "mhb/contact/slip.h"
 #include "mhb/numerics/fourier.h"
 
 /* Distance from an opening, in periods, at which the direction of friction is sampled. */
 static const double NEAR = 1e-8;
 
-shb_status mhb_orbit_contacts_create(const mhb_modal_structure     *s,
-                                     const mhb_transition_schedule *schedule,
-                                     mhb_contact_evaluator *contact, int m, int n_samples,
-                                     mhb_orbit_contacts **out) {
-  mhb_orbit_contacts *d = calloc(1, sizeof *d);
-  SHB_CHECK(d, SHB_ERR_IO, "out of memory");
+mhb_orbit_contacts *mhb_orbit_contacts_create(const mhb_modal_structure     *s,
+                                              const mhb_transition_schedule *schedule,
+                                              mhb_contact_evaluator *contact, int m,
+                                              int n_samples) {
+  mhb_orbit_contacts *d = shb_alloc_zeroed(1, sizeof *d);
   size_t contacts = (size_t)s->contacts, n = 3 * contacts, orbits = (size_t)schedule->orbits;
   d->structure        = s;
   d->schedule         = schedule;
@@ -28,7 +28,7 @@ shb_status mhb_orbit_contacts_create(const mhb_modal_structure     *s,
   shb_arena *arena    = &d->arena;
   d->own              = shb_arena_take(arena, 3 * orbits * (size_t)d->nb, sizeof(double));
   d->motion           = shb_arena_take(arena, 3 * orbits * (size_t)d->nb, sizeof(double));
-  d->sample           = calloc(orbits * (size_t)d->capacity, sizeof *d->sample);
+  d->sample           = shb_alloc_zeroed(orbits * (size_t)d->capacity, sizeof *d->sample);
   d->n_taken          = shb_arena_take(arena, orbits, sizeof(int));
   d->point            = shb_arena_take(arena, contacts, sizeof *d->point);
   d->solution_columns = shb_arena_take(arena, 2 * n, sizeof(mhb_columns));
@@ -37,13 +37,8 @@ shb_status mhb_orbit_contacts_create(const mhb_modal_structure     *s,
   d->elastic_feedback = shb_arena_take(arena, n, sizeof(double));
   d->basis            = shb_arena_take(arena, 2 * (size_t)d->nb, sizeof(double));
   const int groups    = mhb_modal_structure_groups(s);
-  if (!mhb_ring_band_create(groups, 3 * s->contacts / groups, &d->band) || arena->failed ||
-      !d->sample) {
-    mhb_orbit_contacts_destroy(d);
-    SHB_FAIL(SHB_ERR_IO, "out of memory for the stability of %d contacts", s->contacts);
-  }
-  *out = d;
-  return SHB_OK;
+  mhb_ring_band_create(groups, 3 * s->contacts / groups, &d->band);
+  return d;
 }
 
 void mhb_orbit_contacts_destroy(mhb_orbit_contacts *d) {
@@ -60,8 +55,10 @@ static int orbit_of(const mhb_orbit_contacts *d, int contact) {
 
 /* ---- the periodic motion ---- */
 
-static double complex harmonic(const double *a, int k) {
-  return k ? CMPLX(a[2 * k - 1], a[2 * k]) : a[0];
+/* Harmonic k of row r of the solution's x or p. */
+static double complex harmonic(const mhb_orbit_contacts *d, const double *x, int r, int k) {
+  const double *a = x + (size_t)r * (size_t)mhb_real_size(d->solution->m);
+  return k > d->solution->m ? 0 : k ? CMPLX(a[2 * k - 1], a[2 * k]) : a[0];
 }
 
 /* Harmonic k of a wave in blade `blade`, by that of blade 0: it lags by k b 2 pi E/N. */
@@ -76,7 +73,7 @@ static double complex flexibility_motion(const mhb_orbit_contacts *d, int k, int
   const int                  n = 3 * s->contacts, given = 3 * d->schedule->orbits;
   double complex             sum = 0;
   for (int c = 0; c < n; c++) {
-    double complex pk = harmonic(d->solution->p + (size_t)(c % given) * (size_t)d->nb, k);
+    double complex pk = harmonic(d, d->solution->p, c % given, k);
     if (c >= given) pk *= lag(d, k, c / given); /* equal blades: p is that of blade 0 */
     sum += s->flexibility[(size_t)r * (size_t)n + (size_t)c] * pk;
   }
@@ -95,7 +92,7 @@ static void put_harmonic(const mhb_orbit_contacts *d, int k, int r, double compl
 static void set_modal_motion(mhb_orbit_contacts *d) {
   for (int r = 0; r < 3 * d->schedule->orbits; r++)
     for (int k = 0; k <= d->m; k++) {
-      double complex u = harmonic(d->solution->x + (size_t)r * (size_t)d->nb, k);
+      double complex u = harmonic(d, d->solution->x, r, k);
       put_harmonic(d, k, r, u, d->own);
       if (d->structure->flexibility) u += flexibility_motion(d, k, r);
       put_harmonic(d, k, r, u, d->motion);

@@ -22,6 +22,7 @@ typedef struct {
   const mhb_contact_info *info;  /* [pair] of mhb_contact_force at x */
   const double           *x;     /* [pair][3][2m+1] relative motion, real form (fourier.h), m */
   const double           *p;     /* [pair][3][2m+1] force, N; used with residual flexibility only */
+  int                     m;     /* harmonics of both, at most the workspace's */
 } mhb_solution;
 
 typedef struct {
@@ -48,12 +49,11 @@ typedef struct {
   shb_arena                      arena;
 } mhb_orbit_contacts;
 
-/* For n_samples samples of each contact. SHB_ERR_IO: no memory. */
-shb_status mhb_orbit_contacts_create(const mhb_modal_structure     *structure,
-                                     const mhb_transition_schedule *schedule,
-                                     mhb_contact_evaluator *contact, int m, int n_samples,
-                                     mhb_orbit_contacts **orbit);
-void       mhb_orbit_contacts_destroy(mhb_orbit_contacts *orbit);
+/* For n_samples samples of each contact. */
+mhb_orbit_contacts *mhb_orbit_contacts_create(const mhb_modal_structure     *structure,
+                                              const mhb_transition_schedule *schedule,
+                                              mhb_contact_evaluator *contact, int m, int n_samples);
+void                mhb_orbit_contacts_destroy(mhb_orbit_contacts *orbit);
 
 /* Solution of both passes; omega: of the fundamental, rad/s. */
 void mhb_orbit_contacts_set_solution(mhb_orbit_contacts *orbit, const mhb_solution *solution,

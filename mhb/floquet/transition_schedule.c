@@ -23,8 +23,8 @@ static int common_divisor(int a, int b) {
   return a;
 }
 
-shb_status mhb_transition_schedule_create(int blades, int pairs, int wave, bool mistuned,
-                                          mhb_transition_schedule *t) {
+void mhb_transition_schedule_create(int blades, int pairs, int wave, bool mistuned,
+                                    mhb_transition_schedule *t) {
   int E = ((wave % blades) + blades) % blades, g = common_divisor(blades, E);
   *t      = (mhb_transition_schedule){.blades     = blades,
                                       .pairs      = pairs,
@@ -39,9 +39,6 @@ shb_status mhb_transition_schedule_create(int blades, int pairs, int wave, bool 
   t->event          = shb_arena_take(&t->arena, (size_t)t->capacity, sizeof *t->event);
   t->state          = shb_arena_take(&t->arena, n, sizeof *t->state);
   t->constant_state = shb_arena_take(&t->arena, n, sizeof *t->constant_state);
-  if (!t->arena.failed) return SHB_OK;
-  mhb_transition_schedule_destroy(t);
-  SHB_FAIL(SHB_ERR_IO, "out of memory for the stability of %d contacts", blades * pairs);
 }
 
 void mhb_transition_schedule_destroy(mhb_transition_schedule *t) {

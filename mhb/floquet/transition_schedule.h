@@ -33,10 +33,10 @@ typedef struct {
   shb_arena  arena;
 } mhb_transition_schedule;
 
-/* mistuned: every blade moves in its own way. SHB_ERR_IO: no memory. */
-shb_status mhb_transition_schedule_create(int blades, int pairs, int wave, bool mistuned,
-                                          mhb_transition_schedule *schedule);
-void       mhb_transition_schedule_destroy(mhb_transition_schedule *schedule);
+/* mistuned: every blade moves in its own way. */
+void mhb_transition_schedule_create(int blades, int pairs, int wave, bool mistuned,
+                                    mhb_transition_schedule *schedule);
+void mhb_transition_schedule_destroy(mhb_transition_schedule *schedule);
 
 /* Whether the contact law's result can be used: its error is below 1e-5 of the force scale and all
  * transitions are recorded. */

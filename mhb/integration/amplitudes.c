@@ -4,6 +4,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "mesh/base/memory.h"
+
 /* Below this size of x the series is used. */
 static const double SMALL = 3;
 
@@ -65,9 +67,8 @@ static shb_status solve_group(const modal_model *model, const mhb_modal_structur
                               const int *member, int n, mhb_damped_modes *modes) {
   const size_t    m = (size_t)model->n_modes, size = (size_t)n;
   double          omega[size], loss[size];
-  double complex *G = malloc(size * size * sizeof *G);
+  double complex *G = shb_alloc(size * size, sizeof *G);
   *modes            = (mhb_damped_modes){0};
-  SHB_CHECK(G, SHB_ERR_IO, "out of memory for the Coriolis terms");
   for (int i = 0; i < n; i++) {
     omega[i] = s->omega[member[i]];
     loss[i]  = 2 * s->zeta[member[i]] * omega[i];
@@ -163,20 +164,17 @@ static shb_status make(const modal_model *model, const mhb_modal_structure *s, c
   a->member          = shb_arena_take(&a->arena, m, sizeof *a->member);
   a->motion          = shb_arena_take(&a->arena, 2 * rows * m, sizeof *a->motion);
   a->force           = shb_arena_take(&a->arena, 2 * rows * m, sizeof *a->force);
-  SHB_CHECK(!a->arena.failed, SHB_ERR_IO, "out of memory for the Coriolis terms");
   set_groups(model->coriolis, taken, a);
   const size_t all = offset_of(a, a->n_groups);
   a->to_state      = shb_arena_take(&a->arena, all, sizeof *a->to_state);
   a->to_amplitude  = shb_arena_take(&a->arena, all, sizeof *a->to_amplitude);
-  SHB_CHECK(!a->arena.failed, SHB_ERR_IO, "out of memory for the Coriolis terms");
   for (int g = 0; g < a->n_groups; g++) SHB_TRY(set_group(model, s, shape, g, a));
   return SHB_OK;
 }
 
 shb_status mhb_amplitudes_create(const modal_model *model, const mhb_modal_structure *s,
                                  const double *shape, mhb_amplitudes **out) {
-  mhb_amplitudes *a = calloc(1, sizeof *a);
-  SHB_CHECK(a, SHB_ERR_IO, "out of memory");
+  mhb_amplitudes *a = shb_alloc_zeroed(1, sizeof *a);
   a->modes          = s->modes;
   shb_status status = make(model, s, shape, a);
   if (status != SHB_OK) {

@@ -29,7 +29,7 @@ typedef struct {
 
 /* Of a model with Coriolis terms.
  *   shape  in  [side][3 pairs][modes] of the structure
- * SHB_ERR_IO: no memory; SHB_ERR_INPUT: a mode does not oscillate. */
+ * SHB_ERR_INPUT: a mode does not oscillate. */
 shb_status mhb_amplitudes_create(const modal_model *model, const mhb_modal_structure *structure,
                                  const double *shape, mhb_amplitudes **amplitudes);
 void       mhb_amplitudes_destroy(mhb_amplitudes *amplitudes);

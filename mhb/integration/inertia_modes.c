@@ -7,6 +7,7 @@
 #include <string.h>
 
 #include "mesh/base/constants.h"
+#include "mesh/base/memory.h"
 #include "modal/model/residual_series.h"
 
 /* Directions softer than this share of the softest one have inertia. A mode so many times above the
@@ -83,47 +84,43 @@ static shb_status find_modes(const modal_model *model, search *s) {
 /* [rows][m] -> [rows][m + kept], zeros at the end of each row. */
 static double *widen(const double *x, size_t rows, int m, int kept) {
   size_t  wide = (size_t)m + (size_t)kept;
-  double *out  = calloc(rows * wide + 1, sizeof *out);
-  for (size_t r = 0; out && x && r < rows; r++)
+  double *out  = shb_alloc_zeroed(rows * wide, sizeof *out);
+  for (size_t r = 0; x && r < rows; r++)
     memcpy(out + r * wide, x + r * (size_t)m, sizeof *out * (size_t)m);
   return out;
 }
 
 /* Coriolis terms do not couple the new modes. */
-static int widen_coriolis(const modal_model *model, int kept, modal_model *out) {
+static void widen_coriolis(const modal_model *model, int kept, modal_model *out) {
   const size_t m = (size_t)model->n_modes, wide = m + (size_t)kept;
-  if (!model->coriolis) return 1;
-  out->coriolis = calloc(wide * wide, sizeof *out->coriolis);
-  for (size_t r = 0; out->coriolis && r < m; r++)
+  if (!model->coriolis) return;
+  out->coriolis = shb_alloc_zeroed(wide * wide, sizeof *out->coriolis);
+  for (size_t r = 0; r < m; r++)
     memcpy(out->coriolis + r * wide, model->coriolis + r * m, m * sizeof *out->coriolis);
-  return out->coriolis != NULL;
 }
 
-static int widen_all(const modal_model *model, int kept, modal_model *out) {
+static void widen_all(const modal_model *model, int kept, modal_model *out) {
   int    m    = model->n_modes;
   size_t rows = 3 * (size_t)model->n_pairs, loads = (size_t)model->n_load + 1;
-  out->n_modes              = m + kept;
-  out->frequency            = widen(model->frequency, 1, m, kept);
-  out->damping_ratio        = widen(model->damping_ratio, 1, m, kept);
-  out->right                = widen(model->right, rows, m, kept);
-  out->left                 = model->has_left ? widen(model->left, rows, m, kept) : NULL;
-  out->probe                = widen(model->probe, 3 * (size_t)model->n_probes, m, kept);
-  out->modal_force          = calloc(loads * (size_t)(m + kept), sizeof *out->modal_force);
-  out->eigen_residual       = NULL;
-  out->residual_inertia     = NULL;
-  out->residual_fourth      = NULL;
-  out->coriolis             = NULL;
-  out->n_residual           = 0;
-  size_t square             = rows * rows * (model->has_left ? 4 : 1);
-  out->residual_flexibility = malloc(sizeof(double) * square);
-  if (!(out->frequency && out->damping_ratio && out->right && (out->left || !model->has_left) &&
-        out->probe && out->modal_force && out->residual_flexibility))
-    return 0;
+  out->n_modes          = m + kept;
+  out->frequency        = widen(model->frequency, 1, m, kept);
+  out->damping_ratio    = widen(model->damping_ratio, 1, m, kept);
+  out->right            = widen(model->right, rows, m, kept);
+  out->left             = model->has_left ? widen(model->left, rows, m, kept) : NULL;
+  out->probe            = widen(model->probe, 3 * (size_t)model->n_probes, m, kept);
+  out->modal_force      = shb_alloc_zeroed(loads * (size_t)(m + kept), sizeof *out->modal_force);
+  out->eigen_residual   = NULL;
+  out->residual_inertia = NULL;
+  out->residual_fourth  = NULL;
+  out->coriolis         = NULL;
+  out->n_residual       = 0;
+  size_t square         = rows * rows * (model->has_left ? 4 : 1);
+  out->residual_flexibility = shb_alloc(square, sizeof(double));
   for (size_t k = 0; k < loads; k++)
     memcpy(out->modal_force + k * (size_t)(m + kept), model->modal_force + k * (size_t)m,
            sizeof *out->modal_force * (size_t)m);
   memcpy(out->residual_flexibility, model->residual_flexibility, sizeof(double) * square);
-  return widen_coriolis(model, kept, out);
+  widen_coriolis(model, kept, out);
 }
 
 /* The new modes; their part is subtracted from the flexibility. */
@@ -158,10 +155,7 @@ static shb_status add_fewest(const modal_model *model, search *s, modal_model *o
   for (;; s->p = 2 * s->p / 3) {
     SHB_TRY(find_modes(model, s));
     *out = *model;
-    if (!widen_all(model, s->kept, out)) {
-      mhb_inertia_free(out);
-      SHB_FAIL(SHB_ERR_IO, "out of memory for residual modes");
-    }
+    widen_all(model, s->kept, out);
     add_modes(s, model->n_modes, out);
     if (s->power == 1 || is_passive(model, out, s)) return SHB_OK;
     mhb_inertia_free(out);
@@ -176,11 +170,10 @@ shb_status mhb_inertia_modes(const modal_model *model, modal_model *out) {
   SHB_CHECK(
       model->residual_flexibility, SHB_ERR_INPUT,
       "the modal file has residual inertia but no residual flexibility; write both or neither");
-  search  s     = {.n = 3 * model->n_pairs * (model->has_left ? 2 : 1)};
-  size_t  n     = (size_t)s.n;
-  double *space = calloc(3 * n * n + 3 * n, sizeof *space);
-  *out          = (modal_model){0};
-  SHB_CHECK(space, SHB_ERR_IO, "out of memory for residual modes");
+  search  s         = {.n = 3 * model->n_pairs * (model->has_left ? 2 : 1)};
+  size_t  n         = (size_t)s.n;
+  double *space     = shb_alloc_zeroed(3 * n * n + 3 * n, sizeof *space);
+  *out              = (modal_model){0};
   s.vector          = space;
   s.A               = space + n * n;
   s.psi             = space + 2 * n * n;

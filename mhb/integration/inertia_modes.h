@@ -30,7 +30,7 @@ enum { MHB_INERTIA_MODES = 24 };
 /* out <- the model with residual modes in place of residual inertia and of its part of the residual
  * flexibility. Their damping ratio is that of the last mode. Unchanged arrays are shared with the
  * model, which must outlive out.
- * Errors: SHB_ERR_INPUT no residual flexibility, or not finite; SHB_ERR_IO no memory. */
+ * Errors: SHB_ERR_INPUT no residual flexibility, or not finite. */
 shb_status mhb_inertia_modes(const modal_model *model, modal_model *out);
 void       mhb_inertia_free(modal_model *out);
 

@@ -5,11 +5,14 @@
 #include <string.h>
 
 #include "mesh/base/constants.h"
+#include "mesh/base/memory.h"
 #include "mhb/integration/integration_memory.h"
 #include "mhb/integration/spectrum.h"
 #include "mhb/integration/steady_state.h"
+#include "mhb/mistuning/mistuned_ring.h"
 #include "mhb/problem/interfaces.h"
 #include "mhb/problem/parameter.h"
+#include "mhb/problem/wave.h"
 #include "mhb/response/describe.h"
 #include "mhb/response/publisher.h"
 
@@ -58,40 +61,32 @@ static double frequency_of(const sweep *s, int i) {
   return n > 1 ? range[0] + (range[1] - range[0]) * i / (n - 1) : 0.5 * (range[0] + range[1]);
 }
 
-static shb_status add_point(sweep *s, int branch, double n0, double hz, sweep_point **out) {
+static sweep_point *add_point(sweep *s, int branch, double n0, double hz) {
   if (s->n == s->room) {
-    int          room   = s->room ? 2 * s->room : 64;
-    sweep_point *points = realloc(s->points, (size_t)room * sizeof *points);
-    SHB_CHECK(points, SHB_ERR_IO, "no memory for %d points", room);
-    s->points = points;
-    s->room   = room;
+    s->room   = s->room ? 2 * s->room : 64;
+    s->points = shb_realloc(s->points, (size_t)s->room, sizeof *s->points);
   }
-  *out  = &s->points[s->n++];
-  **out = (sweep_point){.branch = branch, .hz = hz, .n0 = n0, .error = -1};
-  return SHB_OK;
+  s->points[s->n] = (sweep_point){.branch = branch, .hz = hz, .n0 = n0, .error = -1};
+  return &s->points[s->n++];
 }
 
 /* Turn of a wave over n sectors, where the model has more of them than the balance. */
 static double complex lag(const mhb_response *balance, long n) {
-  const mhb_settings of   = {.engine_order = balance->engine_order,
-                             .blades       = balance->blades,
-                             .subharmonics = balance->subharmonics};
-  const long         wave = (of.engine_order + of.blades * mhb_wave_shift(&of)) / of.subharmonics;
-  return n ? cexp(-I * SHB_TWO_PI * (double)(n * wave % of.blades) / of.blades) : 1;
+  const long wave = mhb_driven_wave_number(mhb_driven_wave_of(
+      balance->engine_order, balance->turns_right, balance->blades, balance->subharmonics));
+  return n ? cexp(-I * SHB_TWO_PI * (double)(n * wave % balance->blades) / balance->blades) : 1;
 }
 
 /* A point that starts between points p and p + 1 of a branch of the balance, unless both are
  * unstable. Where one is, it starts on the other. */
-static shb_status plan_between(sweep *s, const mhb_branch *b, int p, int branch, double hz) {
-  double       part = (hz - b->frequency[p]) / (b->frequency[p + 1] - b->frequency[p]);
-  sweep_point *c    = NULL;
-  if (b->stable[p] == 0 && b->stable[p + 1] == 0) return SHB_OK;
+static void plan_between(sweep *s, const mhb_branch *b, int p, int branch, double hz) {
+  double part = (hz - b->frequency[p]) / (b->frequency[p + 1] - b->frequency[p]);
+  if (b->stable[p] == 0 && b->stable[p + 1] == 0) return;
   if (b->stable[p] == 0) part = 1;
   if (b->stable[p + 1] == 0) part = 0;
-  int K = b->n_harmonics + 1, own = 3 * s->balance->n_pairs, n3 = 3 * s->model->n_pairs;
-  SHB_TRY(add_point(s, branch, b->n0[p], hz, &c));
-  c->start = malloc(sizeof *c->start * (size_t)(K * n3));
-  SHB_CHECK(c->start, SHB_ERR_IO, "out of memory");
+  int          K = b->n_harmonics + 1, own = 3 * s->balance->n_pairs, n3 = 3 * s->model->n_pairs;
+  sweep_point *c           = add_point(s, branch, b->n0[p], hz);
+  c->start                 = shb_alloc((size_t)K * (size_t)n3, sizeof *c->start);
   c->m                     = K - 1;
   const double complex *at = b->force + (size_t)p * (size_t)(own * K), *next = at + own * K;
   for (int i = 0; i < n3 * K; i++) {
@@ -99,7 +94,6 @@ static shb_status plan_between(sweep *s, const mhb_branch *b, int p, int branch,
     c->start[k * n3 + row] =
         ((1 - part) * at[from] + part * next[from]) * lag(s->balance, (long)k * (row / own));
   }
-  return SHB_OK;
 }
 
 /* Whether a branch can start points at a preload. Those of another order cannot: their harmonics
@@ -130,8 +124,7 @@ static shb_status plan_from_balance(sweep *s, int branch, double n0, double hz) 
     found_curve = true;
     double at   = move_inside(b, hz);
     for (int p = 0; p + 1 < b->n_points; p++)
-      if ((b->frequency[p] <= at) != (b->frequency[p + 1] <= at))
-        SHB_TRY(plan_between(s, b, p, branch, at));
+      if ((b->frequency[p] <= at) != (b->frequency[p + 1] <= at)) plan_between(s, b, p, branch, at);
   }
   SHB_CHECK(found_curve, SHB_ERR_INPUT,
             "the response file has no curve at n0 = %g N to start on; run shroudhb mhb first, or "
@@ -140,29 +133,23 @@ static shb_status plan_from_balance(sweep *s, int branch, double n0, double hz) 
   return SHB_OK;
 }
 
-static shb_status plan_from_state(sweep *s, int branch, double n0, bool down) {
+static void plan_from_state(sweep *s, int branch, double n0, bool down) {
   int n = s->request->n_frequencies;
-  for (int i = 0; i < n; i++) {
-    sweep_point *c;
-    SHB_TRY(add_point(s, branch, n0, frequency_of(s, down ? n - 1 - i : i), &c));
-  }
-  return SHB_OK;
+  for (int i = 0; i < n; i++) add_point(s, branch, n0, frequency_of(s, down ? n - 1 - i : i));
 }
 
 static shb_status plan_preload(sweep *s, double n0) {
   const mhb_integration_settings *a = s->request;
   if (a->start == MHB_START_FROM_STATE) {
-    if (a->direction != MHB_SWEEP_DOWN) SHB_TRY(plan_from_state(s, s->n_branches++, n0, false));
-    if (a->direction != MHB_SWEEP_UP) SHB_TRY(plan_from_state(s, s->n_branches++, n0, true));
+    if (a->direction != MHB_SWEEP_DOWN) plan_from_state(s, s->n_branches++, n0, false);
+    if (a->direction != MHB_SWEEP_UP) plan_from_state(s, s->n_branches++, n0, true);
     return SHB_OK;
   }
   for (int k = 0; k < a->n_frequencies; k++) {
-    sweep_point *c;
-    if (a->start == MHB_START_FROM_BALANCE) {
+    if (a->start == MHB_START_FROM_BALANCE)
       SHB_TRY(plan_from_balance(s, s->n_branches, n0, frequency_of(s, k)));
-    } else {
-      SHB_TRY(add_point(s, s->n_branches, n0, frequency_of(s, k), &c));
-    }
+    else
+      add_point(s, s->n_branches, n0, frequency_of(s, k));
   }
   s->n_branches++;
   return SHB_OK;
@@ -171,8 +158,7 @@ static shb_status plan_preload(sweep *s, double n0) {
 static shb_status plan(sweep *s) {
   const mhb_integration_settings *a = s->request;
   for (int i = 0; i < s->settings->n_preloads; i++) SHB_TRY(plan_preload(s, s->settings->n0[i]));
-  s->sequence = calloc((size_t)s->n + 1, sizeof(int));
-  SHB_CHECK(s->sequence, SHB_ERR_IO, "out of memory");
+  s->sequence = shb_alloc_zeroed((size_t)s->n + 1, sizeof(int));
   for (int i = 0; i < s->n; i++)
     if (a->start != MHB_START_FROM_STATE || i == 0 ||
         s->points[i].branch != s->points[i - 1].branch)
@@ -200,13 +186,12 @@ static double difference(const double complex *a, const double complex *b, int n
 
 /* Run again with twice the steps until two runs agree. result: of the first run, then of the
  * last. */
-static shb_status refine(const sweep *s, mhb_integrator *g, mhb_steady_state *steady,
-                         const mhb_steady_state_settings *settings,
-                         const mhb_steady_state_result **result, sweep_point *c) {
+static void refine(const sweep *s, mhb_integrator *g, mhb_steady_state *steady,
+                   const mhb_steady_state_settings *settings,
+                   const mhb_steady_state_result **result, sweep_point *c) {
   const mhb_steady_state_result *r = *result;
   int                            n = 3 * r->n_pairs * (r->n_harmonics + 1), periods = r->periods;
-  double complex                *last = malloc(sizeof *last * (size_t)n);
-  SHB_CHECK(last, SHB_ERR_IO, "out of memory");
+  double complex                *last = shb_alloc((size_t)n, sizeof *last);
   for (int steps = 2 * g->steps; r->multiple && !r->failed && steps <= MOST_STEPS; steps *= 2) {
     memcpy(last, r->motion, sizeof *last * (size_t)n);
     mhb_integrator_set(g, g->omega, g->n0, steps);
@@ -218,7 +203,6 @@ static shb_status refine(const sweep *s, mhb_integrator *g, mhb_steady_state *st
   c->periods = periods;
   *result    = r;
   free(last);
-  return SHB_OK;
 }
 
 static void store_rows(int rows, int from, int to, const double complex *in, double complex *out) {
@@ -226,12 +210,11 @@ static void store_rows(int rows, int from, int to, const double complex *in, dou
     memcpy(out + i * (to + 1), in + i * (from + 1), sizeof *in * (size_t)(to + 1));
 }
 
-static int store_result(const sweep *s, const mhb_steady_state_result *r, sweep_point *c) {
+static void store_result(const sweep *s, const mhb_steady_state_result *r, sweep_point *c) {
   int    K = s->harmonics + 1, n3 = 3 * r->n_pairs, q = 3 * r->n_probes;
-  size_t rows = 2 * (size_t)n3 + (size_t)q;
-  c->motion   = malloc(sizeof *c->motion * rows * (size_t)K + 1);
-  c->state    = malloc(sizeof(double) * 4 * (size_t)r->n_pairs);
-  if (!c->motion || !c->state) return 0;
+  size_t rows    = 2 * (size_t)n3 + (size_t)q;
+  c->motion      = shb_alloc(rows * (size_t)K, sizeof *c->motion);
+  c->state       = shb_alloc(4 * (size_t)r->n_pairs, sizeof(double));
   c->force       = c->motion + n3 * K;
   c->probe       = c->force + n3 * K;
   c->dissipation = c->state + 3 * r->n_pairs;
@@ -242,7 +225,6 @@ static int store_result(const sweep *s, const mhb_steady_state_result *r, sweep_
   memcpy(c->dissipation, r->dissipation, sizeof(double) * (size_t)r->n_pairs);
   c->multiple = r->multiple;
   c->distance = r->distance;
-  return 1;
 }
 
 /* The steady state from where the point starts. Steps in which no forces are found are halved,
@@ -266,21 +248,20 @@ static const mhb_steady_state_result *settle(const sweep *s, mhb_integrator *g,
 }
 
 /* first: of its sequence. Nothing is stored if interrupted. */
-static shb_status run_point(const sweep *s, mhb_integrator *g, mhb_steady_state *steady, bool first,
-                            sweep_point *c) {
+static void run_point(const sweep *s, mhb_integrator *g, mhb_steady_state *steady, bool first,
+                      sweep_point *c) {
   const mhb_integration_settings *a        = s->request;
   mhb_steady_state_settings       settings = {0.1 * a->tolerance, a->max_periods};
   double                          began    = shb_seconds();
   const mhb_steady_state_result  *r        = settle(s, g, steady, &settings, first, c);
   c->periods                               = r->periods;
-  if (r->multiple && !r->failed) SHB_TRY(refine(s, g, steady, &settings, &r, c));
-  if (shb_interrupted()) return SHB_OK;
-  if (!r->failed) SHB_CHECK(store_result(s, r, c), SHB_ERR_IO, "out of memory");
+  if (r->multiple && !r->failed) refine(s, g, steady, &settings, &r, c);
+  if (shb_interrupted()) return;
+  if (!r->failed) store_result(s, r, c);
   c->outcome = r->failed ? POINT_FAILED : POINT_FOUND;
   if (c->outcome == POINT_FOUND && !c->multiple)
-    SHB_TRY(mhb_spectrum(g, SPECTRUM_PERIODS, c->line_frequency, c->line_amplitude));
+    mhb_spectrum(g, SPECTRUM_PERIODS, c->line_frequency, c->line_amplitude);
   c->seconds = shb_seconds() - began;
-  return SHB_OK;
 }
 
 /* ---- the response ---- */
@@ -292,23 +273,27 @@ static void record_preloads(const sweep *s, int n, mhb_branch *b, int at, double
     b->interface_n0[at * n + i] = mhb_interface_operating_point(&c, s->settings, i).n0;
 }
 
-/* Some pair stuck throughout although it can slip: its mean friction is that of the start. */
+/* The mean friction of a pair that sticks all the time is that of the start. */
 static bool has_undetermined_friction(const sweep *s, const mhb_response *response,
                                       const sweep_point *c) {
-  const mhb_operating_point lead = mhb_operating_point_of(s->settings);
-  for (int a = 0; a < response->n_pairs; a++) {
+  const mhb_operating_point lead       = mhb_operating_point_of(s->settings);
+  const int                 n          = response->n_pairs;
+  const int                 on_contact = s->settings->ring ? s->settings->ring->n_pairs : n;
+  bool                      free_mean[n + 1];
+  for (int a = 0; a < n; a++) {
     const int                 i   = response->interface ? response->interface[a] : 0;
     const mhb_operating_point own = mhb_interface_operating_point(&lead, s->settings, i);
-    if (own.mu > 0 && (own.ku[0] > 0 || own.ku[2] > 0) && c->state[3 * a] == 1) return true;
+    free_mean[a] =
+        own.mu > 0 && (own.ku[0] > 0 || own.ku[2] > 0) && c->state[3 * a + MHB_STICK] == 1;
   }
-  return false;
+  return mhb_friction_loads_others(n, on_contact, free_mean, c->state);
 }
 
-static shb_status record_point(const sweep *s, mhb_response *response, const sweep_point *c) {
+static void record_point(const sweep *s, mhb_response *response, const sweep_point *c) {
   int    at, K = response->n_harmonics + 1;
-  size_t n3 = 3 * (size_t)response->n_pairs * (size_t)K,
-         q  = 3 * (size_t)response->n_probes * (size_t)K;
-  SHB_TRY(mhb_response_point(response, c->branch, &at));
+  size_t n3         = 3 * (size_t)response->n_pairs * (size_t)K,
+         q          = 3 * (size_t)response->n_probes * (size_t)K;
+  at                = mhb_response_point(response, c->branch);
   mhb_branch *b     = &response->branch[c->branch];
   size_t      pairs = (size_t)response->n_pairs;
   b->frequency[at]  = c->hz;
@@ -333,7 +318,6 @@ static shb_status record_point(const sweep *s, mhb_response *response, const swe
   size_t line = (size_t)at * MHB_SPECTRUM_LINES;
   memcpy(b->line_frequency + line, c->line_frequency, sizeof c->line_frequency);
   memcpy(b->line_amplitude + line, c->line_amplitude, sizeof c->line_amplitude);
-  return SHB_OK;
 }
 
 static const char *name_of(const sweep *s, int branch) {
@@ -350,15 +334,13 @@ static shb_status fill(const sweep *s, mhb_response *response) {
   response->n_multipliers = 0;
   response->n_lines       = MHB_SPECTRUM_LINES;
   for (int i = 0; i < s->n_branches; i++) {
-    int branch;
-    SHB_TRY(mhb_response_branch(response, MHB_BRANCH_INTEGRATION, &branch));
+    const int branch                  = mhb_response_branch(response, MHB_BRANCH_INTEGRATION);
     response->branch[branch].complete = true;
-    response->branch[branch].reason   = strdup(name_of(s, i));
-    SHB_CHECK(response->branch[branch].reason, SHB_ERR_IO, "out of memory");
+    response->branch[branch].reason   = shb_text(name_of(s, i));
   }
   for (int i = 0; i < s->n; i++) {
     if (s->points[i].outcome == POINT_FOUND) {
-      SHB_TRY(record_point(s, response, &s->points[i]));
+      record_point(s, response, &s->points[i]);
     } else {
       response->branch[s->points[i].branch].complete = false;
     }
@@ -369,8 +351,7 @@ static shb_status fill(const sweep *s, mhb_response *response) {
 static shb_status make_response(const sweep *s, mhb_response **out) {
   mhb_response *response = mhb_response_create(s->model->n_pairs, s->model->n_probes, s->harmonics);
   mhb_receptance *axes   = NULL;
-  SHB_CHECK(response, SHB_ERR_IO, "out of memory");
-  shb_status status = fill(s, response);
+  shb_status      status = fill(s, response);
   if (status == SHB_OK) status = mhb_receptance_create(s->model, s->settings, 1, &axes);
   if (status != SHB_OK) {
     mhb_response_destroy(response);
@@ -414,14 +395,16 @@ static void worker_release(worker *k) {
 
 static shb_status worker_attach(worker *k, const modal_model *model) {
   SHB_TRY(mhb_integrator_create(model, &k->settings, k->harmonics, &k->g));
-  return mhb_steady_state_create(k->g, &k->steady);
+  k->steady = mhb_steady_state_create(k->g);
+  return SHB_OK;
 }
 
 static shb_status worker_create(const sweep *s, int harmonics, worker *k) {
   *k                 = (worker){.settings = *s->settings, .harmonics = harmonics};
   k->settings.run_up = NULL;
-  return s->settings->run_up ? mhb_speed_model_create(s->settings->run_up, &k->at)
-                             : worker_attach(k, s->model);
+  if (!s->settings->run_up) return worker_attach(k, s->model);
+  k->at = mhb_speed_model_create(s->settings->run_up);
+  return SHB_OK;
 }
 
 static shb_status worker_set_frequency(worker *k, double hz) {
@@ -437,7 +420,7 @@ static void run_sequence(sweep *s, worker *k, int sequence) {
     if (shb_interrupted() || s->publisher.status != SHB_OK) return;
     bool       first  = i == s->sequence[sequence] || s->points[i - 1].outcome == POINT_FAILED;
     shb_status status = worker_set_frequency(k, found.hz);
-    if (status == SHB_OK) status = run_point(s, k->g, k->steady, first, &found);
+    if (status == SHB_OK) run_point(s, k->g, k->steady, first, &found);
     mhb_publisher_lock(&s->publisher, true);
     mhb_publisher_note(&s->publisher, status);
     s->points[i] = found;

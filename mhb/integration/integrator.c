@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "mesh/base/constants.h"
+#include "mesh/base/memory.h"
 #include "mhb/numerics/simd.h"
 
 enum { S = MHB_STAGES, F = MHB_STAGE_FORCES, MAX_SWEEPS = 400, MAX_CUTS = 8, MAX_STALLED = 4 };
@@ -374,7 +375,7 @@ int mhb_integrator_period(mhb_integrator *g) {
 
 /* ---- life cycle ---- */
 
-static int allocate(mhb_integrator *g) {
+static void allocate(mhb_integrator *g) {
   size_t modal = (size_t)g->blades * (size_t)g->modes, contacts = (size_t)g->contacts;
   g->law        = shb_arena_take(&g->arena, (size_t)g->pairs, sizeof *g->law);
   g->z          = shb_arena_take(&g->arena, 2 * modal, sizeof(double));
@@ -384,7 +385,6 @@ static int allocate(mhb_integrator *g) {
   g->suppressed = shb_arena_take(&g->arena, contacts, sizeof(int));
   g->y          = shb_arena_take(&g->arena, contacts * F, sizeof(double));
   g->stage      = shb_arena_take(&g->arena, S * (size_t)g->ring.lines, sizeof(double));
-  return !g->arena.failed;
 }
 
 shb_status mhb_integrator_create(const modal_model *model, const mhb_settings *settings,
@@ -395,13 +395,12 @@ shb_status mhb_integrator_create(const modal_model *model, const mhb_settings *s
 
 shb_status mhb_integrator_create_as(const modal_model *model, const mhb_settings *settings,
                                     int n_harmonics, bool joint, mhb_integrator **out) {
-  mhb_integrator *g = calloc(1, sizeof *g);
-  SHB_CHECK(g, SHB_ERR_IO, "out of memory");
-  int nu            = settings->subharmonics;
-  g->settings       = *settings;
-  g->n_load         = nu * model->n_load;
-  g->n_harmonics    = n_harmonics > g->n_load ? n_harmonics : g->n_load;
-  shb_status status = SHB_OK;
+  mhb_integrator *g  = shb_alloc_zeroed(1, sizeof *g);
+  int             nu = settings->subharmonics;
+  g->settings        = *settings;
+  g->n_load          = nu * model->n_load;
+  g->n_harmonics     = n_harmonics > g->n_load ? n_harmonics : g->n_load;
+  shb_status status  = SHB_OK;
   if (model->residual_inertia) {
     status = mhb_inertia_modes(model, &g->model);
     model  = &g->model;
@@ -414,11 +413,11 @@ shb_status mhb_integrator_create_as(const modal_model *model, const mhb_settings
     g->modes    = g->ring.s.modes;
     g->pairs    = g->ring.s.pairs;
     g->contacts = g->ring.s.contacts;
-    if (!allocate(g)) status = shb_fail(SHB_ERR_IO, __FILE__, __LINE__, "out of memory");
+    allocate(g);
+    mhb_modal_step_create(&g->ring, !joint, &g->nominal);
+    if (!joint) mhb_modal_step_create(&g->ring, true, &g->cut);
+    if (joint) g->joint = mhb_joint_step_create(&g->ring);
   }
-  if (status == SHB_OK) status = mhb_modal_step_create(&g->ring, !joint, &g->nominal);
-  if (status == SHB_OK && !joint) status = mhb_modal_step_create(&g->ring, true, &g->cut);
-  if (status == SHB_OK && joint) status = mhb_joint_step_create(&g->ring, &g->joint);
   if (status != SHB_OK) {
     mhb_integrator_destroy(g);
     return status;

@@ -64,7 +64,7 @@ struct mhb_integrator {
 
 /* n_harmonics: of outputs and of starts on a balance, counted in the fundamental. The model must
  * outlive the integrator.
- * Errors: SHB_ERR_INPUT as mhb_receptance_create; SHB_ERR_IO no memory. */
+ * Errors: SHB_ERR_INPUT as mhb_receptance_create. */
 shb_status mhb_integrator_create(const modal_model *model, const mhb_settings *settings,
                                  int n_harmonics, mhb_integrator **integrator);
 /* The same with or without joint steps, which know no Coriolis terms. */

@@ -5,6 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "mesh/base/memory.h"
 #include "mhb/numerics/simd.h"
 
 enum { S = MHB_STAGES, F = MHB_STAGE_FORCES, MAX_SWEEPS = 200 };
@@ -175,26 +176,20 @@ void mhb_joint_step_set(mhb_joint_step *o, const mhb_modal_step *modal, const mh
   }
 }
 
-shb_status mhb_joint_step_create(const mhb_ring_step *ring, mhb_joint_step **out) {
+mhb_joint_step *mhb_joint_step_create(const mhb_ring_step *ring) {
   const mhb_modal_structure *s = &ring->s;
   const size_t               m = (size_t)s->modes, n3 = 3 * (size_t)s->pairs;
   const size_t               contacts = (size_t)s->contacts;
-  mhb_joint_step            *o        = calloc(1, sizeof *o);
-  SHB_CHECK(o, SHB_ERR_IO, "out of memory");
-  o->ring     = ring;
-  o->response = shb_arena_take(&o->arena, S * S * m, sizeof(double));
-  o->motion   = shb_arena_take(&o->arena, (size_t)s->blades * S * m, sizeof(double));
-  o->force    = shb_arena_take(&o->arena, F * contacts, sizeof(double));
-  o->R        = shb_arena_take(&o->arena, (size_t)ring->n_neighbours * n3 * n3, sizeof(double));
-  o->seen     = shb_arena_take(&o->arena, F * contacts, sizeof(double));
-  o->spring   = shb_arena_take(&o->arena, (size_t)s->pairs, sizeof *o->spring);
-  o->path     = shb_arena_take(&o->arena, contacts, sizeof *o->path);
-  if (o->arena.failed) {
-    mhb_joint_step_destroy(o);
-    SHB_FAIL(SHB_ERR_IO, "out of memory");
-  }
-  *out = o;
-  return SHB_OK;
+  mhb_joint_step            *o        = shb_alloc_zeroed(1, sizeof *o);
+  o->ring                             = ring;
+  o->response                         = shb_arena_take(&o->arena, S * S * m, sizeof(double));
+  o->motion = shb_arena_take(&o->arena, (size_t)s->blades * S * m, sizeof(double));
+  o->force  = shb_arena_take(&o->arena, F * contacts, sizeof(double));
+  o->R      = shb_arena_take(&o->arena, (size_t)ring->n_neighbours * n3 * n3, sizeof(double));
+  o->seen   = shb_arena_take(&o->arena, F * contacts, sizeof(double));
+  o->spring = shb_arena_take(&o->arena, (size_t)s->pairs, sizeof *o->spring);
+  o->path   = shb_arena_take(&o->arena, contacts, sizeof *o->path);
+  return o;
 }
 
 void mhb_joint_step_destroy(mhb_joint_step *o) {

@@ -27,9 +27,9 @@ typedef struct {
   shb_arena            arena;
 } mhb_joint_step;
 
-/* For modes without Coriolis terms. Errors: SHB_ERR_IO no memory. */
-shb_status mhb_joint_step_create(const mhb_ring_step *ring, mhb_joint_step **joint);
-void       mhb_joint_step_destroy(mhb_joint_step *joint);
+/* For modes without Coriolis terms. */
+mhb_joint_step *mhb_joint_step_create(const mhb_ring_step *ring);
+void            mhb_joint_step_destroy(mhb_joint_step *joint);
 
 /* Coefficients for the length of a modal step, and the laws [pair]. */
 void mhb_joint_step_set(mhb_joint_step *joint, const mhb_modal_step *modal, const mhb_law *law);

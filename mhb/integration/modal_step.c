@@ -292,10 +292,6 @@ shb_status mhb_ring_step_create(const mhb_receptance *receptance, const mhb_sett
   ring->shape =
       shb_arena_take(&ring->arena, (size_t)s->sides * (size_t)n3 * (size_t)m, sizeof(double));
   ring->moment = shb_arena_take(&ring->arena, (size_t)ring->n_neighbours * block, sizeof(double));
-  if (ring->arena.failed) {
-    mhb_ring_step_destroy(ring);
-    SHB_FAIL(SHB_ERR_IO, "out of memory");
-  }
   for (int k = 0; k < s->sides * n3 * m; k++)
     ring->shape[k] = s->shape[(k / (n3 * m) * m + k % m) * n3 + k / m % n3];
   ring->lines  = m;
@@ -319,7 +315,7 @@ void mhb_ring_step_destroy(mhb_ring_step *ring) {
   *ring = (mhb_ring_step){0};
 }
 
-shb_status mhb_modal_step_create(const mhb_ring_step *c, bool contacts, mhb_modal_step *step) {
+void mhb_modal_step_create(const mhb_ring_step *c, bool contacts, mhb_modal_step *step) {
   size_t pairs = contacts ? (size_t)c->s.pairs : 0, square = MHB_STAGE_FORCES * MHB_STAGE_FORCES;
   *step = (mhb_modal_step){.h = NAN};
   step->mode =
@@ -327,9 +323,6 @@ shb_status mhb_modal_step_create(const mhb_ring_step *c, bool contacts, mhb_moda
   step->compliance = shb_arena_take(&step->arena, (size_t)c->n_neighbours * pairs * pairs * square,
                                     sizeof(double));
   step->stuck      = shb_arena_take(&step->arena, pairs, sizeof *step->stuck);
-  if (!step->arena.failed) return SHB_OK;
-  mhb_modal_step_destroy(step);
-  SHB_FAIL(SHB_ERR_IO, "out of memory");
 }
 
 void mhb_modal_step_destroy(mhb_modal_step *step) {

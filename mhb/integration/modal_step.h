@@ -64,7 +64,7 @@ typedef struct {
   shb_arena arena;
 } mhb_ring_step;
 
-/* Errors: SHB_ERR_IO no memory. */
+/* Errors: SHB_ERR_INPUT as mhb_modal_structure_create and mhb_amplitudes_create. */
 shb_status mhb_ring_step_create(const mhb_receptance *receptance, const mhb_settings *settings,
                                 mhb_ring_step *ring);
 void       mhb_ring_step_destroy(mhb_ring_step *ring);
@@ -94,8 +94,8 @@ typedef struct {
 } mhb_modal_step;
 
 /* contacts: with their compliances; else for the modes alone. */
-shb_status mhb_modal_step_create(const mhb_ring_step *ring, bool contacts, mhb_modal_step *step);
-void       mhb_modal_step_destroy(mhb_modal_step *step);
+void mhb_modal_step_create(const mhb_ring_step *ring, bool contacts, mhb_modal_step *step);
+void mhb_modal_step_destroy(mhb_modal_step *step);
 /* Set all coefficients for a step of h seconds; or those of the modes alone. */
 void mhb_modal_step_length(const mhb_ring_step *ring, double h, mhb_modal_step *step);
 void mhb_modal_step_modes(const mhb_ring_step *ring, double h, mhb_modal_step *step);

@@ -7,6 +7,7 @@
 #include <string.h>
 
 #include "mesh/base/constants.h"
+#include "mesh/base/memory.h"
 
 /* Peaks below this share of the largest so far are no lines. */
 static const double SMALLEST = 1e-4;
@@ -22,24 +23,20 @@ static double apply_window(int n, double *x) {
   return square;
 }
 
-/* Amplitudes of the bins of x[n], [n/2 + 1]; the first is zero. To be freed; NULL: no memory. */
+/* Amplitudes of the bins of x[n], [n/2 + 1]; the first is zero. To be freed. */
 static double *bin_amplitudes(int n, double *x) {
   int             bins = n / 2 + 1;
-  double         *a    = malloc(sizeof *a * (size_t)bins);
-  double complex *X    = fftw_alloc_complex((size_t)bins);
+  double         *a    = shb_alloc((size_t)bins, sizeof *a);
+  double complex *X    = shb_alloc_aligned(64, (size_t)bins, sizeof *X);
   fftw_plan       plan = NULL;
 #pragma omp critical(fftw_planner)
-  if (a && X) plan = fftw_plan_dft_r2c_1d(n, x, X, FFTW_ESTIMATE | FFTW_PRESERVE_INPUT);
-  if (plan) {
-    fftw_execute(plan);
-    for (int k = 0; k < bins; k++) a[k] = k ? 2 * cabs(X[k]) / n : 0;
-  } else {
-    free(a);
-    a = NULL;
-  }
+  plan = fftw_plan_dft_r2c_1d(n, x, X, FFTW_ESTIMATE | FFTW_PRESERVE_INPUT);
+  if (!plan) shb_out_of_memory(0);
+  fftw_execute(plan);
+  for (int k = 0; k < bins; k++) a[k] = k ? 2 * cabs(X[k]) / n : 0;
 #pragma omp critical(fftw_planner)
   fftw_destroy_plan(plan);
-  fftw_free(X);
+  free(X);
   return a;
 }
 
@@ -59,17 +56,15 @@ static void add_line(const double *a, double bin, double width, double *frequenc
 }
 
 /* The lines of windowed samples. */
-static int find_lines(int n, double *x, double duration, int top, double *frequency,
-                      double *amplitude) {
+static void find_lines(int n, double *x, double duration, int top, double *frequency,
+                       double *amplitude) {
   double *a = bin_amplitudes(n, x), largest = 0;
-  if (!a) return 0;
   for (int bin = 1; bin <= top && bin < n / 2; bin++) {
     if (a[bin] < a[bin - 1] || a[bin] < a[bin + 1]) continue;
     largest = fmax(largest, a[bin]);
     if (a[bin] > SMALLEST * largest) add_line(a + bin, bin, 1 / duration, frequency, amplitude);
   }
   free(a);
-  return 1;
 }
 
 static void clear_lines(double *frequency, double *amplitude) {
@@ -77,11 +72,11 @@ static void clear_lines(double *frequency, double *amplitude) {
   memset(amplitude, 0, sizeof(double) * MHB_SPECTRUM_LINES);
 }
 
-int mhb_spectrum_lines(int n, double *x, double duration, int top, double *frequency,
-                       double *amplitude) {
+void mhb_spectrum_lines(int n, double *x, double duration, int top, double *frequency,
+                        double *amplitude) {
   clear_lines(frequency, amplitude);
   apply_window(n, x);
-  return find_lines(n, x, duration, top, frequency, amplitude);
+  find_lines(n, x, duration, top, frequency, amplitude);
 }
 
 /* Motion of contact 0 at the ends of nominal steps. */
@@ -99,30 +94,27 @@ static void record(void *context, const mhb_integrator *g, double t0, double h) 
 }
 
 /* The lines of recorded motion: of the axis that moves most. */
-static int largest_lines(const mhb_integrator *g, const recording *r, double *frequency,
-                         double *amplitude) {
+static void largest_lines(const mhb_integrator *g, const recording *r, double *frequency,
+                          double *amplitude) {
   int    largest = 0;
   double square[3];
   for (int c = 0; c < 3; c++) {
     square[c] = apply_window(r->n, r->u + c * r->n);
     if (square[c] > square[largest]) largest = c;
   }
-  return find_lines(r->n, r->u + largest * r->n, r->period * g->period,
-                    10 * r->period * g->settings.subharmonics, frequency, amplitude);
+  find_lines(r->n, r->u + largest * r->n, r->period * g->period,
+             10 * r->period * g->settings.subharmonics, frequency, amplitude);
 }
 
-shb_status mhb_spectrum(mhb_integrator *g, int periods, double *frequency, double *amplitude) {
+void mhb_spectrum(mhb_integrator *g, int periods, double *frequency, double *amplitude) {
   const int n     = periods * g->steps;
   int       found = 1;
-  recording r     = {0, n, calloc(3 * (size_t)n, sizeof(double))};
+  recording r     = {0, n, shb_alloc_zeroed(3 * (size_t)n, sizeof(double))};
   clear_lines(frequency, amplitude);
-  SHB_CHECK(r.u, SHB_ERR_IO, "out of memory");
   g->watch   = record;
   g->context = &r;
   for (; r.period < periods && found; r.period++) found = mhb_integrator_period(g);
-  g->watch    = NULL;
-  bool memory = !found || largest_lines(g, &r, frequency, amplitude);
+  g->watch = NULL;
+  if (found) largest_lines(g, &r, frequency, amplitude);
   free(r.u);
-  SHB_CHECK(memory, SHB_ERR_IO, "out of memory");
-  return SHB_OK;
 }

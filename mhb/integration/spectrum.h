@@ -12,15 +12,14 @@ enum { MHB_SPECTRUM_LINES = 8 };
  *   top                   in     highest bin, at most n/2 - 1; a bin is 1/duration wide
  *   frequency, amplitude  out    [MHB_SPECTRUM_LINES] Hz, unit of x; largest first, then zeros
  * Frequencies are interpolated between the bins; lines less than 2/duration apart are not resolved.
- * Returns 0 without memory. */
-int mhb_spectrum_lines(int n, double *x, double duration, int top, double *frequency,
-                       double *amplitude);
+ */
+void mhb_spectrum_lines(int n, double *x, double duration, int top, double *frequency,
+                        double *amplitude);
 
 /* Integrate over a number of periods of the fundamental. The lines are those of the axis of contact
  * 0 that moves most, up to ten times the excitation's frequency.
  *   frequency, amplitude  out  [MHB_SPECTRUM_LINES] Hz, m, as above
- * Without the forces of a step there are no lines. Errors: SHB_ERR_IO without memory. */
-shb_status mhb_spectrum(mhb_integrator *integrator, int periods, double *frequency,
-                        double *amplitude);
+ * Without the forces of a step there are no lines. */
+void mhb_spectrum(mhb_integrator *integrator, int periods, double *frequency, double *amplitude);
 
 #endif

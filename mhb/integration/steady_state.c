@@ -1,5 +1,6 @@
 #include "mhb/integration/steady_state.h"
 #include "mesh/base/arena.h"
+#include "mesh/base/memory.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -251,9 +252,8 @@ const mhb_steady_state_result *mhb_steady_state_run(mhb_steady_state            
 
 /* ---- life cycle ---- */
 
-shb_status mhb_steady_state_create(mhb_integrator *g, mhb_steady_state **out) {
-  mhb_steady_state *o = calloc(1, sizeof *o);
-  SHB_CHECK(o, SHB_ERR_IO, "out of memory");
+mhb_steady_state *mhb_steady_state_create(mhb_integrator *g) {
+  mhb_steady_state        *o = shb_alloc_zeroed(1, sizeof *o);
   mhb_steady_state_result *r = &o->result;
   o->g                       = g;
   r->n_harmonics             = g->n_harmonics;
@@ -263,7 +263,7 @@ shb_status mhb_steady_state_create(mhb_integrator *g, mhb_steady_state **out) {
   size_t q       = 3 * (size_t)r->n_probes;
   r->motion      = shb_arena_take(&o->arena, n3 * K, sizeof *r->motion);
   r->force       = shb_arena_take(&o->arena, n3 * K, sizeof *r->force);
-  r->probe       = shb_arena_take(&o->arena, q * K + 1, sizeof *r->probe);
+  r->probe       = shb_arena_take(&o->arena, q * K, sizeof *r->probe);
   r->state       = shb_arena_take(&o->arena, n3, sizeof(double));
   r->dissipation = shb_arena_take(&o->arena, n3, sizeof(double));
   o->history  = shb_arena_take(&o->arena, HISTORY * (size_t)mhb_integrator_size(g), sizeof(double));
@@ -271,12 +271,7 @@ shb_status mhb_steady_state_create(mhb_integrator *g, mhb_steady_state **out) {
   o->force    = shb_arena_take(&o->arena, n * K, sizeof *o->force);
   o->share    = shb_arena_take(&o->arena, n, sizeof(double));
   o->work     = shb_arena_take(&o->arena, n, sizeof(double));
-  if (o->arena.failed) {
-    mhb_steady_state_destroy(o);
-    SHB_FAIL(SHB_ERR_IO, "out of memory");
-  }
-  *out = o;
-  return SHB_OK;
+  return o;
 }
 
 void mhb_steady_state_destroy(mhb_steady_state *o) {

@@ -28,10 +28,9 @@ typedef struct {
 
 typedef struct mhb_steady_state mhb_steady_state; /* workspace */
 
-/* Outputs with the integrator's n_harmonics. SHB_ERR_IO: no memory. The integrator must outlive
- * it. */
-shb_status mhb_steady_state_create(mhb_integrator *integrator, mhb_steady_state **steady);
-void       mhb_steady_state_destroy(mhb_steady_state *steady);
+/* Outputs with the integrator's n_harmonics. The integrator must outlive it. */
+mhb_steady_state *mhb_steady_state_create(mhb_integrator *integrator);
+void              mhb_steady_state_destroy(mhb_steady_state *steady);
 
 /* Integrate from the integrator's state. go_on: called after every period, returns 0 to stop; or
  * NULL. */

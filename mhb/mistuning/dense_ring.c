@@ -239,4 +239,5 @@ void mhb_dense_ring_settings(const mhb_settings *settings, mhb_settings *own) {
   own->contacts     = settings->blades;
   own->blades       = 1;
   own->engine_order = 0;
+  own->turns_right  = false;
 }

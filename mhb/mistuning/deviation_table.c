@@ -14,6 +14,7 @@ typedef struct {
   mesh_table                 text;
   int                        header, numbered; /* 1: a row of names, a column of blade numbers */
   int                        columns;
+  bool                       pairs; /* all are whole numbers, two by two: 0,1 and 115,83 */
   int                       *blade; /* [blades] of each row */
   double                    *value; /* [blades][columns] */
 } reading;
@@ -112,10 +113,12 @@ static const mesh_cell *cell_of(const reading *r, int row, int column) {
 }
 
 static shb_status check_deviation(const reading *r, const mesh_cell *c, double x) {
+  const char *hint = r->pairs    ? "; decimals have a point"
+                     : r->as->hz ? ""
+                                 : "; frequencies in Hz: rotor.mistuning: {file: NAME, unit: Hz}";
   SHB_CHECK(x > MHB_LEAST_DEVIATION && x <= MHB_MOST_DEVIATION, SHB_ERR_INPUT,
             "%s:%d:%d: a deviation of %g (%g %%) must be above -50 %% and at most 100 %%%s",
-            r->as->path, c->line, c->column, x, 100 * x,
-            r->as->hz ? "" : "; frequencies in Hz: rotor.mistuning: {file: NAME, unit: Hz}");
+            r->as->path, c->line, c->column, x, 100 * x, hint);
   return SHB_OK;
 }
 
@@ -154,13 +157,36 @@ static shb_status take_mean(const reading *r, int column) {
   return SHB_OK;
 }
 
+/* Is the first column one of blade numbers: by its name, or as it counts from 0 or 1? Three
+ * deviations or frequencies cannot count so. */
+static bool is_numbered(const reading *r) {
+  const int rows = r->text.n_rows - r->header;
+  if (rows < 1 || mesh_table_cells(&r->text, r->header) < 2) return false;
+  if (r->header && !strncasecmp(mesh_table_cell(&r->text, 0, 0)->text, "blade", strlen("blade")))
+    return true;
+  const int first = atoi(mesh_table_cell(&r->text, r->header, 0)->text);
+  for (int i = 0; i < rows; i++) {
+    const char *text = mesh_table_cell(&r->text, r->header + i, 0)->text;
+    if (!mesh_text_is_whole(text) || atoi(text) != first + i) return false;
+  }
+  return rows >= 3 && (first == 0 || first == 1);
+}
+
+static bool are_pairs(const reading *r) {
+  bool whole = r->text.separator == ',' && r->columns % 2 == 0;
+  for (int i = 0; whole && i < r->as->blades; i++)
+    for (int k = 0; whole && k < r->columns; k++)
+      whole = mesh_text_is_whole(cell_of(r, i, k)->text);
+  return whole;
+}
+
 static shb_status read_all(reading *r, double **value) {
   const int blades = r->as->blades;
   r->header        = r->text.n_rows > 0 && mesh_table_is_header(&r->text, 0);
-  r->numbered      = r->header && mesh_table_cells(&r->text, 0) > 1 &&
-                !strncasecmp(mesh_table_cell(&r->text, 0, 0)->text, "blade", 5);
+  r->numbered      = is_numbered(r);
   SHB_TRY(check_rows(r));
   SHB_TRY(check_columns(r));
+  r->pairs = are_pairs(r);
   r->blade = shb_alloc((size_t)blades, sizeof(int));
   r->value = shb_alloc((size_t)blades * (size_t)r->columns, sizeof(double));
   SHB_TRY(read_blades(r));

@@ -9,6 +9,7 @@
 #include "mesh/base/memory.h"
 #include "mhb/mistuning/blade_model.h"
 #include "mhb/mistuning/deviations.h"
+#include "mhb/problem/wave.h"
 
 /* ---- all blades as one model ---- */
 
@@ -74,7 +75,7 @@ static void set_whole(mhb_mistuned_ring *ring) {
 
 static shb_status fill(mhb_mistuned_ring *ring, const mhb_settings *settings,
                        const double *deviation, int columns) {
-  const int m = ring->n_modes, N = ring->blades;
+  const int m = ring->n_modes, N = ring->blades, order = mhb_settings_wave(settings).order;
   ring->deviation = shb_alloc_zeroed((size_t)N * (size_t)m, sizeof(double));
   ring->blade     = shb_alloc_zeroed((size_t)N, sizeof *ring->blade);
   for (int b = 0; b < N; b++) {
@@ -85,7 +86,7 @@ static shb_status fill(mhb_mistuned_ring *ring, const mhb_settings *settings,
       ring->deviation[b * m + i] = d;
     }
     mhb_blade_model(ring->tuned, ring->deviation + (size_t)b * (size_t)m,
-                    SHB_TWO_PI * (b * settings->engine_order % N) / N, &ring->blade[b]);
+                    SHB_TWO_PI * (b * order % N) / N, &ring->blade[b]);
   }
   set_whole(ring);
   return SHB_OK;

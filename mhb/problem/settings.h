@@ -83,7 +83,8 @@ typedef struct mhb_other_pairs mhb_other_pairs;
 
 typedef struct {
   bool                to_ground;
-  int                 engine_order, blades; /* inter-blade phase 2 pi E/N, eq. 16 */
+  int                 engine_order, blades; /* E of the machine, N; the wave: mhb/problem/wave.h */
+  bool                turns_right;          /* the rotor, towards +tangential */
   bool                has_psi, has_phi; /* given in the case; else from the modal file's normals */
   double              psi, phi;         /* rad */
   double              mu, kv;           /* -, N/m: totals of the interface */

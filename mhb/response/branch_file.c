@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "mesh/base/constants.h"
+#include "mesh/base/memory.h"
 #include "mhb/problem/parameter.h"
 #include "mhb/response/face_wear.h"
 #include "mhb/response/response.h"
@@ -102,8 +103,7 @@ static shb_status write_searches(hid_t group, const mhb_response *response,
 /* Speed of the rotor in a run-up; not read back. */
 static shb_status write_speed(hid_t group, const mhb_response *response, const mhb_branch *branch) {
   if (!response->run_up) return SHB_OK;
-  double *speed = malloc(sizeof *speed * (size_t)branch->n_points + 1);
-  SHB_CHECK(speed, SHB_ERR_IO, "no memory for %d response points", branch->n_points);
+  double *speed = shb_alloc((size_t)branch->n_points, sizeof *speed);
   for (int i = 0; i < branch->n_points; i++)
     speed[i] = SHB_TWO_PI * branch->frequency[i] / response->engine_order;
   shb_status status = h5_write_double(group, "speed", H5_SHAPE((hsize_t)branch->n_points), speed,
@@ -298,12 +298,10 @@ shb_status mhb_branch_write(hid_t file, const mhb_response *response, int index)
 }
 /* ---- reading ---- */
 
-static shb_status copy_frequency(mhb_branch *branch) {
+static void copy_frequency(mhb_branch *branch) {
   size_t size   = sizeof(double) * (size_t)branch->n_points;
-  branch->value = malloc(size + 1);
-  SHB_CHECK(branch->value, SHB_ERR_IO, "no memory for %d response points", branch->n_points);
+  branch->value = shb_alloc(size, 1 /*BYTES*/);
   if (size > 0) memcpy(branch->value, branch->frequency, size);
-  return SHB_OK;
 }
 
 static shb_status read_field(hid_t group, const mhb_response *response, mhb_branch *branch,
@@ -312,12 +310,15 @@ static shb_status read_field(hid_t group, const mhb_response *response, mhb_bran
   double         *real     = NULL;
   double complex *complex_ = NULL;
   int            *whole    = NULL;
-  if (mhb_field_is_frequency(response, f)) return copy_frequency(branch);
+  if (mhb_field_is_frequency(response, f)) {
+    copy_frequency(branch);
+    return SHB_OK;
+  }
   if (mhb_field_is_later(f) && !h5_exists(group, f->name)) {
-    void *none = calloc(h5_count(shape) + 1, mhb_field_bytes(f->kind));
-    SHB_CHECK(none, SHB_ERR_IO, "no memory for %d response points", branch->n_points);
+    void *none = shb_alloc_zeroed(h5_count(shape), mhb_field_bytes(f->kind));
     mhb_field_set(branch, f, none);
-    const bool told = none == branch->error_spatial || none == branch->error_truncation_max;
+    const bool told = none == branch->error_spatial || none == branch->error_truncation_max ||
+                      none == branch->error_multiplier;
     for (int i = 0; told && i < branch->n_points; i++) ((double *)none)[i] = -1;
     return SHB_OK;
   }
@@ -404,13 +405,12 @@ static shb_status read_searches(hid_t group, const char *path, int index, mhb_br
   for (int k = 0; k < 5 && status == SHB_OK; k++)
     if (k < 3 || h5_exists(group, name[k])) status = h5_read_int(group, name[k], &shape, &count[k]);
   for (hsize_t i = 0; i < shape.dim[0] && status == SHB_OK; i++)
-    status =
-        mhb_response_note_search(branch, &(mhb_search){.value    = value[i],
-                                                       .order    = count[0][i],
-                                                       .starts   = count[1][i],
-                                                       .seed     = count[3] ? count[3][i] : 0,
-                                                       .found    = count[2][i],
-                                                       .untraced = count[4] ? count[4][i] : 0});
+    mhb_response_note_search(branch, &(mhb_search){.value    = value[i],
+                                                   .order    = count[0][i],
+                                                   .starts   = count[1][i],
+                                                   .seed     = count[3] ? count[3][i] : 0,
+                                                   .found    = count[2][i],
+                                                   .untraced = count[4] ? count[4][i] : 0});
   free(value);
   for (int k = 0; k < 5; k++) free(count[k]);
   return status;
@@ -509,7 +509,7 @@ static shb_status read_segment(hid_t resume, const char *path, int index,
   if (status == SHB_OK) {
     state.n = state.room               = (size_t)numbers.dim[0];
     unfinished->state[unfinished->n++] = state;
-    status = mhb_response_branch(unfinished->segments, MHB_BRANCH_NONLINEAR, &at);
+    at = mhb_response_branch(unfinished->segments, MHB_BRANCH_NONLINEAR);
   }
   mhb_branch *segment = status == SHB_OK ? &unfinished->segments->branch[at] : NULL;
   if (segment) status = read_scale(group, path, index, segment);
@@ -520,8 +520,7 @@ static shb_status read_segment(hid_t resume, const char *path, int index,
 
 static shb_status read_segments(hid_t resume, const char *path, int index, int n,
                                 mhb_unfinished *unfinished) {
-  unfinished->state = calloc((size_t)n + 1, sizeof *unfinished->state);
-  SHB_CHECK(unfinished->state, SHB_ERR_IO, "%s: no memory", path);
+  unfinished->state = shb_alloc_zeroed((size_t)n, sizeof *unfinished->state);
   for (int i = 0; i < n; i++) SHB_TRY(read_segment(resume, path, index, unfinished));
   return SHB_OK;
 }
@@ -535,8 +534,7 @@ static shb_status read_unfinished(hid_t group, const char *path, int index,
   SHB_TRY(h5_read_attribute_int(group, "resume", "version", 0, &version));
   SHB_TRY(h5_read_attribute_int(group, "resume", "segments", 0, &n));
   if (version != MHB_TRACE_STATE_VERSION || n < 1 || n > MHB_MOST_ENTRIES) return SHB_OK;
-  branch->unfinished = mhb_unfinished_create(response);
-  SHB_CHECK(branch->unfinished, SHB_ERR_IO, "%s: no memory", path);
+  branch->unfinished                         = mhb_unfinished_create(response);
   branch->unfinished->segments->subharmonics = branch->order;
   SHB_TRY(open_group(group, path, "resume", &resume));
   shb_status status = read_segments(resume, path, index, n, branch->unfinished);
@@ -563,7 +561,7 @@ static shb_status fill_from(hid_t group, const char *path, int index, mhb_respon
 shb_status mhb_branch_read(hid_t file, const char *path, mhb_response *response) {
   char name[32];
   int  index = 0;
-  SHB_TRY(mhb_response_branch(response, MHB_BRANCH_NONLINEAR, &index));
+  index      = mhb_response_branch(response, MHB_BRANCH_NONLINEAR);
   snprintf(name, sizeof name, "/branch_%d", index);
   SHB_CHECK(h5_exists(file, name), SHB_ERR_INPUT, "%s: %s is missing", path, name);
   hid_t group;

@@ -13,7 +13,7 @@ enum { MHB_MOST_ENTRIES = 100000 };
 shb_status mhb_branch_write(hid_t file, const mhb_response *response, int index);
 
 /* Append the next branch of a file, whose root has been read. path is for messages. SHB_ERR_INPUT:
- * something is missing or out of its range. SHB_ERR_IO: no memory. */
+ * something is missing or out of its range. */
 shb_status mhb_branch_read(hid_t file, const char *path, mhb_response *response);
 
 #endif

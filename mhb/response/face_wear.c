@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "mesh/base/constants.h"
+#include "mesh/base/memory.h"
 #include "mhb/numerics/fourier.h"
 #include "mhb/response/pair_law.h"
 
@@ -49,25 +50,21 @@ static void add_chords(const mhb_law *law, const double *motion, int m, int n,
   }
 }
 
-shb_status mhb_slip_way(mhb_contact_evaluator *contact, const mhb_law *law, const double *motion,
-                        int m, int samples, double *way, double *work) {
-  mhb_contact_info   *info   = malloc(sizeof *info);
-  mhb_contact_sample *sample = calloc((size_t)samples + MHB_MAX_TRANSITIONS + 1, sizeof *sample);
-  const bool          good   = info && sample;
+void mhb_slip_way(mhb_contact_evaluator *contact, const mhb_law *law, const double *motion, int m,
+                  int samples, double *way, double *work) {
+  mhb_contact_info   *info = shb_alloc(1, sizeof *info);
+  mhb_contact_sample *sample =
+      shb_alloc_zeroed((size_t)samples + MHB_MAX_TRANSITIONS + 1, sizeof *sample);
+  int n = 0;
   *way = *work = 0;
-  if (good) {
-    int n = 0;
-    mhb_contact_time_history(contact, law, motion, 1, sample, info); /* for its transitions */
-    for (int i = 0; i <= samples; i++) sample[n++].phase = (double)i / samples;
-    for (int i = 0; i < info->n_transitions; i++) sample[n++].phase = info->transition[i].phase;
-    qsort(sample, (size_t)n, sizeof *sample, by_phase);
-    mhb_contact_time_history(contact, law, motion, n, sample, info);
-    add_chords(law, motion, m, n, sample, way, work);
-  }
+  mhb_contact_time_history(contact, law, motion, 1, sample, info); /* for its transitions */
+  for (int i = 0; i <= samples; i++) sample[n++].phase = (double)i / samples;
+  for (int i = 0; i < info->n_transitions; i++) sample[n++].phase = info->transition[i].phase;
+  qsort(sample, (size_t)n, sizeof *sample, by_phase);
+  mhb_contact_time_history(contact, law, motion, n, sample, info);
+  add_chords(law, motion, m, n, sample, way, work);
   free(info);
   free(sample);
-  SHB_CHECK(good, SHB_ERR_IO, "out of memory for the slip of a contact");
-  return SHB_OK;
 }
 
 /* ---------------------------------------------------------------- branches */
@@ -81,23 +78,20 @@ void mhb_face_wear_free(mhb_face_wear *wear) {
   *wear = (mhb_face_wear){0};
 }
 
-static shb_status allocate(mhb_face_wear *w, int n, int pairs) {
+static void allocate(mhb_face_wear *w, int n, int pairs) {
   const size_t size = (size_t)n * (size_t)pairs;
   mhb_face_wear_free(w);
-  w->point       = calloc((size_t)n, sizeof *w->point);
-  w->pressure    = calloc(size, sizeof *w->pressure);
-  w->slip        = calloc(size, sizeof *w->slip);
-  w->dissipation = calloc(size, sizeof *w->dissipation);
-  w->state       = calloc(3 * size, sizeof *w->state);
-  SHB_CHECK(w->point && w->pressure && w->slip && w->dissipation && w->state, SHB_ERR_IO,
-            "out of memory for the contact faces of %d peaks", n);
-  w->n = n;
-  return SHB_OK;
+  w->point       = shb_alloc_zeroed((size_t)n, sizeof *w->point);
+  w->pressure    = shb_alloc_zeroed(size, sizeof *w->pressure);
+  w->slip        = shb_alloc_zeroed(size, sizeof *w->slip);
+  w->dissipation = shb_alloc_zeroed(size, sizeof *w->dissipation);
+  w->state       = shb_alloc_zeroed(3 * size, sizeof *w->state);
+  w->n           = n;
 }
 
 /* Row `row` of the wear: a point of the branch. */
-static shb_status fill_row(const modal_model *model, const mhb_settings *s, const mhb_response *r,
-                           mhb_contact_evaluator *contact, mhb_branch *b, int row) {
+static void fill_row(const modal_model *model, const mhb_settings *s, const mhb_response *r,
+                     mhb_contact_evaluator *contact, mhb_branch *b, int row) {
   const size_t n = (size_t)model->n_pairs, K = (size_t)b->n_harmonics + 1;
   const int    point = b->wear.point[row];
   double       share[n], work, x[3 * mhb_real_size(b->n_harmonics)];
@@ -109,9 +103,8 @@ static shb_status fill_row(const modal_model *model, const mhb_settings *s, cons
     b->wear.pressure[to]    = (creal(b->force[3 * from * K]) + law.mean_offset) / model->area[a];
     b->wear.dissipation[to] = b->dissipation[from] / model->area[a];
     memcpy(b->wear.state + 3 * to, b->state + 3 * from, 3 * sizeof *b->wear.state);
-    SHB_TRY(mhb_slip_way(contact, &law, x, b->n_harmonics, SAMPLES, &b->wear.slip[to], &work));
+    mhb_slip_way(contact, &law, x, b->n_harmonics, SAMPLES, &b->wear.slip[to], &work);
   }
-  return SHB_OK;
 }
 
 static shb_status keep(const modal_model *model, const mhb_settings *s, const mhb_response *r,
@@ -121,16 +114,15 @@ static shb_status keep(const modal_model *model, const mhb_settings *s, const mh
   for (int i = 0; i < b->n_points; i++) n += b->special[i] == MHB_PEAK;
   mhb_face_wear_free(&b->wear);
   if (n == 0) return SHB_OK;
-  SHB_TRY(allocate(&b->wear, n, model->n_pairs));
   SHB_TRY(mhb_contact_evaluator_create(b->n_harmonics, b->n_harmonics, s->tolerance, &contact));
-  shb_status status = SHB_OK;
-  for (int i = 0; i < b->n_points && status == SHB_OK; i++)
+  allocate(&b->wear, n, model->n_pairs);
+  for (int i = 0; i < b->n_points; i++)
     if (b->special[i] == MHB_PEAK) {
       b->wear.point[row] = i;
-      status             = fill_row(model, s, r, contact, b, row++);
+      fill_row(model, s, r, contact, b, row++);
     }
   mhb_contact_evaluator_destroy(contact);
-  return status;
+  return SHB_OK;
 }
 
 shb_status mhb_face_wear_keep(const modal_model *model, const mhb_settings *s,
@@ -160,8 +152,7 @@ shb_status mhb_contact_face_write(hid_t file, const modal_contact_face *f) {
 static shb_status write_map(hid_t group, const modal_contact_face *f, int n_pairs, int n,
                             const double *of_pair, int rows, const char *const text[3]) {
   const size_t size = (size_t)f->n_nodes * (size_t)rows;
-  double      *map  = calloc((size_t)n * size + 1, sizeof *map);
-  SHB_CHECK(map, SHB_ERR_IO, "out of memory for a map of the contact face");
+  double      *map  = shb_alloc_zeroed((size_t)n * size, sizeof *map);
   for (int i = 0; i < n; i++)
     modal_contact_face_spread(f, of_pair + (size_t)i * (size_t)(n_pairs * rows), rows,
                               map + (size_t)i * size);

@@ -12,12 +12,13 @@
  *   motion   in  [3][2m+1] as in mhb_contact_force
  *   samples  in  at least, 2 or more; transitions are added to them
  * While the pair slips, the slider goes by ds - Ku^-1 df. Chords between samples: the error falls
- * with their square. Errors: SHB_ERR_IO no memory. */
-shb_status mhb_slip_way(mhb_contact_evaluator *contact, const mhb_law *law, const double *motion,
-                        int m, int samples, double *way, double *work);
+ * with their square. */
+void mhb_slip_way(mhb_contact_evaluator *contact, const mhb_law *law, const double *motion, int m,
+                  int samples, double *way, double *work);
 
 /* wear of every nonlinear branch <- its peaks, where the model has areas and one interface.
- * Not in a run-up, nor for rings of different blades. Errors: SHB_ERR_IO no memory. */
+ * Not in a run-up, nor for rings of different blades. SHB_ERR_IO: no memory for a contact
+ * evaluator. */
 shb_status mhb_face_wear_keep(const modal_model *model, const mhb_settings *settings,
                               mhb_response *response);
 void       mhb_face_wear_free(mhb_face_wear *wear);

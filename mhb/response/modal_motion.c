@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "mesh/base/constants.h"
+#include "mesh/base/memory.h"
 #include "mhb/problem/other_pairs.h"
 #include "mhb/structure/receptance.h"
 
@@ -102,12 +103,15 @@ static shb_status keep(const modal_model *model, const mhb_settings *settings,
   const mhb_other_pairs *other = settings->other_pairs;
   const int              sides = settings->to_ground ? 1 : 2;
   const int              pairs = other && other->finer ? other->model->n_pairs : response->n_pairs;
-  if (b->n_points == 0) return mhb_response_modal(response, b, 0, 0);
-  bool *wanted = calloc((size_t)b->n_points, sizeof *wanted);
-  SHB_CHECK(wanted, SHB_ERR_IO, "no memory for %d points", b->n_points);
+  if (b->n_points == 0) {
+    mhb_response_modal(response, b, 0, 0);
+    return SHB_OK;
+  }
+  bool      *wanted = shb_alloc_zeroed((size_t)b->n_points, sizeof *wanted);
   int        n = choose(response, b, &settings->save, wanted), at = 0;
-  shb_status status = mhb_response_modal(response, b, n, 3 * pairs * sides);
-  if (status == SHB_OK && n > 0) status = renew(model, settings, b, r);
+  shb_status status = SHB_OK;
+  mhb_response_modal(response, b, n, 3 * pairs * sides);
+  if (n > 0) status = renew(model, settings, b, r);
   for (int i = 0; status == SHB_OK && n > 0 && i < b->n_points; i++) {
     if (!wanted[i]) continue;
     b->modal.point[at] = i;

@@ -13,7 +13,7 @@
  * harmonic k, of a backward wave conjugate. The forces on the contact dofs and the scale of the
  * load are kept as well: residual shapes are multiplied by them. In a run-up nothing is kept: the
  * modes there change with the speed. The response was described by mhb_response_describe.
- * Errors: SHB_ERR_IO no memory; those of mhb_receptance_create. */
+ * Errors: those of mhb_receptance_create. */
 shb_status mhb_modal_motion_keep(const modal_model *model, const mhb_settings *settings,
                                  mhb_response *response);
 

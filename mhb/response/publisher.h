@@ -13,6 +13,7 @@ typedef struct {
   const char           *path; /* NULL: no file is written */
   const shb_provenance *provenance;
   double                written; /* s, when the file was written last, or the start */
+  double                cost;    /* s, that it took; -INFINITY before the first */
   shb_status            status;  /* of the first failure */
   char                  text[512];
 } mhb_publisher;
@@ -30,6 +31,10 @@ void mhb_publisher_note(mhb_publisher *publisher, shb_status status);
 
 /* Whether the file should be written now: not in this many seconds, and nothing has failed. */
 bool mhb_publisher_is_due(const mhb_publisher *publisher, double seconds);
+
+/* The least time between two writes, s: as asked for, or longer, so that a large file takes a
+ * twentieth of the time at most. */
+double mhb_publisher_pause(const mhb_publisher *publisher, double seconds);
 
 /* Write the response to the file, if there is one. Errors: as mhb_response_write. */
 shb_status mhb_publisher_write(mhb_publisher *publisher, const mhb_response *response);

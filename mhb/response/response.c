@@ -5,6 +5,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "mesh/base/memory.h"
+#include "mhb/contact/law.h"
 #include "mhb/numerics/extent.h"
 #include "mhb/response/face_wear.h"
 #include "mhb/response/response_fields.h"
@@ -13,22 +15,18 @@ enum { FIRST_POINTS = 64 };
 
 mhb_response *mhb_response_create(int n_pairs, int n_probes, int n_harmonics) {
   if (n_pairs < 0 || n_probes < 0 || n_harmonics < 0) return NULL;
-  mhb_response *response = calloc(1, sizeof *response);
-  if (!response) return NULL;
+  mhb_response *response = shb_alloc_zeroed(1, sizeof *response);
   response->n_pairs      = n_pairs;
   response->n_probes     = n_probes;
   response->n_harmonics  = n_harmonics;
   response->subharmonics = 1;
-  response->probe_name   = calloc((size_t)n_probes + 1, sizeof *response->probe_name);
-  if (response->probe_name) return response;
-  free(response);
-  return NULL;
+  response->probe_name   = shb_alloc_zeroed((size_t)n_probes, sizeof *response->probe_name);
+  return response;
 }
 
 mhb_response *mhb_response_like(const mhb_response *response) {
   mhb_response *like =
       mhb_response_create(response->n_pairs, response->n_probes, response->n_harmonics);
-  if (!like) return NULL;
   like->subharmonics      = response->subharmonics;
   like->parameter         = response->parameter;
   like->n_multipliers     = response->n_multipliers;
@@ -108,14 +106,10 @@ double mhb_response_output(const mhb_response *r, const mhb_branch *b, int point
   return mhb_response_amplitude(r, b, point, 0);
 }
 
-shb_status mhb_response_note_search(mhb_branch *branch, const mhb_search *search) {
-  size_t      n    = (size_t)branch->n_searches;
-  mhb_search *more = realloc(branch->search, (n + 1) * sizeof *more);
-  SHB_CHECK(more, SHB_ERR_IO, "no memory for %zu searches", n + 1);
-  more[n]        = *search;
-  branch->search = more;
-  branch->n_searches++;
-  return SHB_OK;
+void mhb_response_note_search(mhb_branch *branch, const mhb_search *search) {
+  branch->search =
+      shb_realloc(branch->search, (size_t)branch->n_searches + 1, sizeof *branch->search);
+  branch->search[branch->n_searches++] = *search;
 }
 
 void mhb_response_destroy(mhb_response *response) {
@@ -137,65 +131,52 @@ void mhb_response_destroy(mhb_response *response) {
   free(response);
 }
 
-shb_status mhb_response_interfaces(mhb_response *response, int n, char *const *name,
-                                   const int *interface, int lead) {
+void mhb_response_interfaces(mhb_response *response, int n, char *const *name, const int *interface,
+                             int lead) {
   const size_t pairs       = (size_t)response->n_pairs;
-  response->interface_name = calloc((size_t)n, sizeof *response->interface_name);
-  response->interface      = malloc(pairs * sizeof *response->interface + 1);
+  response->interface_name = shb_alloc_zeroed((size_t)n, sizeof *response->interface_name);
+  response->interface      = shb_alloc(pairs, sizeof *response->interface);
   response->lead           = lead;
-  SHB_CHECK(response->interface_name && response->interface, SHB_ERR_IO,
-            "no memory for %d interfaces", n);
+  response->n_interfaces   = n;
   memcpy(response->interface, interface, pairs * sizeof *interface);
-  for (response->n_interfaces = 0; response->n_interfaces < n; response->n_interfaces++) {
-    char *copy = strdup(name[response->n_interfaces]);
-    SHB_CHECK(copy, SHB_ERR_IO, "no memory for %d interfaces", n);
-    response->interface_name[response->n_interfaces] = copy;
-  }
-  return SHB_OK;
+  for (int i = 0; i < n; i++) response->interface_name[i] = shb_text(name[i]);
 }
 
-shb_status mhb_response_branch(mhb_response *response, mhb_branch_kind kind, int *index) {
+int mhb_response_branch(mhb_response *response, mhb_branch_kind kind) {
   int n = response->n_branches;
   if (n == response->capacity) {
-    int         capacity = n > 8 ? 2 * n : 16;
-    mhb_branch *branch   = realloc(response->branch, (size_t)capacity * sizeof *branch);
-    SHB_CHECK(branch, SHB_ERR_IO, "no memory for %d response branches", capacity);
-    response->branch   = branch;
-    response->capacity = capacity;
+    response->capacity = n > 8 ? 2 * n : 16;
+    response->branch =
+        shb_realloc(response->branch, (size_t)response->capacity, sizeof *response->branch);
   }
   response->branch[n] = (mhb_branch){.kind        = kind,
                                      .order       = response->subharmonics,
                                      .n_harmonics = response->n_harmonics,
                                      .main        = n,
                                      .searched    = true};
-  *index              = response->n_branches++;
-  return SHB_OK;
+  return response->n_branches++;
 }
 
-/* Arrays that grew before one fails stay valid: capacity counts what all of them have. */
-static shb_status grow(const mhb_response *response, mhb_branch *branch) {
+static void grow(const mhb_response *response, mhb_branch *branch) {
   int capacity = branch->capacity ? 2 * branch->capacity : FIRST_POINTS;
   for (int i = 0; i < MHB_N_FIELDS; i++) {
     if (!mhb_field_kept(response, branch, &mhb_fields[i])) continue;
-    size_t row  = mhb_field_row(response, branch, &mhb_fields[i]);
-    void  *data = realloc(mhb_field_get(branch, &mhb_fields[i]), (size_t)capacity * row);
-    SHB_CHECK(data, SHB_ERR_IO, "no memory for %d response points", capacity);
-    mhb_field_set(branch, &mhb_fields[i], data);
+    const size_t row = mhb_field_row(response, branch, &mhb_fields[i]);
+    mhb_field_set(branch, &mhb_fields[i],
+                  shb_realloc(mhb_field_get(branch, &mhb_fields[i]), (size_t)capacity, row));
   }
   branch->capacity = capacity;
-  return SHB_OK;
 }
 
-shb_status mhb_response_point(mhb_response *response, int branch, int *point) {
+int mhb_response_point(mhb_response *response, int branch) {
   mhb_branch *b = &response->branch[branch];
-  if (b->n_points == b->capacity) SHB_TRY(grow(response, b));
+  if (b->n_points == b->capacity) grow(response, b);
   for (int i = 0; i < MHB_N_FIELDS; i++) {
     if (!mhb_field_kept(response, b, &mhb_fields[i])) continue;
     size_t row = mhb_field_row(response, b, &mhb_fields[i]);
     memset((char *)mhb_field_get(b, &mhb_fields[i]) + (size_t)b->n_points * row, 0, row);
   }
-  *point = b->n_points++;
-  return SHB_OK;
+  return b->n_points++;
 }
 
 /* Moves the last of n rows to place at, byte by byte: no memory is needed. */
@@ -230,32 +211,29 @@ static size_t harmonics_of(const mhb_branch *branch, const mhb_field *f) {
   return strchr(f->dims, 'k') ? ((size_t)branch->n_harmonics + 1) * mhb_field_bytes(f->kind) : 0;
 }
 
-shb_status mhb_response_widen(const mhb_response *response, mhb_branch *branch, int n_harmonics) {
+void mhb_response_widen(const mhb_response *response, mhb_branch *branch, int n_harmonics) {
   mhb_branch wide  = *branch;
   wide.n_harmonics = n_harmonics;
   for (int i = 0; i < MHB_N_FIELDS && branch->n_harmonics < n_harmonics; i++) {
     const mhb_field *f      = &mhb_fields[i];
     const size_t     before = harmonics_of(branch, f), after = harmonics_of(&wide, f);
     if (before == 0 || !mhb_field_kept(response, branch, f) || branch->capacity == 0) continue;
-    const size_t row  = mhb_field_row(response, branch, f) / before; /* rows of a point */
-    char        *data = realloc(mhb_field_get(branch, f), (size_t)branch->capacity * row * after);
-    SHB_CHECK(data, SHB_ERR_IO, "no memory for %d harmonics", n_harmonics);
+    const size_t row = mhb_field_row(response, branch, f) / before; /* rows of a point */
+    char *data       = shb_realloc(mhb_field_get(branch, f), (size_t)branch->capacity * row, after);
     mhb_field_set(branch, f, data);
     spread(data, after, data, before, (size_t)branch->n_points * row);
   }
   if (branch->n_harmonics < n_harmonics) branch->n_harmonics = n_harmonics;
-  return SHB_OK;
 }
 
-shb_status mhb_response_copy_points(mhb_response *to, int to_branch, const mhb_response *from,
-                                    int from_branch, int first, int last) {
+void mhb_response_copy_points(mhb_response *to, int to_branch, const mhb_response *from,
+                              int from_branch, int first, int last) {
   const mhb_branch *a    = &from->branch[from_branch];
   mhb_branch       *b    = &to->branch[to_branch];
   int               step = first <= last ? 1 : -1;
-  SHB_TRY(mhb_response_widen(to, b, a->n_harmonics));
+  mhb_response_widen(to, b, a->n_harmonics);
   for (int i = first; i != last + step; i += step) {
-    int point;
-    SHB_TRY(mhb_response_point(to, to_branch, &point));
+    const int point = mhb_response_point(to, to_branch);
     for (int k = 0; k < MHB_N_FIELDS; k++) {
       const mhb_field *f = &mhb_fields[k];
       if (!mhb_field_kept(to, b, f)) continue;
@@ -266,59 +244,45 @@ shb_status mhb_response_copy_points(mhb_response *to, int to_branch, const mhb_r
              (char *)mhb_field_get(a, f) + (size_t)i * own, before, row / after);
     }
   }
-  return SHB_OK;
 }
 
-shb_status mhb_response_lasting_curve(mhb_branch *branch, int n) {
+void mhb_response_lasting_curve(mhb_branch *branch, int n) {
   mhb_lasting_curve *c = &branch->lasting_curve;
   free_curve(c);
-  if (n == 0) return SHB_OK;
-  c->frequency = calloc((size_t)n, sizeof(double));
-  c->mean      = calloc((size_t)n, sizeof(double));
-  c->worst     = calloc((size_t)n, sizeof(double));
-  if (!c->frequency || !c->mean || !c->worst) {
-    free_curve(c);
-    SHB_FAIL(SHB_ERR_IO, "no memory for a sweep of %d windows", n);
-  }
-  c->n = n;
-  return SHB_OK;
+  if (n == 0) return;
+  c->frequency = shb_alloc_zeroed((size_t)n, sizeof(double));
+  c->mean      = shb_alloc_zeroed((size_t)n, sizeof(double));
+  c->worst     = shb_alloc_zeroed((size_t)n, sizeof(double));
+  c->n         = n;
 }
 
 double mhb_response_lasting_missed(int starts) {
   return pow(5. / 6, starts);
 }
 
-shb_status mhb_response_copy_lasting(mhb_branch *to, const mhb_branch *from) {
+void mhb_response_copy_lasting(mhb_branch *to, const mhb_branch *from) {
   const mhb_lasting_curve *a = &from->lasting_curve, *b = &to->lasting_curve;
   const size_t             size = sizeof(double) * (size_t)a->n;
   free(to->lasting);
-  to->lasting = from->lasting ? strdup(from->lasting) : NULL;
-  SHB_CHECK(to->lasting || !from->lasting, SHB_ERR_IO, "no memory");
-  SHB_TRY(mhb_response_lasting_curve(to, a->n));
-  if (a->n == 0) return SHB_OK;
+  to->lasting = from->lasting ? shb_text(from->lasting) : NULL;
+  mhb_response_lasting_curve(to, a->n);
+  if (a->n == 0) return;
   memcpy(b->frequency, a->frequency, size);
   memcpy(b->mean, a->mean, size);
   memcpy(b->worst, a->worst, size);
-  return SHB_OK;
 }
 
-shb_status mhb_response_modal(const mhb_response *response, mhb_branch *branch, int n,
-                              int n_contact) {
+void mhb_response_modal(const mhb_response *response, mhb_branch *branch, int n, int n_contact) {
   mhb_modal_motion *modal = &branch->modal;
   const size_t      rows  = (size_t)n * ((size_t)branch->n_harmonics + 1);
   free_modal(modal);
-  if (n == 0) return SHB_OK;
-  modal->point     = calloc((size_t)n, sizeof *modal->point);
-  modal->amplitude = calloc(rows * (size_t)response->n_modes + 1, sizeof *modal->amplitude);
-  modal->force     = calloc(rows * (size_t)n_contact + 1, sizeof *modal->force);
-  modal->scale     = calloc((size_t)n, sizeof *modal->scale);
-  if (!modal->point || !modal->amplitude || !modal->force || !modal->scale) {
-    free_modal(modal);
-    SHB_FAIL(SHB_ERR_IO, "no memory for the modal amplitudes of %d points", n);
-  }
+  if (n == 0) return;
+  modal->point     = shb_alloc_zeroed((size_t)n, sizeof *modal->point);
+  modal->amplitude = shb_alloc_zeroed(rows * (size_t)response->n_modes, sizeof *modal->amplitude);
+  modal->force     = shb_alloc_zeroed(rows * (size_t)n_contact, sizeof *modal->force);
+  modal->scale     = shb_alloc_zeroed((size_t)n, sizeof *modal->scale);
   modal->n         = n;
   modal->n_contact = n_contact;
-  return SHB_OK;
 }
 
 void mhb_response_drop(mhb_response *response, const bool *drop) {
@@ -358,8 +322,8 @@ shb_status mhb_response_merge(mhb_response *response, mhb_response *other) {
             response->n_probes, response->subharmonics);
   int before = response->n_branches, index = 0;
   for (int i = 0; i < other->n_branches; i++) {
-    mhb_branch *branch = &other->branch[i];
-    SHB_TRY(mhb_response_branch(response, branch->kind, &index));
+    mhb_branch *branch      = &other->branch[i];
+    index                   = mhb_response_branch(response, branch->kind);
     response->branch[index] = *branch;
     response->branch[index].main += before;
     memset(branch, 0, sizeof *branch);
@@ -372,11 +336,9 @@ shb_status mhb_response_merge(mhb_response *response, mhb_response *other) {
 /* ---- a curve under way ---- */
 
 mhb_unfinished *mhb_unfinished_create(const mhb_response *like) {
-  mhb_unfinished *u = calloc(1, sizeof *u);
-  if (u) u->segments = mhb_response_like(like);
-  if (u && u->segments) return u;
-  free(u);
-  return NULL;
+  mhb_unfinished *u = shb_alloc_zeroed(1, sizeof *u);
+  u->segments       = mhb_response_like(like);
+  return u;
 }
 
 void mhb_unfinished_destroy(mhb_unfinished *u) {
@@ -387,33 +349,40 @@ void mhb_unfinished_destroy(mhb_unfinished *u) {
   free(u);
 }
 
-static shb_status copy_segment(mhb_unfinished *u, const mhb_response *segments, int i,
-                               const mhb_trace_state *state) {
+static void copy_segment(mhb_unfinished *u, const mhb_response *segments, int i,
+                         const mhb_trace_state *state) {
   int               index = 0;
   const mhb_branch *from  = &segments->branch[i];
-  SHB_TRY(mhb_response_branch(u->segments, from->kind, &index));
+  index                   = mhb_response_branch(u->segments, from->kind);
   if (from->n_points > 0)
-    SHB_TRY(mhb_response_copy_points(u->segments, index, segments, i, 0, from->n_points - 1));
+    mhb_response_copy_points(u->segments, index, segments, i, 0, from->n_points - 1);
   mhb_trace_state *to = &u->state[u->n++];
   mhb_trace_state_numbers(to, state->number, state->n);
-  SHB_CHECK(!to->failed, SHB_ERR_IO, "no memory for the state of a curve");
-  return SHB_OK;
 }
 
-shb_status mhb_unfinished_copy(const mhb_response *segments, int n, const mhb_trace_state *state,
-                               mhb_unfinished **out) {
+mhb_unfinished *mhb_unfinished_copy(const mhb_response *segments, int n,
+                                    const mhb_trace_state *state) {
   mhb_unfinished *u = mhb_unfinished_create(segments);
-  if (u) u->state = calloc((size_t)n + 1, sizeof *u->state);
-  shb_status status = u && u->state ? SHB_OK
-                                    : shb_fail(SHB_ERR_IO, __FILE__, __LINE__,
-                                               "no memory for the state of a curve");
-  for (int i = 0; i < n && status == SHB_OK; i++) status = copy_segment(u, segments, i, &state[i]);
-  if (status != SHB_OK) {
-    mhb_unfinished_destroy(u);
-    return status;
+  u->state          = shb_alloc_zeroed((size_t)n, sizeof *u->state);
+  for (int i = 0; i < n; i++) copy_segment(u, segments, i, &state[i]);
+  return u;
+}
+
+bool mhb_friction_loads_others(int n_pairs, int on_contact, const bool *free_mean,
+                               const double *share) {
+  bool sticks = false, moves = false, shares = false;
+  for (int first = 0; first < n_pairs; first += on_contact) {
+    int touch = 0, stuck = 0;
+    for (int a = first; a < first + on_contact; a++) {
+      const double *of = share + 3 * a;
+      touch += of[MHB_SEPARATE] < 1;
+      stuck += free_mean[a];
+      moves = moves || (of[MHB_SEPARATE] < 1 && of[MHB_STICK] < 1);
+    }
+    sticks = sticks || stuck > 0;
+    shares = shares || (stuck > 0 && touch > 1);
   }
-  *out = u;
-  return SHB_OK;
+  return shares || (sticks && moves);
 }
 
 bool mhb_branch_marked(const mhb_branch *branch, int point) {

@@ -4,16 +4,17 @@
 
 #include "mhb/response/response_types.h"
 
-mhb_response *mhb_response_create(int n_pairs, int n_probes, int n_harmonics); /* NULL: no memory */
+/* NULL: a number is negative. */
+mhb_response *mhb_response_create(int n_pairs, int n_probes, int n_harmonics);
 void          mhb_response_destroy(mhb_response *response);
 
 /* A response without branches for the same pairs, probes, interfaces and kept multipliers, for work
- * that is not to be seen yet. NULL: no memory. */
+ * that is not to be seen yet. */
 mhb_response *mhb_response_like(const mhb_response *response);
 
-/* Interfaces of the pairs, n >= 2: name[n] and interface[pair] are copied. SHB_ERR_IO. */
-shb_status mhb_response_interfaces(mhb_response *response, int n, char *const *name,
-                                   const int *interface, int lead);
+/* Interfaces of the pairs, n >= 2: name[n] and interface[pair] are copied. */
+void mhb_response_interfaces(mhb_response *response, int n, char *const *name, const int *interface,
+                             int lead);
 
 /* Names in files and tables: of a kind of branch, such as "nonlinear"; of special, "" for
  * MHB_ORDINARY. */
@@ -33,33 +34,30 @@ double mhb_response_amplitude(const mhb_response *response, const mhb_branch *br
 /* That of the first probe. Without probes it is that of the first pair's motion. */
 double mhb_response_output(const mhb_response *response, const mhb_branch *branch, int point);
 
-/* Appends an empty branch, its own main one, with index *index. */
-shb_status mhb_response_branch(mhb_response *response, mhb_branch_kind kind, int *index);
-/* Appends a point of zeros with index *point; the arrays of the branch may move. */
-shb_status mhb_response_point(mhb_response *response, int branch, int *point);
+/* Appends an empty branch, its own main one; returns its index. */
+int mhb_response_branch(mhb_response *response, mhb_branch_kind kind);
+/* Appends a point of zeros; returns its index. The arrays of the branch may move. */
+int mhb_response_point(mhb_response *response, int branch);
 /* Moves the last point of a branch to place at; those from there on move up by one. */
 void mhb_response_place(mhb_response *response, int branch, int at);
 /* Appends points first..last of a branch of another response of the same shape, in this order: from
- * the last to the first if first > last. A branch of fewer harmonics is widened. SHB_ERR_IO: no
- * memory. */
-shb_status mhb_response_copy_points(mhb_response *to, int to_branch, const mhb_response *from,
-                                    int from_branch, int first, int last);
+ * the last to the first if first > last. A branch of fewer harmonics is widened. */
+void mhb_response_copy_points(mhb_response *to, int to_branch, const mhb_response *from,
+                              int from_branch, int first, int last);
 /* A branch gets room for so many harmonics; those it has not are 0. It may have no modal amplitudes
- * yet. SHB_ERR_IO: no memory. */
-shb_status mhb_response_widen(const mhb_response *response, mhb_branch *branch, int n_harmonics);
-/* Appends a search to the records of a branch. SHB_ERR_IO: no memory. */
-shb_status mhb_response_note_search(mhb_branch *branch, const mhb_search *search);
-/* to <- the text and the sweep of the motion that lasts; those it had are freed. SHB_ERR_IO: no
- * memory. */
-shb_status mhb_response_copy_lasting(mhb_branch *to, const mhb_branch *from);
-/* Room for n windows of a sweep; an earlier one is freed. SHB_ERR_IO: no memory. */
-shb_status mhb_response_lasting_curve(mhb_branch *branch, int n);
+ * yet. */
+void mhb_response_widen(const mhb_response *response, mhb_branch *branch, int n_harmonics);
+/* Appends a search to the records of a branch. */
+void mhb_response_note_search(mhb_branch *branch, const mhb_search *search);
+/* to <- the text and the sweep of the motion that lasts; those it had are freed. */
+void mhb_response_copy_lasting(mhb_branch *to, const mhb_branch *from);
+/* Room for n windows of a sweep; an earlier one is freed. */
+void mhb_response_lasting_curve(mhb_branch *branch, int n);
 
 /* Chance that all of lasting_starts miss a motion that one start in six reaches: (5/6)^starts. */
 double mhb_response_lasting_missed(int starts);
-/* Room for the modal amplitudes of n points; earlier ones are freed. SHB_ERR_IO: no memory. */
-shb_status mhb_response_modal(const mhb_response *response, mhb_branch *branch, int n,
-                              int n_contact);
+/* Room for the modal amplitudes of n points; earlier ones are freed. */
+void mhb_response_modal(const mhb_response *response, mhb_branch *branch, int n, int n_contact);
 /* Removes the branches for which drop[n_branches] is true; main is adjusted. */
 void mhb_response_drop(mhb_response *response, const bool *drop);
 /* Puts secondary branches behind all main ones, those of one main branch together, in the order in
@@ -70,12 +68,12 @@ void mhb_response_sort(mhb_response *response);
  * probes, subharmonics, interfaces or parameter. */
 shb_status mhb_response_merge(mhb_response *response, mhb_response *other);
 
-/* A curve under way without segments, for those of a response. NULL: no memory. */
+/* A curve under way without segments, for those of a response. */
 mhb_unfinished *mhb_unfinished_create(const mhb_response *like);
 void            mhb_unfinished_destroy(mhb_unfinished *unfinished);
-/* The first n segments with their points, and a copy of their states. SHB_ERR_IO: no memory. */
-shb_status mhb_unfinished_copy(const mhb_response *segments, int n, const mhb_trace_state *state,
-                               mhb_unfinished **unfinished);
+/* The first n segments with their points, and a copy of their states. */
+mhb_unfinished *mhb_unfinished_copy(const mhb_response *segments, int n,
+                                    const mhb_trace_state *state);
 
 /* Writes by a temporary file, fsync and rename; reads back with full checks. SHB_ERR_IO,
  * SHB_ERR_INPUT. */
@@ -93,6 +91,15 @@ typedef struct {
 } mhb_marks;
 
 mhb_marks mhb_response_marks(const mhb_response *response);
+
+/* Whether a mean friction that nothing determines loads others: a pair that moves, or pairs that
+ * touch on the same contact. Alone on its contact, with all others stuck or open, it changes no
+ * motion. The rule of MHB_TRACTION_UNDETERMINED.
+ *   on_contact  in  pairs of one contact, n_pairs is a multiple
+ *   free_mean   in  [n_pairs] the pair sticks all the time although it can slip
+ *   share       in  [n_pairs][3] of the period: stuck, slipping, open */
+bool mhb_friction_loads_others(int n_pairs, int on_contact, const bool *free_mean,
+                               const double *share);
 
 /* Whether the error of a point is above the tolerance: it is no result. */
 bool mhb_branch_marked(const mhb_branch *branch, int point);

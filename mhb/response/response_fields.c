@@ -30,19 +30,17 @@ const mhb_field mhb_fields[] = {
      "estimated error from the Newton residual, relative to the motion"},
     {"error/truncation", "", MHB_DOUBLE, AT(error_truncation), "-",
      "estimated error from the harmonics left out, relative to the vibration: the "
-     "root-mean-square over the period of the error over that of the motion"},
+     "root-mean-square over the period of the error over that of the motion; beside a fold "
+     "(error/truncation_kind 3) that of the distance from the curve of more harmonics"},
     {"error/sampling", "", MHB_DOUBLE, AT(error_sampling), "-",
      "estimated error of the contact force's harmonics, relative to the motion"},
     {"error/modal", "", MHB_DOUBLE, AT(error_modal), "-",
      "estimated error from the modes left out, their damping with them, relative to the "
      "vibration: the root-mean-square over the period of the error over that of the motion"},
     {"mark", "", MHB_INT, AT(mark), "-",
-     "what the point is not worth, a sum: 1 error/truncation, threefold where it is of first "
-     "order, "
-     "is above the tolerance asked for, and beside a fold the curve misses it too; 2 a "
+     "what the point is not worth, a sum: 1 error/truncation is above the tolerance asked for; 2 a "
      "contact sticks all the time: nothing determines its mean friction, which loads others; 4 the "
-     "error is not "
-     "judged"},
+     "error is not judged"},
     /* N_TRACKED: of tracked flips and Neimark-Sacker points */
     {"multiplier", "", MHB_COMPLEX, AT(multiplier), "-",
      "the Floquet multiplier on the unit circle, of a period of the fundamental; its angle is the "
@@ -52,8 +50,9 @@ const mhb_field mhb_fields[] = {
      "harmonics of the balance at the point; higher ones of motion, force and probe are 0"},
     {"error/truncation_kind", "", MHB_INT, AT(truncation_kind), "-",
      "how error/truncation was estimated: 0 nothing is left out (open or stuck throughout), 1 "
-     "first "
-     "order: can be several times too small, 2 a Newton step of twice the harmonics"},
+     "first order, told threefold: can be several times too small, 2 a Newton step of twice the "
+     "harmonics at the same frequency, 3 one across the curve: the motion, or the shift of the "
+     "frequency over the least damping ratio"},
     {"error/truncation_max", "", MHB_DOUBLE, AT(error_truncation_max), "-",
      "estimated error from the harmonics left out: the largest within the period, over the "
      "amplitude that error/truncation is relative to; -1: not known"},
@@ -62,14 +61,17 @@ const mhb_field mhb_fields[] = {
      "vibration; -1: not judged"},
     {"judged", "", MHB_INT, AT(judged), "-",
      "what stable rests on: 0 nothing, not judged; 1 the Floquet multipliers; 2 the same, the "
-     "largest at 1 within its error; 3 they could not be computed; 4 judged points on both sides; "
-     "5 "
-     "an odd number of folds since a judged point"},
+     "largest at 1 within its error; 3 they could not be computed, or the largest is within "
+     "error/multiplier of the border; 4 judged points on both sides; 5 an odd number of folds "
+     "since a judged point"},
     {"loss", "", MHB_INT, AT(loss), "-",
      "how stability was lost: 0 it was not; 1 fold (a multiplier beyond +1): never seen; else "
      "modulated: 2 flip (beyond -1), 3 Neimark-Sacker (a pair)"},
     {"multipliers", "f", MHB_COMPLEX, AT(multipliers), "-",
      "largest Floquet multipliers by falling modulus; 0: not computed, or there are no more"},
+    {"error/multiplier", "", MHB_DOUBLE, AT(error_multiplier), "-",
+     "estimated error of the largest multiplier's modulus from the harmonics left out; a point "
+     "within it is not judged; -1: not known"},
     {"at_limit", "", MHB_INT, AT(at_limit), "-",
      "contact pairs that stick all the time and reach the friction limit; the multipliers hold for "
      "disturbances that do not make them slip"},
@@ -120,7 +122,7 @@ const mhb_field mhb_fields[] = {
      "lines of the contact motion where it does not repeat, largest first; 0: none"},
     {"spectrum/amplitude", "l", MHB_DOUBLE, AT(line_amplitude), "m", "amplitude of the line"},
 };
-enum { N_TRACKED = 1, N_LATER = 24, N_INTEGRATION = 5 };
+enum { N_TRACKED = 1, N_LATER = 25, N_INTEGRATION = 5 };
 _Static_assert(sizeof mhb_fields / sizeof *mhb_fields == MHB_N_FIELDS, "MHB_N_FIELDS counts them");
 
 size_t mhb_field_bytes(mhb_number kind) {

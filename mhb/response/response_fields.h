@@ -22,7 +22,7 @@ typedef struct {
   const char *long_name;
 } mhb_field;
 
-enum { MHB_N_FIELDS = 48 };
+enum { MHB_N_FIELDS = 49 };
 extern const mhb_field mhb_fields[MHB_N_FIELDS]; /* the first is the frequency */
 
 /* Bytes of a number. */

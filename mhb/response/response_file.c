@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include "mesh/base/constants.h"
+#include "mesh/base/memory.h"
 #include "mhb/problem/parameter.h"
 #include "mhb/response/branch_file.h"
 #include "mhb/response/face_wear.h"
@@ -18,8 +19,7 @@ enum { RESPONSE_VERSION = 1 };
 
 static shb_status write_probe_names(hid_t file, const mhb_response *response) {
   if (response->n_probes == 0) return SHB_OK;
-  const char **name = calloc((size_t)response->n_probes, sizeof *name);
-  SHB_CHECK(name, SHB_ERR_IO, "no memory to write /probe/name");
+  const char **name = shb_alloc_zeroed((size_t)response->n_probes, sizeof *name);
   for (int i = 0; i < response->n_probes; i++)
     name[i] = response->probe_name[i] ? response->probe_name[i] : "";
   shb_status status =
@@ -145,6 +145,7 @@ static shb_status write_root(hid_t file, const mhb_response *response) {
   SHB_TRY(h5_write_attribute_int(file, "/", "branches", response->n_branches));
   SHB_TRY(h5_write_attribute_int(file, "/", "engine_order", response->engine_order));
   SHB_TRY(h5_write_attribute_int(file, "/", "blades", response->blades));
+  if (response->turns_right) SHB_TRY(h5_write_attribute_text(file, "/", "rotor_turns", "right"));
   SHB_TRY(h5_write_attribute_int(file, "/", "subharmonics", response->subharmonics));
   if (response->run_up) SHB_TRY(h5_write_attribute_int(file, "/", "run_up", 1));
   if (response->ring) {
@@ -263,6 +264,17 @@ static shb_status read_interfaces(hid_t file, const char *path, mhb_response *re
   return SHB_OK;
 }
 
+/* Files say nothing of a rotor that turns to the left. */
+static shb_status read_turning(hid_t file, const char *path, mhb_response *response) {
+  char *side = NULL;
+  SHB_TRY(h5_read_attribute_text(file, "/", "rotor_turns", &side));
+  response->turns_right = side && strcmp(side, "right") == 0;
+  const bool known      = !side || response->turns_right || strcmp(side, "left") == 0;
+  free(side);
+  SHB_CHECK(known, SHB_ERR_INPUT, "%s: rotor_turns must be left or right", path);
+  return SHB_OK;
+}
+
 /* Sizes, probe names and root attributes. */
 static shb_status read_root(hid_t file, const char *path, mhb_response **out) {
   int    n_pairs = 0, n_harmonics = 0, n_probes = 0;
@@ -270,12 +282,11 @@ static shb_status read_root(hid_t file, const char *path, mhb_response **out) {
   SHB_TRY(read_sizes(file, path, &n_pairs, &n_harmonics));
   if (h5_exists(file, "/probe")) SHB_TRY(h5_read_strings(file, "/probe/name", &n_probes, &name));
   mhb_response *response = *out = mhb_response_create(n_pairs, n_probes, n_harmonics);
-  for (int i = 0; i < n_probes && !response; i++) free(name[i]);
-  for (int i = 0; i < n_probes && response; i++) response->probe_name[i] = name[i];
+  for (int i = 0; i < n_probes; i++) response->probe_name[i] = name[i];
   free(name);
-  SHB_CHECK(response, SHB_ERR_IO, "%s: no memory", path);
   SHB_TRY(h5_read_attribute_int(file, "/", "engine_order", 0, &response->engine_order));
   SHB_TRY(h5_read_attribute_int(file, "/", "blades", 0, &response->blades));
+  SHB_TRY(read_turning(file, path, response));
   SHB_TRY(h5_read_attribute_int(file, "/", "subharmonics", 1, &response->subharmonics));
   SHB_TRY(h5_read_attribute_int(file, "/", "ring", 0, &response->ring));
   SHB_CHECK(

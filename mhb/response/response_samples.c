@@ -5,29 +5,25 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "mesh/base/memory.h"
+
 /* Probability beyond each bound. */
 static const double BEYOND = 0.025;
 
 enum { QUANTILES = 3 };
 static const double QUANTILE[QUANTILES] = {0.5, 0.95, 0.99};
 
-shb_status mhb_samples_create(int n, int preloads, int blades, mhb_samples **out) {
-  mhb_samples *s = calloc(1, sizeof *s);
-  SHB_CHECK(s, SHB_ERR_IO, "out of memory");
+mhb_samples *mhb_samples_create(int n, int preloads, int blades) {
+  mhb_samples *s   = shb_alloc_zeroed(1, sizeof *s);
   const size_t all = (size_t)n * (size_t)preloads;
   *s               = (mhb_samples){.n = n, .preloads = preloads, .blades = blades};
-  s->n0            = calloc((size_t)preloads, sizeof(double));
-  s->deviation     = calloc((size_t)n * (size_t)blades, sizeof(double));
-  s->factor        = calloc(all, sizeof(double));
-  s->frequency     = calloc(all, sizeof(double));
-  s->blade         = calloc(all, sizeof(int));
-  s->mark          = calloc(all, sizeof(int));
-  if (s->n0 && s->deviation && s->factor && s->frequency && s->blade && s->mark) {
-    *out = s;
-    return SHB_OK;
-  }
-  mhb_samples_destroy(s);
-  SHB_FAIL(SHB_ERR_IO, "out of memory for %d samples", n);
+  s->n0            = shb_alloc_zeroed((size_t)preloads, sizeof(double));
+  s->deviation     = shb_alloc_zeroed((size_t)n * (size_t)blades, sizeof(double));
+  s->factor        = shb_alloc_zeroed(all, sizeof(double));
+  s->frequency     = shb_alloc_zeroed(all, sizeof(double));
+  s->blade         = shb_alloc_zeroed(all, sizeof(int));
+  s->mark          = shb_alloc_zeroed(all, sizeof(int));
+  return s;
 }
 
 void mhb_samples_destroy(mhb_samples *s) {
@@ -102,10 +98,10 @@ static void ranks(int n, double p, int *low, int *high) {
 /* A marked sample counts as the least of all for the lower bound, as the largest for the upper. */
 void mhb_samples_quantile(const mhb_samples *s, int preload, double p, double out[3]) {
   const int n = mhb_samples_done(s, preload), marked = mhb_samples_marked(s, preload);
-  double   *x = malloc(sizeof *x * (size_t)(n + 1));
+  double   *x = shb_alloc((size_t)n, sizeof *x);
   int       low, high, m = 0;
   out[0] = out[1] = out[2] = NAN;
-  for (int i = 0; x && i < s->n; i++)
+  for (int i = 0; i < s->n; i++)
     if (is_result(s, preload, i)) x[m++] = factors_of(s, preload)[i];
   if (m > 0) {
     qsort(x, (size_t)m, sizeof *x, by_value);
@@ -196,7 +192,7 @@ shb_status mhb_samples_read(hid_t file, mhb_samples **out) {
   SHB_CHECK(table.rank == 2 && pattern.rank == 2 && table.dim[1] == pattern.dim[0] &&
                 table.dim[0] * table.dim[1] <= 1 << 24 && pattern.dim[1] <= 1 << 14,
             SHB_ERR_INPUT, "/samples/factor and /samples/deviation do not fit together");
-  SHB_TRY(mhb_samples_create((int)table.dim[1], (int)table.dim[0], (int)pattern.dim[1], out));
+  *out              = mhb_samples_create((int)table.dim[1], (int)table.dim[0], (int)pattern.dim[1]);
   shb_status status = read_all(file, *out);
   if (status == SHB_OK) return SHB_OK;
   mhb_samples_destroy(*out);

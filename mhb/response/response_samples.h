@@ -14,9 +14,9 @@ typedef struct {
   int    *mark;      /* [preload][sample] 1: its error is above the tolerance, it is no result */
 } mhb_samples;
 
-/* Zeros. SHB_ERR_IO: no memory. */
-shb_status mhb_samples_create(int n, int preloads, int blades, mhb_samples **samples);
-void       mhb_samples_destroy(mhb_samples *samples);
+/* Zeros. */
+mhb_samples *mhb_samples_create(int n, int preloads, int blades);
+void         mhb_samples_destroy(mhb_samples *samples);
 
 /* Samples of a preload that are done. */
 int mhb_samples_done(const mhb_samples *samples, int preload);

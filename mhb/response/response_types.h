@@ -56,7 +56,8 @@ enum {
   MHB_NOT_JUDGED,       /* none: stable is -1 */
   MHB_BY_MULTIPLIERS,   /* the multipliers: all inside the unit circle, or some well outside */
   MHB_JUDGED_MARGINAL,  /* the largest multiplier is at 1 within its accuracy */
-  MHB_JUDGED_UNDECIDED, /* the multipliers could not be computed: stable is -1 unless folds tell */
+  MHB_JUDGED_UNDECIDED, /* none were computed, or their error is larger than the distance from
+                           the circle: stable is -1 unless folds tell */
   MHB_BY_NEIGHBOURS,    /* the multipliers of judged points on both sides */
   MHB_BY_FOLDS,         /* unstable, by the number of folds passed since a judged point */
   MHB_N_JUDGED
@@ -208,9 +209,10 @@ typedef struct {
   int            *judged;      /* [point] MHB_NOT_JUDGED ... */
   int            *loss;        /* [point] MHB_NO_LOSS ... */
   double complex *multipliers; /* [point][n_multipliers] the largest, by falling modulus; 0: none */
-  int            *at_limit;    /* [point] pairs that stick and reach the friction limit */
-  int            *harmonics;   /* [point] of the balance, at most n_harmonics; 0: not known */
-  int            *truncation_kind;      /* [point] mhb_truncation_kind */
+  double         *error_multiplier; /* [point] of the largest; -1: not known */
+  int            *at_limit;         /* [point] pairs that stick and reach the friction limit */
+  int            *harmonics;        /* [point] of the balance, at most n_harmonics; 0: not known */
+  int            *truncation_kind;  /* [point] mhb_truncation_kind */
   double         *error_truncation_max; /* [point] largest error in the period; -1: not known */
   double         *error_spatial;        /* [point] by the number of contact pairs; -1: not judged */
   /* motion that lasts; 0: not computed */
@@ -256,6 +258,7 @@ typedef struct {
   int     n_modes;
   double *mode_frequency, *mode_damping, *eigen_residual; /* [m]; eigen_residual may be NULL */
   int     engine_order, blades;
+  bool    turns_right; /* the rotor; the wave is then that of N - E (mhb/problem/wave.h) */
   int     ring; /* number of different blades: pairs and probes of blade 0 come first; 0: a wave */
   bool    unfinished;      /* the run that makes it has more to do */
   bool    lacks_diameters; /* of its disc, without which stability cannot be judged */

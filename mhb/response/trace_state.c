@@ -4,6 +4,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "mesh/base/memory.h"
+
 enum { FIRST_NUMBERS = 256 };
 
 void mhb_trace_state_free(mhb_trace_state *state) {
@@ -21,12 +23,8 @@ static void read_numbers(mhb_trace_state *s, double *number, size_t n) {
 static void write_numbers(mhb_trace_state *s, const double *number, size_t n) {
   if (s->failed) return;
   if (s->n + n > s->room) {
-    size_t  room = 2 * (s->n + n) + FIRST_NUMBERS;
-    double *more = realloc(s->number, sizeof *more * room);
-    s->failed    = !more;
-    if (!more) return;
-    s->number = more;
-    s->room   = room;
+    s->room   = 2 * (s->n + n) + FIRST_NUMBERS;
+    s->number = shb_realloc(s->number, s->room, sizeof *s->number);
   }
   for (size_t i = 0; i < n; i++) s->number[s->n++] = isfinite(number[i]) ? number[i] : 0;
 }

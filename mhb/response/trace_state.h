@@ -6,7 +6,7 @@
 #include <stddef.h>
 
 /* Changes with the meaning of the numbers. States of another version are not used. */
-enum { MHB_TRACE_STATE_VERSION = 4 };
+enum { MHB_TRACE_STATE_VERSION = 5 };
 
 /* A list of numbers that is written or read from its front to its back. One function that passes
  * all numbers of an object, each by its address, then does both. */
@@ -14,7 +14,7 @@ typedef struct {
   double *number; /* [n] */
   size_t  n, room, at;
   bool    reads;  /* the numbers go to the addresses, else they come from there */
-  bool    failed; /* no memory, or other numbers than the reader wants */
+  bool    failed; /* other numbers than the reader wants */
 } mhb_trace_state;
 
 void mhb_trace_state_free(mhb_trace_state *state); /* it is empty then: zeroed */

@@ -4,7 +4,7 @@
 
 #include "mhb/ring/side_waves.h"
 
-static shb_status allocate(const mhb_ring_model *model, mhb_starts *s) {
+static void allocate(const mhb_ring_model *model, mhb_starts *s) {
   const size_t blades  = (size_t)model->blades;
   const size_t samples = (size_t)MHB_START_LINES * MHB_SIDE_SAMPLES * 3 * blades;
   s->pattern           = shb_arena_take(&s->arena, 3 * blades, sizeof *s->pattern);
@@ -13,17 +13,15 @@ static shb_status allocate(const mhb_ring_model *model, mhb_starts *s) {
         &s->arena, (size_t)(MHB_START_BLOCKS * MHB_START_BLOCK) * blades, sizeof(double));
     s->start[c].sample = shb_arena_take(&s->arena, samples, sizeof(double));
   }
-  SHB_CHECK(!s->arena.failed, SHB_ERR_IO, "out of memory");
-  return SHB_OK;
 }
 
-shb_status mhb_starts_create(mhb_ring_model *model, mhb_starts *s) {
+void mhb_starts_create(mhb_ring_model *model, mhb_starts *s) {
   *s = (mhb_starts){.scale = 1};
-  SHB_TRY(allocate(model, s));
+  allocate(model, s);
   for (int i = 0; i < 3 * model->blades; i++)
     s->pattern[i] = cexp(I * mhb_ring_model_lag(model, model->order, i % model->blades));
-  SHB_TRY(mhb_ring_create(model, &s->ring));
-  return mhb_ring_output_create(&s->ring, &s->output);
+  mhb_ring_create(model, &s->ring);
+  mhb_ring_output_create(&s->ring, &s->output);
 }
 
 void mhb_starts_destroy(mhb_starts *s) {

@@ -35,9 +35,9 @@ typedef struct {
   shb_arena       arena;
 } mhb_starts;
 
-/* The model must outlive them. None runs. SHB_ERR_IO: no memory. */
-shb_status mhb_starts_create(mhb_ring_model *model, mhb_starts *starts);
-void       mhb_starts_destroy(mhb_starts *starts);
+/* The model must outlive them. None runs. */
+void mhb_starts_create(mhb_ring_model *model, mhb_starts *starts);
+void mhb_starts_destroy(mhb_starts *starts);
 
 /* A copy's start begins: what was read is forgotten, the state of the ring stays. */
 void mhb_start_begin(mhb_starts *starts, int copy);

@@ -75,15 +75,15 @@ static void begin(mhb_exploration *x, int copy) {
 /* ---- groups ---- */
 
 /* The start of a copy belongs to a group, and ends there. */
-static shb_status join(mhb_exploration *x, int copy, int which) {
+static void join(mhb_exploration *x, int copy, int which) {
   mhb_motion_group *g = &x->group[which];
   mhb_starts       *s = x->starts;
   s->runs[copy]       = false;
   x->blocks[copy]     = 0;
   x->told++;
   x->last = copy;
-  if (g->n_states == s->ring.model->copies) return SHB_OK;
-  return mhb_ring_save(&s->ring, copy, s->output.space, &g->state[g->n_states++]);
+  if (g->n_states < s->ring.model->copies)
+    mhb_ring_save(&s->ring, copy, s->output.space, &g->state[g->n_states++]);
 }
 
 /* A motion that is known from now on. More than can be kept are not told apart. */
@@ -121,12 +121,12 @@ static void give_up(mhb_exploration *x, int copy) {
 }
 
 /* What a start shows after a block, if it is read then. */
-static shb_status judge(mhb_exploration *x, int copy) {
+static void judge(mhb_exploration *x, int copy) {
   const int blocks = x->starts->start[copy].periods / MHB_START_BLOCK;
   bool      read   = false;
   double    away, mean[MHB_START_BLOCKS], spread[MHB_START_BLOCKS];
   for (size_t t = 0; t < sizeof targets / sizeof *targets; t++) read = read || targets[t] == blocks;
-  if (!read || (x->patient && blocks < AGREE_BLOCKS)) return SHB_OK;
+  if (!read || (x->patient && blocks < AGREE_BLOCKS)) return;
   const bool               last   = blocks == MHB_START_BLOCKS;
   const mhb_lasting_series all    = mhb_starts_series(x->starts, 1, &copy, mean, spread, x->peaks);
   mhb_motion              *m      = &x->now[copy];
@@ -137,21 +137,20 @@ static shb_status judge(mhb_exploration *x, int copy) {
   const int               other   = verdict == MHB_START_GOES_ON ? like(x, copy) : -1;
   if (verdict == MHB_START_JOINS) {
     x->group[known].motion.starts++;
-    return join(x, copy, known);
-  }
-  if (other >= 0) {
+    join(x, copy, known);
+  } else if (other >= 0) {
     const mhb_motion both = mhb_motions_joined(m, &x->now[other]);
-    if (!add_group(x, &both)) return SHB_OK;
-    SHB_TRY(join(x, other, x->n_groups - 1));
-    return join(x, copy, x->n_groups - 1);
+    if (!add_group(x, &both)) return;
+    join(x, other, x->n_groups - 1);
+    join(x, copy, x->n_groups - 1);
+  } else if (verdict == MHB_START_IS_NEW && add_group(x, m)) {
+    join(x, copy, x->n_groups - 1);
+  } else if (verdict != MHB_START_GOES_ON) {
+    give_up(x, copy);
   }
-  if (verdict == MHB_START_GOES_ON) return SHB_OK;
-  if (verdict == MHB_START_IS_NEW && add_group(x, m)) return join(x, copy, x->n_groups - 1);
-  give_up(x, copy);
-  return SHB_OK;
 }
 
-shb_status mhb_explore(mhb_exploration *x) {
+void mhb_explore(mhb_exploration *x) {
   mhb_starts *s      = x->starts;
   const int   copies = s->ring.model->copies;
   for (int c = 0; c < copies; c++) s->runs[c] = false;
@@ -161,12 +160,12 @@ shb_status mhb_explore(mhb_exploration *x) {
       if (!s->runs[c] && may_begin(x)) begin(x, c);
       running += s->runs[c];
     }
-    if (running == 0) return SHB_OK;
+    if (running == 0) return;
     x->stopped = !mhb_starts_block(s, x->go_on, x->context);
-    if (x->stopped) return SHB_OK;
+    if (x->stopped) return;
     x->periods += running * MHB_START_BLOCK;
     for (int c = 0; c < copies; c++)
-      if (s->runs[c]) SHB_TRY(judge(x, c));
+      if (s->runs[c]) judge(x, c);
   }
 }
 

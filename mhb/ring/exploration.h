@@ -41,8 +41,8 @@ typedef struct {
   int        blocks[MHB_LANES]; /* then; 0: not yet */
 } mhb_exploration;
 
-/* Run all starts. SHB_ERR_IO: no memory. */
-shb_status mhb_explore(mhb_exploration *x);
+/* Run all starts. */
+void mhb_explore(mhb_exploration *x);
 
 /* Free the states. */
 void mhb_motion_groups_free(mhb_motion_group *group, int n);

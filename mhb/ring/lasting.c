@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include "mesh/base/constants.h"
+#include "mhb/problem/wave.h"
 #include "mhb/ring/side_waves.h"
 
 enum {
@@ -48,13 +49,12 @@ static int copies_of(int blades) {
   return copies < 1 ? 1 : copies > MHB_LANES ? MHB_LANES : copies;
 }
 
-shb_status mhb_ring_steps(mhb_ring_model *model, double omega, int least, int *steps) {
-  for (*steps = least * model->order; *steps <= MOST_STEPS * model->order; *steps *= 2) {
-    SHB_TRY(mhb_ring_model_set(model, omega, *steps));
-    if (mhb_ring_model_stiffness(model) < STABLE) return SHB_OK;
+int mhb_ring_steps(mhb_ring_model *model, double omega, int least) {
+  for (int steps = least * model->order; steps <= MOST_STEPS * model->order; steps *= 2) {
+    mhb_ring_model_set(model, omega, steps);
+    if (mhb_ring_model_stiffness(model) < STABLE) return steps;
   }
-  *steps = 0;
-  return SHB_OK;
+  return 0;
 }
 
 /* All starts beside one wave. */
@@ -72,17 +72,16 @@ typedef struct {
 } settling;
 
 /* All copies on the wave, in the steps that are set. scale <- mean over the blades of its peak. */
-static shb_status start_on_wave(settling *w, mhb_ring_state *wave) {
+static void start_on_wave(settling *w, mhb_ring_state *wave) {
   mhb_starts *s    = &w->starts;
   const int   used = mhb_ring_model_used(w->model);
   double      sum  = 0;
   mhb_ring_start(&s->ring, w->wave->n_harmonics, w->wave->force);
-  if (wave) SHB_TRY(mhb_ring_save(&s->ring, 0, s->output.space, wave));
+  if (wave) mhb_ring_save(&s->ring, 0, s->output.space, wave);
   mhb_ring_period(&s->ring);
   mhb_ring_peaks(&s->ring, &s->output);
   for (int l = 0; l < used; l++) sum += s->output.peak[l];
   s->scale = sum / used;
-  return SHB_OK;
 }
 
 /* Of a mistuned ring: the motion of the balance in place of the wave, for the spread. Returns the
@@ -119,68 +118,64 @@ static void leave_wave(const mhb_ring_model *m, double *y) {
   for (int i = 0; i < n * MHB_START_LINES; i++) {
     const int    b = i % m->blades, axis = i / m->blades % 3, at = i % n / (3 * m->blades);
     const double phase = SHB_TWO_PI * (at + 1) / MHB_SIDE_SAMPLES -
-                         SHB_TWO_PI * m->settings.engine_order * b / m->blades;
+                         SHB_TWO_PI * mhb_settings_wave(&m->settings).order * b / m->blades;
     y[i] += (axis ? 0 : size * cos(phase)) - mean[i % n];
   }
 }
 
 /* Strongest side wave of a start, and the share of five lines in the power beside the wave. */
-static shb_status find_side_wave(const mhb_ring_model *m, const mhb_start *s, mhb_lasting *result,
-                                 double *share) {
+static void find_side_wave(const mhb_ring_model *m, const mhb_start *s, mhb_lasting *result,
+                           double *share) {
   mhb_side_waves found;
   int            periods = MHB_START_LINES, now = s->periods % MHB_START_LINES;
   size_t part = (size_t)MHB_SIDE_SAMPLES * 3 * (size_t)m->blades, size = part * MHB_START_LINES;
   const double *x     = s->sample;
   shb_arena     arena = {0};
   double       *y     = shb_arena_take(&arena, size, sizeof *y); /* oldest first */
-  SHB_CHECK(y, SHB_ERR_IO, "out of memory for side waves");
   memcpy(y, x + (size_t)now * part, sizeof *y * (size - (size_t)now * part));
   memcpy(y + size - (size_t)now * part, x, sizeof *y * (size_t)now * part);
   if (m->ring) leave_wave(m, y);
-  shb_status status = mhb_side_waves_find(
-      y, periods, m->blades, m->settings.to_ground ? 0 : m->settings.engine_order, &found);
+  mhb_side_waves_find(y, periods, m->blades,
+                      m->settings.to_ground ? 0 : mhb_settings_wave(&m->settings).order, &found);
   shb_arena_free(&arena);
-  SHB_TRY(status);
   result->diameter = found.wave[0].diameter;
   result->offset   = found.wave[0].offset;
   *share           = found.share;
-  return SHB_OK;
 }
 
 /* ---- where starts lead ---- */
 
-static shb_status explore(settling *w, mhb_exploration *x) {
+static void explore(settling *w, mhb_exploration *x) {
   x->starts  = &w->starts;
   x->go_on   = w->how->go_on;
   x->context = w->how->context;
   x->peaks   = w->peaks;
   x->group   = w->group;
   x->last    = -1;
-  SHB_TRY(mhb_explore(x));
+  mhb_explore(x);
   w->stopped = x->stopped;
   w->result->periods += x->periods;
   w->result->error = larger(w->result->error, x->error);
-  return SHB_OK;
 }
 
-/* From disturbed starts, in the steps that are set. patient: none is told apart early. */
-static shb_status explore_beside_wave(settling *w, bool patient, int *n) {
+/* From disturbed starts, in the steps that are set. patient: none is told apart early. Returns the
+ * number of groups. */
+static int explore_beside_wave(settling *w, bool patient) {
   mhb_noise       noise = {.state = 20};
   mhb_ring_state  wave  = {.omega = 0};
   mhb_exploration x     = {
           .from = &wave, .noise = &noise, .patient = patient, .most_periods = w->how->most_periods};
-  shb_status status = start_on_wave(w, &wave);
-  if (status == SHB_OK && w->starts.scale > 0) status = explore(w, &x);
+  start_on_wave(w, &wave);
+  if (w->starts.scale > 0) explore(w, &x);
   w->result->starts = x.told;
-  *n                = x.n_groups;
   shb_arena_free(&wave.arena);
-  return status;
+  return x.n_groups;
 }
 
 /* ---- the motions, measured ---- */
 
 /* A motion of the result, whose start is in a copy. It may be one that is known. */
-static shb_status take_motion(settling *w, const mhb_motion *m, int copy) {
+static void take_motion(settling *w, const mhb_motion *m, int copy) {
   mhb_lasting *r    = w->result;
   mhb_starts  *s    = &w->starts;
   bool         lead = true;
@@ -188,13 +183,13 @@ static shb_status take_motion(settling *w, const mhb_motion *m, int copy) {
     lead = lead && is_larger(m, &r->motion[i]);
     if (mhb_motion_distance(&r->motion[i], m) >= 1) continue;
     r->motion[i].starts += m->starts;
-    return SHB_OK;
+    return;
   }
-  if (r->n_motions == MHB_LASTING_MOTIONS) return SHB_OK;
+  if (r->n_motions == MHB_LASTING_MOTIONS) return;
   r->motion[r->n_motions++] = *m;
-  if (!lead) return SHB_OK;
-  SHB_TRY(find_side_wave(w->model, &s->start[copy], r, &w->share));
-  return w->how->state ? mhb_ring_save(&s->ring, copy, s->output.space, w->how->state) : SHB_OK;
+  if (!lead) return;
+  find_side_wave(w->model, &s->start[copy], r, &w->share);
+  if (w->how->state) mhb_ring_save(&s->ring, copy, s->output.space, w->how->state);
 }
 
 /* Groups that are measured side by side: copy c measures group c % n. */
@@ -247,7 +242,7 @@ static bool read_motions(const settling *w, int blocks, measured *all) {
 
 /* Take the motion of a group; each copy's own where one differs. *far: they differ, or it is not
  * the motion that the starts showed. */
-static shb_status take_measured(settling *w, const measured *all, int i, bool *far) {
+static void take_measured(settling *w, const measured *all, int i, bool *far) {
   const mhb_motion *m = &all->motion[i], *shown = &all->group[i].motion;
   const int         n = all->copies[i];
   mhb_motion        own[MHB_LANES];
@@ -259,35 +254,32 @@ static shb_status take_measured(settling *w, const measured *all, int i, bool *f
   }
   *far =
       *far || differ || (is_told(m) && is_told(shown) && mhb_motion_distance(m, shown) > DIFFERENT);
-  if (!differ) return take_motion(w, m, all->copy[i][0]);
-  for (int k = 0; k < n; k++) SHB_TRY(take_motion(w, &own[k], all->copy[i][k]));
-  return SHB_OK;
+  for (int k = 0; k < (differ ? n : 1); k++) take_motion(w, differ ? &own[k] : m, all->copy[i][k]);
 }
 
 /* Measure n groups, as many as there are copies at most. *far: one is another motion than its
  * starts showed. */
-static shb_status measure(settling *w, const mhb_motion_group *group, int n, bool *far) {
+static void measure(settling *w, const mhb_motion_group *group, int n, bool *far) {
   measured all;
   begin_measuring(w, group, n, &all);
   for (int t = 0, blocks = 0; t == 0 || !read_motions(w, blocks, &all); t++)
     for (; blocks < targets[t]; blocks++) {
       w->stopped = !mhb_starts_block(&w->starts, w->how->go_on, w->how->context);
-      if (w->stopped) return SHB_OK;
+      if (w->stopped) return;
       for (int i = 0; i < n; i++) w->result->periods += all.copies[i] * MHB_START_BLOCK;
     }
-  for (int i = 0; i < n; i++) SHB_TRY(take_measured(w, &all, i, far));
-  return SHB_OK;
+  for (int i = 0; i < n; i++) take_measured(w, &all, i, far);
 }
 
-static shb_status measure_all(settling *w, int n, bool *far) {
+static bool measure_all(settling *w, int n) {
   const int copies     = w->model->copies;
+  bool      far        = false;
   w->result->n_motions = 0;
-  *far                 = false;
-  SHB_TRY(start_on_wave(w, NULL));
+  start_on_wave(w, NULL);
   w->scale = w->starts.scale;
   for (int i = 0; i < n && !w->stopped; i += copies)
-    SHB_TRY(measure(w, w->group + i, n - i < copies ? n - i : copies, far));
-  return SHB_OK;
+    measure(w, w->group + i, n - i < copies ? n - i : copies, &far);
+  return far;
 }
 
 /* The numbers of the result from the motions that were reached. */
@@ -311,54 +303,52 @@ static void report(settling *w) {
 
 /* Starts are told apart in coarse steps. A motion that is another one when it is measured was told
  * too early, or the steps are too coarse: all is done again then. */
-static shb_status settle(settling *w, const int steps[2]) {
+static void settle(settling *w, const int steps[2]) {
   bool far = true;
-  int  n   = 0;
   for (int i = 0; i < 2 && far && !w->stopped; i++) {
     mhb_motion_groups_free(w->group, MHB_LASTING_MOTIONS);
     memset(w->group, 0, MHB_LASTING_MOTIONS * sizeof *w->group);
     w->result->error = 0;
-    SHB_TRY(mhb_ring_model_set(w->model, w->wave->omega, steps[i]));
-    SHB_TRY(explore_beside_wave(w, i > 0, &n));
-    if (w->stopped || n == 0) return SHB_OK;
-    SHB_TRY(mhb_ring_model_set(w->model, w->wave->omega, steps[1]));
-    SHB_TRY(measure_all(w, n, &far));
+    mhb_ring_model_set(w->model, w->wave->omega, steps[i]);
+    const int n = explore_beside_wave(w, i > 0);
+    if (w->stopped || n == 0) return;
+    mhb_ring_model_set(w->model, w->wave->omega, steps[1]);
+    far = measure_all(w, n);
   }
   if (!w->stopped) report(w);
-  return SHB_OK;
 }
 
 /* One start from the state of a neighbour. It is no start of chance, so it does not count. */
-static shb_status carry(settling *w) {
+static void carry(settling *w) {
   mhb_lasting      *r      = w->result;
   const mhb_lasting before = *r;
   mhb_exploration   x      = {.from = w->how->from, .n_groups = r->n_motions};
   for (int i = 0; i < r->n_motions; i++) w->group[i].motion = r->motion[i];
-  SHB_TRY(start_on_wave(w, NULL));
+  start_on_wave(w, NULL);
   w->scale = w->starts.scale;
-  SHB_TRY(explore(w, &x));
+  explore(w, &x);
   if (w->stopped || x.n_groups == before.n_motions) {
     *r = before;
-    return SHB_OK;
+    return;
   }
   mhb_motion m = w->group[before.n_motions].motion;
   m.starts     = 0;
-  SHB_TRY(take_motion(w, &m, x.last));
+  take_motion(w, &m, x.last);
   report(w);
-  return SHB_OK;
 }
 
-static shb_status run(settling *w, const int steps[2]) {
+static void run(settling *w, const int steps[2]) {
   const size_t most  = (size_t)(MHB_START_BLOCKS * MHB_START_BLOCK) * (size_t)w->model->blades;
   shb_arena    arena = {0};
-  w->peaks = shb_arena_take(&arena, most / 2 * (size_t)w->model->copies, sizeof *w->peaks);
-  w->group = shb_arena_take(&arena, MHB_LASTING_MOTIONS, sizeof *w->group);
-  SHB_CHECK(w->peaks && w->group, SHB_ERR_IO, "out of memory");
-  w->highest        = set_pattern(&w->starts, w->wave);
-  shb_status status = w->how->from ? carry(w) : settle(w, steps);
+  w->peaks   = shb_arena_take(&arena, most / 2 * (size_t)w->model->copies, sizeof *w->peaks);
+  w->group   = shb_arena_take(&arena, MHB_LASTING_MOTIONS, sizeof *w->group);
+  w->highest = set_pattern(&w->starts, w->wave);
+  if (w->how->from)
+    carry(w);
+  else
+    settle(w, steps);
   mhb_motion_groups_free(w->group, MHB_LASTING_MOTIONS);
   shb_arena_free(&arena);
-  return status;
 }
 
 double mhb_lasting_bytes(int blades, int pairs, int modes, bool mistuned) {
@@ -383,15 +373,16 @@ shb_status mhb_lasting_settle(const modal_model *modal, const mhb_settings *sett
   settling                     w      = {.wave = wave, .how = how ? how : &plain, .result = result};
   const double                 lowest = wave->lowest > 0 ? wave->lowest : wave->omega;
   const int copies = w.how->from ? 1 : copies_of(settings->to_ground ? 1 : settings->blades);
-  int       steps[2];
   if (!w.how->from) *result = (mhb_lasting){.diameter = -1};
   SHB_TRY(mhb_ring_model_create_copies(modal, settings, wave->n0, lowest, copies, &w.model));
-  shb_status status = mhb_ring_steps(w.model, wave->omega, COARSE, &steps[0]);
-  if (status == SHB_OK) status = mhb_ring_steps(w.model, wave->omega, STEPS, &steps[1]);
-  if (status == SHB_OK && steps[1] > 0) status = mhb_starts_create(w.model, &w.starts);
-  if (status == SHB_OK && steps[1] > 0) status = run(&w, steps);
+  const int coarse = mhb_ring_steps(w.model, wave->omega, COARSE);
+  const int steps  = mhb_ring_steps(w.model, wave->omega, STEPS);
+  if (steps > 0) {
+    mhb_starts_create(w.model, &w.starts);
+    run(&w, (int[2]){coarse, steps});
+  }
   if (w.stopped && !w.how->from) *result = (mhb_lasting){.diameter = -1};
   mhb_starts_destroy(&w.starts);
   mhb_ring_model_destroy(w.model);
-  return status;
+  return SHB_OK;
 }

@@ -53,8 +53,8 @@ typedef struct {
 
 /* Steps a period of the fundamental: at least `least` a period of the excitation, twice as many
  * until stuck contacts are stable in them. 0: more than 4096 are needed. The model is set to the
- * frequency. SHB_ERR_IO: no memory. */
-shb_status mhb_ring_steps(mhb_ring_model *model, double omega, int least, int *steps);
+ * frequency. */
+int mhb_ring_steps(mhb_ring_model *model, double omega, int least);
 
 /* Bytes that mhb_lasting_settle takes. modes: of a blade; mistuned: each blade has its own. */
 double mhb_lasting_bytes(int blades, int pairs, int modes, bool mistuned);

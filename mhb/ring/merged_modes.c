@@ -128,24 +128,19 @@ shb_status mhb_merged_modes_create(const mhb_receptance *r, const mhb_settings *
                                    int probe, mhb_merged_modes *out) {
   merging   g = {.r = r, .n = r->n * (settings->to_ground ? 1 : 2)};
   size_t    n = (size_t)g.n, wide = 2 * (size_t)r->n;
-  shb_arena arena   = {0};
-  *out              = (mhb_merged_modes){0};
-  g.R               = shb_arena_take(&arena, n * n, sizeof(double));
-  g.R2              = shb_arena_take(&arena, n * n, sizeof(double));
-  g.A               = shb_arena_take(&arena, n * n, sizeof(double));
-  g.value           = shb_arena_take(&arena, n, sizeof(double));
-  g.tau             = shb_arena_take(&arena, n, sizeof(double));
-  g.G               = shb_arena_take(&arena, 3 * n, sizeof(double));
-  out->w            = shb_arena_take(&out->arena, n, sizeof(double));
-  out->shape        = shb_arena_take(&out->arena, n * wide, sizeof(double));
-  out->out          = shb_arena_take(&out->arena, 3 * n, sizeof(double));
-  shb_status status = SHB_OK;
-  if (arena.failed || out->arena.failed)
-    status = shb_fail(SHB_ERR_IO, __FILE__, __LINE__, "out of memory");
-  if (status == SHB_OK) {
-    add_all(&g, first, probe);
-    status = find(&g, out);
-  }
+  shb_arena arena = {0};
+  *out            = (mhb_merged_modes){0};
+  g.R             = shb_arena_take(&arena, n * n, sizeof(double));
+  g.R2            = shb_arena_take(&arena, n * n, sizeof(double));
+  g.A             = shb_arena_take(&arena, n * n, sizeof(double));
+  g.value         = shb_arena_take(&arena, n, sizeof(double));
+  g.tau           = shb_arena_take(&arena, n, sizeof(double));
+  g.G             = shb_arena_take(&arena, 3 * n, sizeof(double));
+  out->w          = shb_arena_take(&out->arena, n, sizeof(double));
+  out->shape      = shb_arena_take(&out->arena, n * wide, sizeof(double));
+  out->out        = shb_arena_take(&out->arena, 3 * n, sizeof(double));
+  add_all(&g, first, probe);
+  const shb_status status = find(&g, out);
   shb_arena_free(&arena);
   if (status != SHB_OK) mhb_merged_modes_destroy(out);
   return status;

@@ -19,7 +19,7 @@ typedef struct {
 } mhb_merged_modes;
 
 /* Merge the modes from first on. probe: index, or -1.
- * Errors: SHB_ERR_INPUT no eigenvalues; SHB_ERR_IO no memory. */
+ * Errors: SHB_ERR_INPUT no eigenvalues. */
 shb_status mhb_merged_modes_create(const mhb_receptance *receptance, const mhb_settings *settings,
                                    int first, int probe, mhb_merged_modes *merged);
 void       mhb_merged_modes_destroy(mhb_merged_modes *merged);

@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "mesh/base/constants.h"
+#include "mesh/base/memory.h"
 #include "mhb/problem/interfaces.h"
 #include "mhb/ring/merged_modes.h"
 
@@ -122,12 +123,11 @@ static void set_free(mhb_ring_model *m) {
   }
 }
 
-shb_status mhb_ring_model_set(mhb_ring_model *m, double omega, int steps) {
+void mhb_ring_model_set(mhb_ring_model *m, double omega, int steps) {
   if (steps != m->steps) {
     shb_arena_free(&m->table);
     m->cosine = shb_arena_take(&m->table, (size_t)steps, sizeof(double));
     m->sine   = shb_arena_take(&m->table, (size_t)steps, sizeof(double));
-    SHB_CHECK(!m->table.failed, SHB_ERR_IO, "out of memory");
     for (int i = 0; i < steps; i++) {
       m->cosine[i] = cos(SHB_TWO_PI * i / steps);
       m->sine[i]   = sin(SHB_TWO_PI * i / steps);
@@ -138,7 +138,6 @@ shb_status mhb_ring_model_set(mhb_ring_model *m, double omega, int steps) {
   m->h     = SHB_TWO_PI * m->order / (omega * steps);
   for (int i = 0; i < m->modes; i++) set_mode(m, i);
   set_free(m);
-  return SHB_OK;
 }
 
 void mhb_ring_model_first(const mhb_ring_model *m, int n_harmonics, const double complex *force,
@@ -197,9 +196,9 @@ static void weighted_row(const mhb_ring_model *m, int mode, double complex phase
 
 double mhb_ring_model_stiffness(const mhb_ring_model *m) {
   int             n     = 3 * m->pairs;
-  double complex *G     = malloc(sizeof *G * (size_t)(n * n + n));
-  double         *value = malloc(sizeof *value * (size_t)n), largest = 0;
-  for (int d = 0; G && value && d <= m->blades / 2; d++) {
+  double complex *G     = shb_alloc((size_t)n * (size_t)(n + 1), sizeof *G);
+  double         *value = shb_alloc((size_t)n, sizeof *value), largest = 0;
+  for (int d = 0; d <= m->blades / 2; d++) {
     double complex *x = G + n * n;
     memset(G, 0, sizeof *G * (size_t)(n * n));
     for (int k = 0; k < m->modes; k++) {
@@ -210,7 +209,6 @@ double mhb_ring_model_stiffness(const mhb_ring_model *m) {
     bool found = LAPACKE_zheev(LAPACK_COL_MAJOR, 'N', 'U', n, G, n, value) == 0;
     largest    = fmax(largest, found ? value[n - 1] : INFINITY);
   }
-  if (!G || !value) largest = INFINITY;
   free(G);
   free(value);
   return largest;
@@ -271,7 +269,7 @@ static shb_status set_merged_modes(mhb_ring_model *m) {
   return SHB_OK;
 }
 
-static shb_status allocate(mhb_ring_model *m) {
+static void allocate(mhb_ring_model *m) {
   shb_arena *a    = &m->arena;
   size_t     most = (size_t)m->kept + 6 * (size_t)m->pairs, pairs = (size_t)m->pairs;
   size_t     frees = (size_t)m->n_free * 6 * (size_t)m->lanes;
@@ -292,8 +290,6 @@ static shb_status allocate(mhb_ring_model *m) {
     m->own     = shb_arena_take(a, MHB_RING_LANE_SIZE * all, sizeof(double));
     m->own_map = shb_arena_take(a, MHB_RING_MAP * all, sizeof(double));
   }
-  SHB_CHECK(!a->failed, SHB_ERR_IO, "out of memory for a ring of %d blades", m->blades);
-  return SHB_OK;
 }
 
 static int harmonics_of_load(const mhb_receptance *r, int *harmonic) {
@@ -344,7 +340,7 @@ static shb_status make(mhb_ring_model *m, const modal_model *modal, double n0, d
          (m->kept == 0 || SHB_TWO_PI * modal->frequency[m->kept] <= LAST_MODE * lowest ||
           (ring && !is_uniform(ring))))
     m->kept++;
-  SHB_TRY(allocate(m));
+  allocate(m);
   harmonics_of_load(m->receptance, m->harmonic);
   set_laws(m, n0);
   set_own_modes(m);
@@ -362,8 +358,7 @@ shb_status mhb_ring_model_create(const modal_model *modal, const mhb_settings *s
 shb_status mhb_ring_model_create_copies(const modal_model *modal, const mhb_settings *settings,
                                         double n0, double lowest, int copies,
                                         mhb_ring_model **out) {
-  mhb_ring_model *m = calloc(1, sizeof *m);
-  SHB_CHECK(m, SHB_ERR_IO, "out of memory");
+  mhb_ring_model *m = shb_alloc_zeroed(1, sizeof *m);
   m->copies         = copies;
   m->settings       = *settings;
   shb_status status = make(m, modal, n0, lowest);

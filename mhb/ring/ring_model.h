@@ -74,8 +74,7 @@ typedef struct {
  *   n0      in  N, total of the leading interface
  *   lowest  in  rad/s, lowest frequency of the excitation that will be set
  * The modal model must outlive it.
- * Errors: SHB_ERR_INPUT as mhb_receptance_create, or residual flexibility without eigenvalues;
- * SHB_ERR_IO no memory. */
+ * Errors: SHB_ERR_INPUT as mhb_receptance_create, or residual flexibility without eigenvalues. */
 shb_status mhb_ring_model_create(const modal_model *modal, const mhb_settings *settings, double n0,
                                  double lowest, mhb_ring_model **model);
 
@@ -86,12 +85,12 @@ shb_status mhb_ring_model_create_copies(const modal_model *modal, const mhb_sett
 void       mhb_ring_model_destroy(mhb_ring_model *model);
 
 /* Coefficients at a frequency of the excitation (rad/s) and a number of steps a period of the
- * fundamental, a multiple of the samples. SHB_ERR_IO: no memory for another number of steps. */
-shb_status mhb_ring_model_set(mhb_ring_model *model, double omega, int steps);
+ * fundamental, a multiple of the samples. */
+void mhb_ring_model_set(mhb_ring_model *model, double omega, int steps);
 
 /* Largest eigenvalue of K^1/2 G K^1/2 over all nodal diameters. K is the stiffness of stuck
  * contacts, G = sum_k B B^H h s tan(wh/2)/(2 w). The stuck ring is stable in time steps below 1;
- * accuracy asks for some distance. INFINITY: no memory. */
+ * accuracy asks for some distance. */
 double mhb_ring_model_stiffness(const mhb_ring_model *model);
 
 /* Phase by which a blade lags at harmonic k of the fundamental, rad. */

@@ -4,7 +4,7 @@
 
 #include "mesh/base/constants.h"
 
-shb_status mhb_ring_output_create(const mhb_ring *ring, mhb_ring_output *o) {
+void mhb_ring_output_create(const mhb_ring *ring, mhb_ring_output *o) {
   size_t lanes = (size_t)ring->model->lanes, modes = (size_t)ring->model->modes;
   *o       = (mhb_ring_output){0};
   o->peak  = shb_arena_take(&o->arena, lanes, sizeof(double));
@@ -13,14 +13,11 @@ shb_status mhb_ring_output_create(const mhb_ring *ring, mhb_ring_output *o) {
   o->space = shb_arena_take(&o->arena, 2 * modes * lanes, sizeof(double));
   o->parts = shb_arena_take(&o->arena, 6 * lanes, sizeof(double));
   o->turn  = shb_arena_take(&o->arena, 2 * (size_t)ring->n_samples, sizeof(double));
-  for (int i = 0; i < ring->n_samples && !o->arena.failed; i++) {
+  for (int i = 0; i < ring->n_samples; i++) {
     double angle       = SHB_TWO_PI * ring->model->order * (i + 1) / ring->n_samples;
     o->turn[2 * i]     = 2 * cos(angle) / ring->n_samples;
     o->turn[2 * i + 1] = -2 * sin(angle) / ring->n_samples;
   }
-  if (!o->arena.failed) return SHB_OK;
-  mhb_ring_output_destroy(o);
-  SHB_FAIL(SHB_ERR_IO, "out of memory");
 }
 
 void mhb_ring_output_destroy(mhb_ring_output *o) {

@@ -15,9 +15,8 @@ typedef struct {
   shb_arena       arena;
 } mhb_ring_output;
 
-/* SHB_ERR_IO: no memory. */
-shb_status mhb_ring_output_create(const mhb_ring *ring, mhb_ring_output *output);
-void       mhb_ring_output_destroy(mhb_ring_output *output);
+void mhb_ring_output_create(const mhb_ring *ring, mhb_ring_output *output);
+void mhb_ring_output_destroy(mhb_ring_output *output);
 
 /* Peaks of the last period. */
 void mhb_ring_peaks(const mhb_ring *ring, mhb_ring_output *output);

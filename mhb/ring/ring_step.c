@@ -255,15 +255,14 @@ static void add_free_modes(const mhb_ring_model *m, double sign, int first, int 
     }
 }
 
-shb_status mhb_ring_move(mhb_ring *ring, double omega, double *space) {
+void mhb_ring_move(mhb_ring *ring, double omega, double *space) {
   mhb_ring_model *m = ring->model;
   double         *q = space, *v = space + (size_t)m->modes * (size_t)m->lanes;
   mhb_ring_get(ring, q, v);
   add_free_modes(m, 1, 0, 1, q, v);
-  SHB_TRY(mhb_ring_model_set(m, omega, m->steps));
+  mhb_ring_model_set(m, omega, m->steps);
   add_free_modes(m, -1, 0, 1, q, v);
   mhb_ring_put(ring, q, v);
-  return SHB_OK;
 }
 
 /* packed[n][blades] <- rows [n][row] of the lanes of a copy, and back. */
@@ -282,21 +281,19 @@ static void unpack(const mhb_ring_model *m, int copy, int n, size_t row, const d
 }
 
 /* Arrays of a state, unless it has them. */
-static shb_status prepare_state(const mhb_ring_model *m, mhb_ring_state *state) {
+static void prepare_state(const mhb_ring_model *m, mhb_ring_state *state) {
   const size_t blades = (size_t)m->blades, n = (size_t)m->modes * blades;
-  if (state->q) return SHB_OK;
+  if (state->q) return;
   state->q       = shb_arena_take(&state->arena, n, sizeof(double));
   state->v       = shb_arena_take(&state->arena, n, sizeof(double));
   state->p       = shb_arena_take(&state->arena, 3 * (size_t)m->pairs * blades, sizeof(double));
   state->contact = shb_arena_take(&state->arena, 5 * (size_t)m->pairs * blades, sizeof(double));
-  SHB_CHECK(!state->arena.failed, SHB_ERR_IO, "out of memory");
-  return SHB_OK;
 }
 
-shb_status mhb_ring_save(const mhb_ring *ring, int copy, double *space, mhb_ring_state *state) {
+void mhb_ring_save(const mhb_ring *ring, int copy, double *space, mhb_ring_state *state) {
   const mhb_ring_model *m    = ring->model;
   double               *half = space + (size_t)m->modes * (size_t)m->lanes;
-  SHB_TRY(prepare_state(m, state));
+  prepare_state(m, state);
   state->omega = m->omega;
   mhb_ring_get_copy(ring, copy, space, half);
   add_free_modes(m, 1, copy, m->copies, space, half);
@@ -304,7 +301,6 @@ shb_status mhb_ring_save(const mhb_ring *ring, int copy, double *space, mhb_ring
   pack(m, copy, m->modes, (size_t)m->lanes, half, state->v);
   pack(m, copy, 3 * m->pairs, ring->row, ring->p + MHB_LANES, state->p);
   pack(m, copy, 5 * m->pairs, ring->row, ring->contact + MHB_LANES, state->contact);
-  return SHB_OK;
 }
 
 void mhb_ring_load(mhb_ring *ring, int copy, const mhb_ring_state *state, double *space) {
@@ -426,7 +422,7 @@ void mhb_ring_start(mhb_ring *ring, int n_harmonics, const double complex *force
 
 /* ---- life cycle ---- */
 
-shb_status mhb_ring_create(mhb_ring_model *model, mhb_ring *ring) {
+void mhb_ring_create(mhb_ring_model *model, mhb_ring *ring) {
   size_t pairs = (size_t)model->pairs, lanes = (size_t)model->lanes;
   *ring = (mhb_ring){
       .model = model, .row = lanes + 2 * MHB_LANES, .n_samples = MHB_RING_SAMPLES * model->order};
@@ -437,9 +433,6 @@ shb_status mhb_ring_create(mhb_ring_model *model, mhb_ring *ring) {
   ring->left    = shb_arena_take(a, 3 * pairs * ring->row, sizeof(double));
   ring->contact = shb_arena_take(a, 5 * pairs * ring->row, sizeof(double));
   ring->output  = shb_arena_take(a, (size_t)ring->n_samples * 3 * lanes, sizeof(double));
-  if (!a->failed) return SHB_OK;
-  mhb_ring_destroy(ring);
-  SHB_FAIL(SHB_ERR_IO, "out of memory for a ring of %d blades", model->blades);
 }
 
 void mhb_ring_destroy(mhb_ring *ring) {

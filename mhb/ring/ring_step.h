@@ -28,9 +28,9 @@ typedef struct {
   shb_arena arena;       /* shb_arena_free ends it */
 } mhb_ring_state;
 
-/* A ring at rest. The model must outlive it. SHB_ERR_IO: no memory. */
-shb_status mhb_ring_create(mhb_ring_model *model, mhb_ring *ring);
-void       mhb_ring_destroy(mhb_ring *ring);
+/* A ring at rest. The model must outlive it. */
+void mhb_ring_create(mhb_ring_model *model, mhb_ring *ring);
+void mhb_ring_destroy(mhb_ring *ring);
 
 /* Integrate a period of the fundamental. */
 void mhb_ring_period(mhb_ring *ring);
@@ -51,12 +51,12 @@ void mhb_ring_put_copy(mhb_ring *ring, int copy, const double *q, const double *
 
 /* Continue at another frequency of the excitation, rad/s. Positions and velocities of the blades
  * are kept, with their motion without contact. space: [2][mode][lanes]. */
-shb_status mhb_ring_move(mhb_ring *ring, double omega, double *space);
+void mhb_ring_move(mhb_ring *ring, double omega, double *space);
 
 /* Keep the state of a copy, and continue one from a state, of a ring with the same modes. The
  * frequency and the steps may be others: the blades keep their positions and velocities. A state is
- * empty, or of such a ring. space: [2][mode][lanes]. SHB_ERR_IO: no memory. */
-shb_status mhb_ring_save(const mhb_ring *ring, int copy, double *space, mhb_ring_state *state);
-void       mhb_ring_load(mhb_ring *ring, int copy, const mhb_ring_state *state, double *space);
+ * empty, or of such a ring. space: [2][mode][lanes]. */
+void mhb_ring_save(const mhb_ring *ring, int copy, double *space, mhb_ring_state *state);
+void mhb_ring_load(mhb_ring *ring, int copy, const mhb_ring_state *state, double *space);
 
 #endif

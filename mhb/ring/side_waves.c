@@ -6,6 +6,7 @@
 #include <stdlib.h>
 
 #include "mesh/base/constants.h"
+#include "mesh/base/memory.h"
 
 /* Bins that a line of Hann's window fills on either side. */
 enum { LOBE = 2 };
@@ -30,14 +31,14 @@ static double size_of(const field *s, int bin, int diameter) {
 }
 
 /* FFTW's sign in time is exp(-j), that over the blades is inverted by reading -n. */
-static shb_status transform(const double *x, field *s) {
+static void transform(const double *x, field *s) {
   int       n = s->n, N = s->blades, size[2] = {n, N};
   double    sum  = 0;
   fftw_plan plan = NULL;
 #pragma omp critical(fftw_planner)
   plan = fftw_plan_many_dft(2, size, 3, s->X, NULL, 1, n * N, s->X, NULL, 1, n * N, FFTW_FORWARD,
                             FFTW_ESTIMATE);
-  SHB_CHECK(plan, SHB_ERR_IO, "out of memory");
+  if (!plan) shb_out_of_memory(0);
   for (int i = 0; i < n; i++) sum += 1 - cos(SHB_TWO_PI * (i + 0.5) / n);
   for (int i = 0; i < n; i++) {
     double window = 2 * (1 - cos(SHB_TWO_PI * (i + 0.5) / n)) / (sum * N);
@@ -49,7 +50,6 @@ static shb_status transform(const double *x, field *s) {
   fftw_execute(plan);
 #pragma omp critical(fftw_planner)
   fftw_destroy_plan(plan);
-  return SHB_OK;
 }
 
 /* Power of the bins around one, which is taken away. */
@@ -99,18 +99,16 @@ static void find(const field *s, mhb_side_waves *found) {
   found->share = total > 0 ? lines / total : 1;
 }
 
-shb_status mhb_side_waves_find(const double *x, int periods, int blades, int engine_order,
-                               mhb_side_waves *found) {
-  field s           = {.n       = periods * MHB_SIDE_SAMPLES,
-                       .periods = periods,
-                       .blades  = blades,
-                       .wave    = (engine_order % blades + blades) % blades};
-  s.X               = fftw_alloc_complex(3 * (size_t)s.n * (size_t)blades);
-  s.power           = calloc(2 * (size_t)periods * (size_t)blades, sizeof *s.power);
-  shb_status status = s.X && s.power ? transform(x, &s) : SHB_ERR_IO;
-  if (status == SHB_OK) find(&s, found);
-  fftw_free(s.X);
+void mhb_side_waves_find(const double *x, int periods, int blades, int engine_order,
+                         mhb_side_waves *found) {
+  field s = {.n       = periods * MHB_SIDE_SAMPLES,
+             .periods = periods,
+             .blades  = blades,
+             .wave    = (engine_order % blades + blades) % blades};
+  s.X     = shb_alloc_aligned(64, 3 * (size_t)s.n * (size_t)blades, sizeof *s.X);
+  s.power = shb_alloc_zeroed(2 * (size_t)periods * (size_t)blades, sizeof *s.power);
+  transform(x, &s);
+  find(&s, found);
+  free(s.X);
   free(s.power);
-  SHB_CHECK(status == SHB_OK, SHB_ERR_IO, "out of memory for side waves");
-  return SHB_OK;
 }

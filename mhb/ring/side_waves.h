@@ -24,9 +24,8 @@ typedef struct {
   double        share; /* of the power beside the wave that these lines have; 1 if there is none */
 } mhb_side_waves;
 
-/* Lines of x[periods * MHB_SIDE_SAMPLES][3 axes][blades], unchanged. engine_order: of the wave.
- * SHB_ERR_IO: no memory. */
-shb_status mhb_side_waves_find(const double *x, int periods, int blades, int engine_order,
-                               mhb_side_waves *found);
+/* Lines of x[periods * MHB_SIDE_SAMPLES][3 axes][blades], unchanged. engine_order: of the wave. */
+void mhb_side_waves_find(const double *x, int periods, int blades, int engine_order,
+                         mhb_side_waves *found);
 
 #endif

@@ -43,32 +43,29 @@ static double frequency_of(const march_state *s, double step) {
 }
 
 /* The state in the middle of a window, if this step is one. */
-static shb_status keep_state(const march_state *s, int step, mhb_slow_sweep *out) {
+static void keep_state(const march_state *s, int step, mhb_slow_sweep *out) {
   const int from = step - s->window / 2;
-  if (from < 0 || from % s->stride != 0 || from / s->stride >= s->n) return SHB_OK;
-  return mhb_ring_save(&s->ring, 0, s->output.space, &out->state[from / s->stride]);
+  if (from < 0 || from % s->stride != 0 || from / s->stride >= s->n) return;
+  mhb_ring_save(&s->ring, 0, s->output.space, &out->state[from / s->stride]);
 }
 
-/* finished <- false: stopped. */
-static shb_status march(march_state *s, mhb_go_on go_on, void *context, mhb_slow_sweep *out,
-                        bool *finished) {
+/* false: stopped. */
+static bool march(march_state *s, mhb_go_on go_on, void *context, mhb_slow_sweep *out) {
   mhb_noise noise  = {.state = 5};
   size_t    blades = (size_t)s->model->blades;
   double   *peak   = s->peak;
-  *finished        = false;
   for (int step = 0; step < s->n_steps; step++) {
-    SHB_TRY(mhb_ring_move(&s->ring, SHB_TWO_PI * frequency_of(s, step + 0.5), s->output.space));
+    mhb_ring_move(&s->ring, SHB_TWO_PI * frequency_of(s, step + 0.5), s->output.space);
     mhb_ring_disturb(&s->ring, &s->output, NOISE, &noise);
     for (int i = 0; i < STEP; i++, peak += blades) {
       mhb_ring_period(&s->ring);
       mhb_ring_peaks(&s->ring, &s->output);
       memcpy(peak, s->output.peak, blades * sizeof *peak);
-      if (go_on && !go_on(context)) return SHB_OK;
+      if (go_on && !go_on(context)) return false;
     }
-    SHB_TRY(keep_state(s, step, out));
+    keep_state(s, step, out);
   }
-  *finished = true;
-  return SHB_OK;
+  return true;
 }
 
 /* One window that begins at a step. Returns the mean over its periods of the worst blade. */
@@ -91,7 +88,7 @@ static double read_window(const march_state *s, int first, double *space, double
   return largest;
 }
 
-static shb_status read_windows(const march_state *s, double *space, mhb_slow_sweep *out) {
+static void read_windows(const march_state *s, double *space, mhb_slow_sweep *out) {
   double top = 0;
   for (int i = 0; i < s->n; i++) {
     out->frequency[i] = frequency_of(s, i * s->stride + 0.5 * s->window);
@@ -101,37 +98,30 @@ static shb_status read_windows(const march_state *s, double *space, mhb_slow_swe
     out->largest = out->frequency[i];
   }
   out->n = s->n;
-  return SHB_OK;
 }
 
-static shb_status allocate(const march_state *s, mhb_slow_sweep *out) {
+static void allocate(const march_state *s, mhb_slow_sweep *out) {
   const size_t n = (size_t)s->n;
   out->frequency = shb_arena_take(&out->arena, n, sizeof(double));
   out->mean      = shb_arena_take(&out->arena, n, sizeof(double));
   out->worst     = shb_arena_take(&out->arena, n, sizeof(double));
   out->state     = shb_arena_take(&out->arena, n, sizeof *out->state);
-  out->n_states  = out->state ? s->n : 0;
-  SHB_CHECK(!out->arena.failed, SHB_ERR_IO, "out of memory");
-  return SHB_OK;
+  out->n_states  = s->n;
 }
 
-static shb_status run(march_state *s, const modal_model *modal, const mhb_wave *wave,
-                      mhb_go_on go_on, void *context, mhb_slow_sweep *out) {
-  int  steps;
-  bool finished;
-  SHB_TRY(mhb_ring_steps(s->model, wave->omega, STEPS, &steps));
-  if (steps == 0) return SHB_OK;
-  SHB_TRY(mhb_ring_create(s->model, &s->ring));
-  SHB_TRY(mhb_ring_output_create(&s->ring, &s->output));
+static void run(march_state *s, const modal_model *modal, const mhb_wave *wave, mhb_go_on go_on,
+                void *context, mhb_slow_sweep *out) {
+  if (mhb_ring_steps(s->model, wave->omega, STEPS) == 0) return;
+  mhb_ring_create(s->model, &s->ring);
+  mhb_ring_output_create(&s->ring, &s->output);
   plan(modal, s);
-  SHB_TRY(allocate(s, out));
+  allocate(s, out);
   size_t n = (size_t)s->n_steps * STEP * (size_t)s->model->blades;
   s->peak  = shb_arena_take(&s->arena, 2 * n, sizeof(double));
-  SHB_CHECK(!s->arena.failed, SHB_ERR_IO, "out of memory");
   mhb_ring_start(&s->ring, wave->n_harmonics, wave->force);
-  SHB_TRY(march(s, go_on, context, out, &finished));
-  out->periods = s->n_steps * STEP;
-  return finished ? read_windows(s, s->peak + n, out) : SHB_OK;
+  const bool finished = march(s, go_on, context, out);
+  out->periods        = s->n_steps * STEP;
+  if (finished) read_windows(s, s->peak + n, out);
 }
 
 shb_status mhb_slow_sweep_run(const modal_model *modal, const mhb_settings *settings,
@@ -141,13 +131,12 @@ shb_status mhb_slow_sweep_run(const modal_model *modal, const mhb_settings *sett
   *out                = (mhb_slow_sweep){0};
   const double lowest = wave->lowest > 0 ? wave->lowest : wave->omega;
   SHB_TRY(mhb_ring_model_create(modal, settings, wave->n0, lowest, &s.model));
-  shb_status status = run(&s, modal, wave, go_on, context, out);
+  run(&s, modal, wave, go_on, context, out);
   mhb_ring_output_destroy(&s.output);
   mhb_ring_destroy(&s.ring);
   mhb_ring_model_destroy(s.model);
   shb_arena_free(&s.arena);
-  if (status != SHB_OK) mhb_slow_sweep_destroy(out);
-  return status;
+  return SHB_OK;
 }
 
 void mhb_slow_sweep_destroy(mhb_slow_sweep *sweep) {

@@ -4,19 +4,18 @@
 #include <string.h>
 
 #include "mesh/base/constants.h"
+#include "mesh/base/memory.h"
 
 shb_status mhb_disc_table_create(modal_sector_speeds *speeds, const char *path, int engine_order,
                                  const double frequency[2], mhb_disc_table **out) {
-  mhb_disc_table *d = calloc(1, sizeof *d);
-  SHB_CHECK(d, SHB_ERR_IO, "out of memory");
-  d->blades        = speeds->blades;
-  d->n             = speeds->n;
-  d->diameter      = speeds->diameter;
-  speeds->diameter = NULL;
-  d->table         = calloc((size_t)d->n, sizeof(void *));
-  shb_status status =
-      d->table ? mhb_speed_tables_create(d->n, speeds->at, path, engine_order, frequency, d->table)
-               : shb_fail(SHB_ERR_IO, __FILE__, __LINE__, "out of memory");
+  mhb_disc_table *d = shb_alloc_zeroed(1, sizeof *d);
+  d->blades         = speeds->blades;
+  d->n              = speeds->n;
+  d->diameter       = speeds->diameter;
+  speeds->diameter  = NULL;
+  d->table          = shb_alloc_zeroed((size_t)d->n, sizeof(void *));
+  const shb_status status =
+      mhb_speed_tables_create(d->n, speeds->at, path, engine_order, frequency, d->table);
   if (status != SHB_OK) {
     mhb_disc_table_destroy(d);
     return status;
@@ -38,40 +37,32 @@ shb_status mhb_disc_table_check(const mhb_disc_table *d, const char *path) {
   return SHB_OK;
 }
 
-static shb_status make(mhb_disc_speeds *s) {
+static void make(mhb_disc_speeds *s) {
   const mhb_disc_table *d = s->table;
   const size_t          n = (size_t)d->n;
-  s->at                   = calloc(n, sizeof(mhb_speed_model *));
-  s->used                 = calloc(n, sizeof *s->used);
-  SHB_CHECK(s->at && s->used, SHB_ERR_IO, "out of memory for the disc");
-  SHB_TRY(modal_nodal_diameters_create(d->blades, d->n, &s->now));
-  SHB_TRY(modal_nodal_diameters_create(d->blades, d->n, &s->slope));
+  s->at                   = shb_alloc_zeroed(n, sizeof(mhb_speed_model *));
+  s->used                 = shb_alloc_zeroed(n, sizeof *s->used);
+  modal_nodal_diameters_create(d->blades, d->n, &s->now);
+  modal_nodal_diameters_create(d->blades, d->n, &s->slope);
   s->used[0] = true;
   for (int i = 0; i < d->n; i++) {
     s->now.diameter[i] = s->slope.diameter[i] = d->diameter[i];
-    SHB_TRY(mhb_speed_model_create(d->table[i], &s->at[i]));
-    const mhb_speed_model *at = s->at[i];
-    s->now.model[i]           = at->model;
-    s->now.imaginary[i]       = at->imaginary;
-    s->now.backward[i]        = at->backward;
-    s->slope.model[i]         = at->slope;
-    s->slope.imaginary[i]     = at->slope_imaginary;
-    s->slope.backward[i]      = at->slope_backward;
+    s->at[i]                                  = mhb_speed_model_create(d->table[i]);
+    const mhb_speed_model *at                 = s->at[i];
+    s->now.model[i]                           = at->model;
+    s->now.imaginary[i]                       = at->imaginary;
+    s->now.backward[i]                        = at->backward;
+    s->slope.model[i]                         = at->slope;
+    s->slope.imaginary[i]                     = at->slope_imaginary;
+    s->slope.backward[i]                      = at->slope_backward;
   }
-  return SHB_OK;
 }
 
-shb_status mhb_disc_speeds_create(const mhb_disc_table *table, mhb_disc_speeds **out) {
-  mhb_disc_speeds *s = calloc(1, sizeof *s);
-  SHB_CHECK(s, SHB_ERR_IO, "out of memory");
-  s->table          = table;
-  shb_status status = make(s);
-  if (status != SHB_OK) {
-    mhb_disc_speeds_destroy(s);
-    return status;
-  }
-  *out = s;
-  return SHB_OK;
+mhb_disc_speeds *mhb_disc_speeds_create(const mhb_disc_table *table) {
+  mhb_disc_speeds *s = shb_alloc_zeroed(1, sizeof *s);
+  s->table           = table;
+  make(s);
+  return s;
 }
 
 /* The arrays of the models belong to the speed models. */

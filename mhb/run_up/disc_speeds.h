@@ -29,9 +29,9 @@ typedef struct {
   modal_nodal_diameters now, slope; /* models of at, and their derivatives; not to be freed */
 } mhb_disc_speeds;
 
-/* At no frequency yet. The table must outlive it. SHB_ERR_IO: no memory. */
-shb_status mhb_disc_speeds_create(const mhb_disc_table *table, mhb_disc_speeds **speeds);
-void       mhb_disc_speeds_destroy(mhb_disc_speeds *speeds);
+/* At no frequency yet. The table must outlive it. */
+mhb_disc_speeds *mhb_disc_speeds_create(const mhb_disc_table *table);
+void             mhb_disc_speeds_destroy(mhb_disc_speeds *speeds);
 
 /* Models of the nodal diameters that are used <- at an excitation frequency, rad/s. */
 void mhb_disc_speeds_set(mhb_disc_speeds *speeds, double omega);

@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "mesh/base/constants.h"
+#include "mesh/base/memory.h"
 #include "mhb/run_up/unitary.h"
 
 /* Relative distance of eigenvalues that count as equal; least eigenvalue of a model, relative to
@@ -18,7 +19,7 @@ static void take_shapes(mhb_speed_model *a, modal_model *of) {
   const size_t       m = (size_t)a->table->n_modes, side = 3 * (size_t)common->n_pairs * m;
   of->right = shb_arena_take(&a->arena, side, sizeof(double));
   of->left  = common->has_left ? shb_arena_take(&a->arena, side, sizeof(double)) : NULL;
-  of->probe = shb_arena_take(&a->arena, 3 * (size_t)common->n_probes * m + 1, sizeof(double));
+  of->probe = shb_arena_take(&a->arena, 3 * (size_t)common->n_probes * m, sizeof(double));
 }
 
 /* The models' arrays <- those of an entry and its rotated shapes. */
@@ -27,10 +28,7 @@ static void point(mhb_speed_model *a, double *coefficients, double *rotated,
   const mhb_speed_table *r     = a->table;
   modal_model           *model = parts->model;
   const int              side = 3 * model->n_pairs, m = r->n_modes;
-  double                *unrotated[MHB_SPEED_TABLE_ALL];
-  for (int i = 0; i < MHB_SPEED_TABLE_ALL; i++)
-    unrotated[i] = r->count[i] ? coefficients + r->unrotated[i] : NULL;
-  mhb_speed_table_set_unrotated(parts, unrotated);
+  mhb_speed_table_place(r, coefficients, parts);
   if (r->width == 2) {
     take_shapes(a, model);
     take_shapes(a, parts->imaginary);
@@ -63,7 +61,7 @@ static void make_models(mhb_speed_model *a, double *coefficients, double *rotate
   model->modal_force       = shb_arena_take(&a->arena, K * m, sizeof(double complex));
   if (a->table->width == 2)
     parts->backward->modal_force = shb_arena_take(&a->arena, K * m, sizeof(double complex));
-  if (!a->arena.failed) point(a, coefficients, rotated, parts);
+  point(a, coefficients, rotated, parts);
 }
 
 /* The models at the speed, or their derivatives; of a real model the others are not used. */
@@ -77,11 +75,10 @@ static mhb_speed_parts slopes(mhb_speed_model *a) {
   return (mhb_speed_parts){&a->slope, &a->slope_imaginary, &a->slope_backward};
 }
 
-shb_status mhb_speed_model_create(const mhb_speed_table *table, mhb_speed_model **out) {
-  mhb_speed_model *a = calloc(1, sizeof *a);
-  SHB_CHECK(a, SHB_ERR_IO, "out of memory");
-  const size_t m = (size_t)table->n_modes, width = (size_t)table->width, real = sizeof(double);
-  const size_t shapes = width * (size_t)table->rows * m, square = width * m * m;
+mhb_speed_model *mhb_speed_model_create(const mhb_speed_table *table) {
+  mhb_speed_model *a = shb_alloc_zeroed(1, sizeof *a);
+  const size_t     m = (size_t)table->n_modes, width = (size_t)table->width, real = sizeof(double);
+  const size_t     shapes = width * (size_t)table->rows * m, square = width * m * m;
   a->table = table;
   a->omega = a->slope_omega = NAN;
   a->stiffness              = shb_arena_take(&a->arena, square, real);
@@ -102,12 +99,7 @@ shb_status mhb_speed_model_create(const mhb_speed_table *table, mhb_speed_model 
     a->model.coriolis = shb_arena_take(&a->arena, m * m, real);
     if (width == 2) a->imaginary.coriolis = shb_arena_take(&a->arena, m * m, real);
   }
-  if (a->arena.failed) {
-    mhb_speed_model_destroy(a);
-    SHB_FAIL(SHB_ERR_IO, "out of memory for %zu modes", m);
-  }
-  *out = a;
-  return SHB_OK;
+  return a;
 }
 
 void mhb_speed_model_destroy(mhb_speed_model *a) {
@@ -262,9 +254,8 @@ void mhb_speed_model_differentiate(mhb_speed_model *a) {
 
 shb_status mhb_speed_model_check(const mhb_speed_table *table, const char *path) {
   enum { SAMPLES = 33 };
-  mhb_speed_model *here  = NULL;
+  mhb_speed_model *here  = mhb_speed_model_create(table);
   double           least = INFINITY, speed = 0;
-  SHB_TRY(mhb_speed_model_create(table, &here));
   for (int i = 0; i < SAMPLES; i++) {
     double omega = table->band[0] + (table->band[1] - table->band[0]) * i / (SAMPLES - 1);
     mhb_speed_model_set(here, omega);

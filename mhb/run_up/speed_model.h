@@ -37,9 +37,9 @@ typedef struct {
   shb_arena   arena;
 } mhb_speed_model;
 
-/* At no frequency yet. The table must outlive it. SHB_ERR_IO: no memory. */
-shb_status mhb_speed_model_create(const mhb_speed_table *table, mhb_speed_model **speed_model);
-void       mhb_speed_model_destroy(mhb_speed_model *speed_model);
+/* At no frequency yet. The table must outlive it. */
+mhb_speed_model *mhb_speed_model_create(const mhb_speed_table *table);
+void             mhb_speed_model_destroy(mhb_speed_model *speed_model);
 
 /* model <- at an excitation frequency, rad/s. Beyond the speeds covered: that of the last of
  * them. */
@@ -54,7 +54,7 @@ double complex mhb_speed_model_damping(const mhb_speed_model *speed_model, int i
 double complex mhb_speed_model_coriolis(const mhb_speed_model *speed_model, int i, int j);
 
 /* The stiffness stays positive definite between the speeds of the table.
- * SHB_ERR_INPUT: it does not; path of the modal file, for the message. SHB_ERR_IO: no memory. */
+ * SHB_ERR_INPUT: it does not; path of the modal file, for the message. */
 shb_status mhb_speed_model_check(const mhb_speed_table *table, const char *path);
 
 #endif

@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "mesh/base/constants.h"
+#include "mesh/base/memory.h"
 #include "mhb/run_up/unitary.h"
 #include "modal/model/reduce.h"
 
@@ -26,86 +27,52 @@ double mhb_speed_table_speed(const mhb_speed_table *r, double omega) {
 
 /* ---- entries ---- */
 
-/* Those of one of the models; sizes: the first of the parts. */
-static void unrotated_of(const modal_model *sizes, const modal_model *m, const void **data,
-                         size_t *count) {
-  const size_t c = (size_t)modal_model_contact_dofs(sizes), q = 3 * (size_t)sizes->n_probes;
-  const size_t k = 2 * ((size_t)sizes->n_load + 1);
-  const struct {
-    const void *data;
-    size_t      count;
-  } part[MHB_SPEED_TABLE_UNROTATED] = {{m->load_residual, k * c},
-                                       {m->load_inertia, k * c},
-                                       {m->load_fourth, k * c},
-                                       {m->probe_load_residual, k * q},
-                                       {m->probe_load_inertia, k * q},
-                                       {m->probe_load_fourth, k * q},
-                                       {m->residual_flexibility, c * c},
-                                       {m->residual_inertia, c * c},
-                                       {m->residual_fourth, c * c},
-                                       {m->contact_tail, 2 * c},
-                                       {m->load_tail, k},
-                                       {m->probe_contact_residual, q * c},
-                                       {m->probe_contact_inertia, q * c},
-                                       {m->probe_contact_fourth, q * c}};
-  for (int i = 0; i < MHB_SPEED_TABLE_UNROTATED; i++) {
-    data[i]  = part[i].data;
-    count[i] = part[i].data ? part[i].count : 0;
-  }
-}
-
-static void unrotated(const mhb_speed_parts *parts, const void *data[MHB_SPEED_TABLE_ALL],
-                      size_t count[MHB_SPEED_TABLE_ALL]) {
-  static const modal_model none   = {0};
-  const modal_model *const from[] = {parts->model, parts->imaginary, parts->backward};
-  for (int i = 0; i < 3; i++)
-    unrotated_of(parts->model, from[i] ? from[i] : &none, data + i * MHB_SPEED_TABLE_UNROTATED,
-                 count + i * MHB_SPEED_TABLE_UNROTATED);
-}
-
-static void set_unrotated_of(modal_model *m, double *const *data) {
-  m->load_residual          = (double complex *)data[0];
-  m->load_inertia           = (double complex *)data[1];
-  m->load_fourth            = (double complex *)data[2];
-  m->probe_load_residual    = (double complex *)data[3];
-  m->probe_load_inertia     = (double complex *)data[4];
-  m->probe_load_fourth      = (double complex *)data[5];
-  m->residual_flexibility   = data[6];
-  m->residual_inertia       = data[7];
-  m->residual_fourth        = data[8];
-  m->contact_tail           = data[9];
-  m->load_tail              = data[10];
-  m->probe_contact_residual = data[11];
-  m->probe_contact_inertia  = data[12];
-  m->probe_contact_fourth   = data[13];
-}
-
-void mhb_speed_table_set_unrotated(const mhb_speed_parts *parts,
-                                   double *const          data[MHB_SPEED_TABLE_ALL]) {
-  modal_model *const to[] = {parts->model, parts->imaginary, parts->backward};
-  for (int i = 0; i < 3; i++)
-    if (to[i]) set_unrotated_of(to[i], data + i * MHB_SPEED_TABLE_UNROTATED);
-}
-
 static mhb_speed_parts parts_of(const modal_speeds *s, int i) {
   if (!s->imaginary) return (mhb_speed_parts){&s->model[i], NULL, NULL};
   return (mhb_speed_parts){&s->model[i], &s->imaginary[i], &s->backward[i]};
 }
 
-static void lay_out(mhb_speed_table *r, const mhb_speed_parts *common) {
-  const modal_model *m = common->model;
-  const void        *unused[MHB_SPEED_TABLE_ALL];
+/* Doubles of an array in an entry, an even number as complex ones follow; 0: it is not there. */
+static size_t doubles_of(const mhb_speed_table *r, const modal_dataset *row, const modal_model *m) {
+  if (!m || !modal_dataset_is_residual(row) || !modal_dataset_get(row, m)) return 0;
+  const size_t n = modal_dataset_count(row, r->common) * modal_dataset_width(row) / sizeof(double);
+  return n + n % 2;
+}
+
+/* Complex arrays of a model come first. */
+void mhb_speed_table_place(const mhb_speed_table *r, double *entry, const mhb_speed_parts *parts) {
+  const modal_model *const have[] = {r->last.model, r->last.imaginary, r->last.backward};
+  modal_model *const       to[]   = {parts->model, parts->imaginary, parts->backward};
+  double                  *at     = entry + r->fixed;
+  for (int i = 0; i < 6; i++)
+    for (const modal_dataset *row = modal_datasets; row->path; row++) {
+      const size_t n = doubles_of(r, row, have[i / 2]);
+      if (n == 0 || (row->kind == MODAL_LOAD) != (i % 2 == 0)) continue;
+      modal_dataset_set(row, to[i / 2], at);
+      at += n;
+    }
+}
+
+/* The arrays of a model that has a place for them. */
+static void copy_residuals(const modal_model *sizes, const modal_model *from,
+                           const modal_model *to) {
+  for (const modal_dataset *row = modal_datasets; row->path; row++)
+    if (modal_dataset_is_residual(row) && modal_dataset_get(row, to))
+      memcpy(modal_dataset_get(row, to), modal_dataset_get(row, from),
+             modal_dataset_count(row, sizes) * modal_dataset_width(row));
+}
+
+static void lay_out(mhb_speed_table *r) {
+  const modal_model *m     = r->common;
   const size_t       modes = (size_t)r->n_modes, width = (size_t)r->width;
   r->rows    = modal_model_contact_dofs(m) + 3 * m->n_probes + 2 * (m->n_load + 1);
   r->squares = m->coriolis ? 3 : 2;
-  r->size    = width * ((size_t)r->squares * modes + (size_t)r->rows) * modes;
-  r->size += r->size % 2; /* complex numbers follow */
-  unrotated(common, unused, r->count);
-  for (int i = 0; i < MHB_SPEED_TABLE_ALL; i++) {
-    r->unrotated[i] = r->size;
-    r->size += r->count[i];
-    r->size += r->size % 2; /* as complex numbers of the next model do */
-  }
+  r->fixed   = width * ((size_t)r->squares * modes + (size_t)r->rows) * modes;
+  r->fixed += r->fixed % 2; /* complex numbers follow */
+  r->size = r->fixed;
+  for (const modal_dataset *row = modal_datasets; row->path; row++)
+    r->size += doubles_of(r, row, m) + doubles_of(r, row, r->last.imaginary) +
+               doubles_of(r, row, r->last.backward);
 }
 
 /* Rows of real and imaginary parts times V; row: scratch [m]. Returns the end of out. */
@@ -140,8 +107,7 @@ static void fill_entry(const mhb_speed_table *r, const mhb_speed_parts *p, doubl
                        const double *V, double *out, double complex *row, double *square) {
   const modal_model *model = p->model, *im = p->imaginary;
   const int          m = r->n_modes, side = 3 * model->n_pairs, probes = 3 * model->n_probes;
-  const void        *data[MHB_SPEED_TABLE_ALL];
-  size_t             count[MHB_SPEED_TABLE_ALL];
+  modal_model        place[3] = {{0}};
   for (int i = 0; i < m; i++) square[i] = pow(SHB_TWO_PI * model->frequency[i], 2);
   mhb_unitary_diagonal(r->width, m, V, square, out);
   mhb_unitary_diagonal(r->width, m, V, model->damping_ratio, out + r->width * m * m);
@@ -153,9 +119,10 @@ static void fill_entry(const mhb_speed_table *r, const mhb_speed_parts *p, doubl
   if (model->has_left) at = rotate_rows(r, V, model->left, im ? im->left : NULL, side, row, at);
   at = rotate_rows(r, V, model->probe, im ? im->probe : NULL, probes, row, at);
   rotate_load(r, p, V, row, at);
-  unrotated(p, data, count);
-  for (int i = 0; i < MHB_SPEED_TABLE_ALL; i++)
-    if (count[i]) memcpy(out + r->unrotated[i], data[i], count[i] * sizeof *out);
+  mhb_speed_table_place(r, out, &(mhb_speed_parts){place, place + 1, place + 2});
+  copy_residuals(model, model, &place[0]);
+  if (im) copy_residuals(model, im, &place[1]);
+  if (p->backward) copy_residuals(model, p->backward, &place[2]);
 }
 
 /* ---- modes and basis ---- */
@@ -276,34 +243,26 @@ static shb_status check_range(const mhb_speed_table *r, const char *path) {
 }
 
 /* The entries of speeds from .. to. */
-static shb_status fill(mhb_speed_table *r, int from, double *work) {
+static void fill(mhb_speed_table *r, int from, double *work) {
   const size_t    m      = (size_t)r->n_modes;
-  double         *square = calloc((size_t)r->n, sizeof *square);
-  double         *V      = calloc((size_t)r->width * m * m + m, sizeof *V);
-  double complex *row    = calloc(m, sizeof *row);
-  r->first_entry         = calloc(r->size, sizeof *r->first_entry);
-  r->entries             = calloc((size_t)r->n * r->size, sizeof *r->entries);
-  shb_status status      = SHB_OK;
-  if (!square || !V || !row || !r->first_entry || !r->entries)
-    status =
-        shb_fail(SHB_ERR_IO, __FILE__, __LINE__, "out of memory for the models of %d speeds", r->n);
-  for (int i = 0; status == SHB_OK && i < r->n; i++) {
+  double         *square = shb_alloc_zeroed((size_t)r->n, sizeof *square);
+  double         *V      = shb_alloc_zeroed((size_t)r->width * m * m + m, sizeof *V);
+  double complex *row    = shb_alloc_zeroed(m, sizeof *row);
+  r->first_entry         = shb_alloc_zeroed(r->size, sizeof *r->first_entry);
+  r->entries             = shb_alloc_zeroed((size_t)r->n * r->size, sizeof *r->entries);
+  for (int i = 0; i < r->n; i++) {
     const mhb_speed_parts parts = parts_of(&r->speeds, from + i);
     square[i]                   = pow(r->speeds.speed[from + i], 2);
     basis(r, from + i, work, V);
     fill_entry(r, &parts, r->speeds.speed[from + i], V, r->entries + (size_t)i * r->size, row,
                V + (size_t)r->width * m * m);
   }
-  if (status == SHB_OK) {
-    memcpy(r->first_entry, r->entries, r->size * sizeof *r->first_entry);
-    for (size_t i = 0; i < (size_t)r->n * r->size; i++)
-      r->entries[i] -= r->first_entry[i % r->size];
-    status = modal_spline_create(r->n, square, &r->spline);
-  }
+  memcpy(r->first_entry, r->entries, r->size * sizeof *r->first_entry);
+  for (size_t i = 0; i < (size_t)r->n * r->size; i++) r->entries[i] -= r->first_entry[i % r->size];
+  modal_spline_create(r->n, square, &r->spline);
   free(square);
   free(V);
   free(row);
-  return status;
 }
 
 /* Residual modes cross and rotate with the speed: they are not interpolated, the three terms
@@ -323,14 +282,15 @@ static shb_status make(mhb_speed_table *r, int from, int to, int modes, double *
   r->n_dropped    = s->model[from].n_modes - modes;
   r->low          = s->speed[from];
   r->high         = s->speed[to];
-  r->common       = &s->model[to];
+  r->last         = parts_of(s, to);
+  r->common       = r->last.model;
   for (int i = from; i <= to; i++) {
     const mhb_speed_parts parts = parts_of(s, i);
     SHB_TRY(keep_terms(&parts, modes));
   }
-  const mhb_speed_parts common = parts_of(s, to);
-  lay_out(r, &common);
-  return fill(r, from, work);
+  lay_out(r);
+  fill(r, from, work);
+  return SHB_OK;
 }
 
 /* The speeds that the range needs, with some beside it. */
@@ -366,8 +326,7 @@ static shb_status make_all(int n, mhb_speed_table *const *table, family *f) {
   const modal_speeds *first = &table[0]->speeds;
   int                 modes = 0;
   SHB_TRY(choose_speeds(table[0], f));
-  double *work = calloc(mhb_unitary_align_work(2, first->n_modes), sizeof *work);
-  SHB_CHECK(work, SHB_ERR_IO, "out of memory for %d modes", first->n_modes);
+  double    *work   = shb_alloc_zeroed(mhb_unitary_align_work(2, first->n_modes), sizeof *work);
   shb_status status = first->overlap ? choose_space(f, work, &modes) : choose_tracks(f, &modes);
   for (int i = 0; i < n && status == SHB_OK; i++)
     status = make(table[i], f->from, f->to, modes, work);
@@ -377,29 +336,24 @@ static shb_status make_all(int n, mhb_speed_table *const *table, family *f) {
 
 /* A table that has taken over its speeds. */
 static mhb_speed_table *begin(modal_speeds *speeds, int engine_order, const double frequency[2]) {
-  mhb_speed_table *r = calloc(1, sizeof *r);
-  if (!r) return NULL;
-  r->speeds       = *speeds;
-  *speeds         = (modal_speeds){0};
-  r->engine_order = engine_order;
-  r->band[0]      = SHB_TWO_PI * frequency[0];
-  r->band[1]      = SHB_TWO_PI * frequency[1];
+  mhb_speed_table *r = shb_alloc_zeroed(1, sizeof *r);
+  r->speeds          = *speeds;
+  *speeds            = (modal_speeds){0};
+  r->engine_order    = engine_order;
+  r->band[0]         = SHB_TWO_PI * frequency[0];
+  r->band[1]         = SHB_TWO_PI * frequency[1];
   return r;
 }
 
 shb_status mhb_speed_tables_create(int n, modal_speeds *speeds, const char *path, int engine_order,
                                    const double frequency[2], mhb_speed_table **out) {
-  modal_speeds *borrowed = calloc((size_t)n, sizeof *borrowed);
+  modal_speeds *borrowed = shb_alloc_zeroed((size_t)n, sizeof *borrowed);
   family        f        = {.n = n, .speeds = borrowed, .path = path};
-  bool          begun    = borrowed;
-  for (int i = 0; i < n; i++) out[i] = NULL;
-  for (int i = 0; i < n && begun; i++) {
+  for (int i = 0; i < n; i++) {
     borrowed[i] = speeds[i];
     out[i]      = begin(&speeds[i], engine_order, frequency);
-    begun       = out[i];
   }
-  shb_status status =
-      begun ? make_all(n, out, &f) : shb_fail(SHB_ERR_IO, __FILE__, __LINE__, "out of memory");
+  const shb_status status = make_all(n, out, &f);
   free(borrowed);
   for (int i = 0; i < n && status != SHB_OK; i++) {
     mhb_speed_table_destroy(out[i]);

@@ -22,9 +22,6 @@
 #include "modal/model/speeds.h"
 #include "modal/model/spline.h"
 
-/* Arrays of a model that do not depend on the modes; of the three models of a wave. */
-enum { MHB_SPEED_TABLE_UNROTATED = 14, MHB_SPEED_TABLE_ALL = 3 * MHB_SPEED_TABLE_UNROTATED };
-
 /* A model, and of a travelling wave its imaginary parts and the load of the backward wave; NULL of
  * a real one. */
 typedef struct {
@@ -32,7 +29,8 @@ typedef struct {
 } mhb_speed_parts;
 
 /* An entry: K, Z and, with Coriolis terms, C [m][m], rows [rows][m], of width doubles each
- * (unitary.h); unrotated arrays. Threads may share a table. */
+ * (unitary.h). Then terms and tails, which do not depend on the modes. Threads may share a
+ * table. */
 typedef struct mhb_speed_table {
   int                width;                    /* 1: real; 2: complex */
   int                n, n_modes, engine_order; /* n: speeds used */
@@ -41,22 +39,21 @@ typedef struct mhb_speed_table {
   double             band[2];                  /* rad/s of the excitation, asked for */
   int                squares;                  /* matrices: 2, with Coriolis terms 3 */
   int                rows;        /* right, left, probe, then load: re, im or forward, backward */
-  size_t             size;        /* of an entry, doubles */
+  size_t             fixed, size; /* of an entry, doubles: before its terms; whole */
   modal_speeds       speeds;      /* its models, in part */
-  const modal_model *common;      /* one of them, for all that is the same at every speed */
+  mhb_speed_parts    last;        /* those of the last speed */
+  const modal_model *common;      /* the first of these, for all that is the same at every speed */
   modal_spline       spline;      /* over Omega^2 */
   double            *first_entry; /* [size] */
   double            *entries;     /* [n][size] less the first entry */
-  size_t             unrotated[MHB_SPEED_TABLE_ALL]; /* offset in an entry */
-  size_t             count[MHB_SPEED_TABLE_ALL];     /* doubles; 0: the model has none */
 } mhb_speed_table;
 
 /* speeds  in   taken over, and empty afterwards
  *   path  in   of the modal file, for messages
  *   frequency  in  Hz, range of the excitation (both equal: one frequency)
  * Errors: SHB_ERR_INPUT engine order below 1; one speed only; speeds outside those of the file are
- * needed; modes that cannot be followed. Coriolis terms at rest are refused too. SHB_ERR_IO no
- * memory. Whether the blade is stable between the speeds: mhb_speed_model_check. */
+ * needed; modes that cannot be followed. Coriolis terms at rest are refused too.
+ * Whether the blade is stable between the speeds: mhb_speed_model_check. */
 shb_status mhb_speed_table_create(modal_speeds *speeds, const char *path, int engine_order,
                                   const double frequency[2], mhb_speed_table **table);
 
@@ -69,8 +66,8 @@ void       mhb_speed_table_destroy(mhb_speed_table *table);
 /* Speed at an excitation frequency, rad/s each, within the speeds covered. */
 double mhb_speed_table_speed(const mhb_speed_table *table, double omega);
 
-/* The unrotated arrays of a table's models <- data; NULL: none. */
-void mhb_speed_table_set_unrotated(const mhb_speed_parts *parts,
-                                   double *const          data[MHB_SPEED_TABLE_ALL]);
+/* The terms and tails of the models <- their places in an entry; others are as before. */
+void mhb_speed_table_place(const mhb_speed_table *table, double *entry,
+                           const mhb_speed_parts *parts);
 
 #endif

@@ -77,16 +77,15 @@ static int descend(mhb_newton *w, mhb_balance *b, double value, double size, dou
   return 0;
 }
 
-shb_status mhb_multistart_once(mhb_newton *w, mhb_balance *b, double value, double size,
-                               unsigned long long *seed, mhb_solution_set *set, double *x,
-                               bool *is_new) {
+void mhb_multistart_once(mhb_newton *w, mhb_balance *b, double value, double size,
+                         unsigned long long *seed, mhb_solution_set *set, double *x, bool *is_new) {
   int iterations;
   *is_new = false;
-  SHB_TRY(mhb_newton_bind(w, b));
+  mhb_newton_bind(w, b);
   set->n = b->n;
   start_at(b, size, set, seed, x);
-  if (!descend(w, b, value, size, x)) return SHB_OK;
-  if (mhb_newton_solve(w, b, value, TOLERANCE, x, &iterations) != MHB_CONVERGED) return SHB_OK;
+  if (!descend(w, b, value, size, x)) return;
+  if (mhb_newton_solve(w, b, value, TOLERANCE, x, &iterations) != MHB_CONVERGED) return;
   *is_new = !mhb_solution_set_has(set, x);
-  return *is_new ? mhb_solution_set_add_copies(set, b, x) : SHB_OK;
+  if (*is_new) mhb_solution_set_add_copies(set, b, x);
 }

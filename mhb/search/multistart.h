@@ -20,10 +20,8 @@
  *   seed    inout  decides the start
  *   set     inout  solutions known
  *   x       out    [n] the solution that the start led to
- *   is_new  out    x is a solution that was not in the set; it and its copies now are
- * SHB_ERR_IO: no memory. */
-shb_status mhb_multistart_once(mhb_newton *newton, mhb_balance *balance, double value, double size,
-                               unsigned long long *seed, mhb_solution_set *set, double *x,
-                               bool *is_new);
+ *   is_new  out    x is a solution that was not in the set; it and its copies now are */
+void mhb_multistart_once(mhb_newton *newton, mhb_balance *balance, double value, double size,
+                         unsigned long long *seed, mhb_solution_set *set, double *x, bool *is_new);
 
 #endif

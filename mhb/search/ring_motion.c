@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "mesh/base/constants.h"
+#include "mhb/problem/wave.h"
 #include "mhb/structure/ring_receptance.h"
 
 /* Energy beside the load's wave that is round-off of the balance, as a share. */
@@ -15,9 +16,10 @@ static const double MOST = 0.9, HALF = 0.5;
 
 /* Nodal diameters of the load's wave at harmonic k, 0..N-1. */
 static int load_wave(const mhb_balance *b, int k) {
-  const int  N = b->receptance->ring->blades, shift = mhb_wave_shift(b->settings);
-  const long waves = b->settings->engine_order + (shift > 0 ? (long)N * shift : 0);
-  const long d     = k * waves / b->receptance->nu % N;
+  const mhb_driven_wave wave = mhb_settings_wave(b->settings);
+  const int             N = b->receptance->ring->blades, shift = mhb_driven_wave_shift(wave);
+  const long            waves = wave.order + (shift > 0 ? (long)N * shift : 0);
+  const long            d     = k * waves / b->receptance->nu % N;
   return (int)(d < 0 ? d + N : d);
 }
 

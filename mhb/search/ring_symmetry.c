@@ -3,6 +3,7 @@
 #include <string.h>
 
 #include "mhb/balance/subharmonics.h"
+#include "mhb/problem/wave.h"
 #include "mhb/structure/ring_receptance.h"
 
 static bool turns_by(const mhb_mistuned_ring *ring, int s) {
@@ -44,7 +45,7 @@ void mhb_ring_rotate(const mhb_balance *b, const double *x, int j, double *to) {
 }
 
 bool mhb_ring_has_waves(const mhb_balance *b) {
-  return mhb_ring_rotations(b) > 1 && mhb_wave_shift(b->settings) >= 0;
+  return mhb_ring_rotations(b) > 1 && mhb_driven_wave_shift(mhb_settings_wave(b->settings)) >= 0;
 }
 
 void mhb_ring_beside_wave(const mhb_balance *b, const double *x, double *part) {

@@ -4,6 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "mesh/base/memory.h"
 #include "mhb/numerics/vector.h"
 #include "mhb/search/ring_symmetry.h"
 
@@ -14,17 +15,13 @@ void mhb_solution_set_free(mhb_solution_set *set) {
   *set = (mhb_solution_set){0};
 }
 
-shb_status mhb_solution_set_add(mhb_solution_set *set, int n, const double *x) {
+void mhb_solution_set_add(mhb_solution_set *set, int n, const double *x) {
   if (set->n_solutions == set->capacity) {
-    int     room = 2 * set->capacity + 8;
-    double *more = realloc(set->x, sizeof(double) * (size_t)room * (size_t)n);
-    SHB_CHECK(more, SHB_ERR_IO, "out of memory for %d solutions", room);
-    set->x        = more;
-    set->capacity = room;
+    set->capacity = 2 * set->capacity + 8;
+    set->x        = shb_realloc(set->x, (size_t)set->capacity * (size_t)n, sizeof(double));
   }
   set->n = n;
   memcpy(set->x + (size_t)set->n_solutions++ * (size_t)n, x, sizeof(double) * (size_t)n);
-  return SHB_OK;
 }
 
 static double distance(const double *a, const double *b, int n) {
@@ -42,14 +39,12 @@ bool mhb_solution_set_has(const mhb_solution_set *set, const double *x) {
   return false;
 }
 
-shb_status mhb_solution_set_add_copies(mhb_solution_set *set, const mhb_balance *b,
-                                       const double *x) {
+void mhb_solution_set_add_copies(mhb_solution_set *set, const mhb_balance *b, const double *x) {
   const int copies = mhb_motion_copies(b);
   double    copy[b->n];
   set->n = b->n;
   for (int j = 0; j < copies; j++) {
     mhb_motion_copy(b, x, j, copy);
-    if (!mhb_solution_set_has(set, copy)) SHB_TRY(mhb_solution_set_add(set, b->n, copy));
+    if (!mhb_solution_set_has(set, copy)) mhb_solution_set_add(set, b->n, copy);
   }
-  return SHB_OK;
 }

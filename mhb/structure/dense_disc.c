@@ -8,12 +8,13 @@
 
 #include "mesh/base/constants.h"
 #include "mesh/base/memory.h"
+#include "mhb/problem/wave.h"
 
 typedef struct {
   const modal_nodal_diameters *from;
   const modal_model           *first; /* of nodal diameter 0: all sizes */
   modal_model                 *to;
-  int                          N, engine_order;
+  int                          N, order;
   size_t  n, c, q, m, K; /* 3 pairs, contact dofs, 3 probes, modes, harmonics of the load */
   size_t *rank;          /* place of each standing wave in ascending order of frequency */
 } work;
@@ -83,7 +84,7 @@ static void sort(work *w) {
 
 /* Complex amplitude of the force on standing wave `part` of mode i by harmonic h. */
 static double complex force_on(const work *w, int n, int part, size_t h, size_t i) {
-  const long            wave    = (long)h * w->engine_order % w->N;
+  const long            wave    = (long)h * w->order % w->N;
   const bool            forward = wave == n, backward = (wave + n) % w->N == 0;
   const double complex *own  = w->from->model[n].modal_force + h * w->m;
   const double complex *back = w->from->backward[n].modal_force;
@@ -181,7 +182,7 @@ static double *probe_contact(work *w, size_t offset) {
 
 /* Response of sector 0 to harmonic h of the load: that of its travelling wave. */
 static double complex load_response(const work *w, size_t offset, size_t h, size_t each, size_t i) {
-  const int  wave = (int)((long)h * w->engine_order % w->N), n = modal_nodal_diameter(wave, w->N);
+  const int  wave = (int)((long)h * w->order % w->N), n = modal_nodal_diameter(wave, w->N);
   modal_wave of;
   int        missing;
   if (!modal_nodal_diameters_wave(w->from, wave, &of, &missing)) return 0;
@@ -197,8 +198,7 @@ static double complex *by_load(work *w, size_t offset, bool probe) {
     for (int b = 0; b < (probe ? 1 : w->N); b++)
       for (size_t i = 0; i < each; i++)
         to[h * all + (probe ? i : place(w, b, i))] =
-            load_response(w, offset, h, each, i) *
-            turn(w, (int)((long)h * w->engine_order % w->N), b);
+            load_response(w, offset, h, each, i) * turn(w, (int)((long)h * w->order % w->N), b);
   return to;
 }
 
@@ -260,16 +260,16 @@ shb_status mhb_dense_disc(const mhb_settings *s, modal_model *model) {
                          .n_load       = one->n_load,
                          .n_interfaces = one->n_interfaces,
                          .has_left     = one->has_left};
-  work w = {.from         = d,
-            .first        = one,
-            .to           = model,
-            .N            = d->blades,
-            .engine_order = s->engine_order,
-            .n            = n,
-            .c            = one->has_left ? 2 * n : n,
-            .q            = 3 * (size_t)one->n_probes,
-            .m            = (size_t)one->n_modes,
-            .K            = (size_t)one->n_load + 1};
+  work w = {.from  = d,
+            .first = one,
+            .to    = model,
+            .N     = d->blades,
+            .order = mhb_driven_wave_of(s->engine_order, s->turns_right, d->blades, 1).order,
+            .n     = n,
+            .c     = one->has_left ? 2 * n : n,
+            .q     = 3 * (size_t)one->n_probes,
+            .m     = (size_t)one->n_modes,
+            .K     = (size_t)one->n_load + 1};
   w.rank = shb_alloc_zeroed(N * w.m, sizeof *w.rank);
   make_names(&w);
   make_modes(&w);
@@ -284,4 +284,5 @@ void mhb_dense_disc_settings(const mhb_settings *settings, mhb_settings *own) {
   own->nodal_diameters = NULL;
   own->blades          = 1;
   own->engine_order    = 0;
+  own->turns_right     = false;
 }

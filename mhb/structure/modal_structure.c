@@ -6,13 +6,6 @@
 #include "mhb/structure/ring_receptance.h"
 #include "modal/model/nodal_diameters.h"
 
-/* Wave number E' = (E + N l)/nu of the fundamental. */
-static int wave_of(const mhb_settings *s, int blades) {
-  const mhb_settings own = {
-      .engine_order = s->engine_order, .blades = blades, .subharmonics = s->subharmonics};
-  return (int)((s->engine_order + (long)blades * mhb_wave_shift(&own)) / s->subharmonics);
-}
-
 /* T0^T x of a pair in a mode, negative on the left. */
 static double shape_of(const mhb_receptance *r, int side, int row, int mode) {
   const double *x   = side ? r->model->left : r->model->right;
@@ -138,12 +131,13 @@ shb_status mhb_modal_structure_create(const mhb_receptance *r, const mhb_setting
   const modal_nodal_diameters *of        = settings->nodal_diameters;
   const int                    own_modes = blade_of(r, 0)->n_modes;
   const int ground = settings->to_ground, blades = of ? of->blades : ground ? 1 : settings->blades;
-  *s          = (mhb_modal_structure){.blades   = blades,
-                                      .sides    = ground ? 1 : 2,
-                                      .modes    = modes < own_modes ? modes : own_modes,
-                                      .pairs    = r->ring ? r->ring->n / 3 : r->model->n_pairs,
-                                      .wave     = ground && !of ? 0 : wave_of(settings, blades),
-                                      .mistuned = r->ring != NULL};
+  *s = (mhb_modal_structure){
+      .blades   = blades,
+      .sides    = ground ? 1 : 2,
+      .modes    = modes < own_modes ? modes : own_modes,
+      .pairs    = r->ring ? r->ring->n / 3 : r->model->n_pairs,
+      .wave     = ground && !of ? 0 : (int)mhb_settings_wave_number(settings, blades),
+      .mistuned = r->ring != NULL};
   s->contacts = s->blades * s->pairs;
   if (of || (!r->ring && r->model->coriolis && extent != MHB_STRUCTURE_BLADES))
     SHB_TRY(mhb_disc_modes_create(r, settings, blades, s->modes, &s->disc));

@@ -91,23 +91,10 @@ static void allocate(mhb_receptance *r) {
   }
 }
 
-/* Inter-blade phase of the fundamental, rad. */
-static double phase_step(const mhb_settings *s) {
-  return SHB_TWO_PI / s->subharmonics * ((double)s->engine_order / s->blades + mhb_wave_shift(s));
-}
-
-/* The wave of the fundamental, (E + N l)/nu; l below 0: none that closes. */
-static long wave_of(const mhb_settings *s, int blades) {
-  const mhb_settings own = {
-      .engine_order = s->engine_order, .blades = blades, .subharmonics = s->subharmonics};
-  const long shift = mhb_wave_shift(&own);
-  return shift < 0 ? -1 : (s->engine_order + blades * shift) / s->subharmonics;
-}
-
 /* The model of one harmonic: that of nodal diameter k (E + N l)/nu of d. */
 static shb_status find_wave(const mhb_settings *s, const modal_nodal_diameters *d, int k,
                             modal_wave *wave) {
-  const long fundamental = wave_of(s, d->blades);
+  const long fundamental = mhb_settings_wave_number(s, d->blades);
   int        missing;
   SHB_CHECK(fundamental >= 0, SHB_ERR_INPUT,
             "mhb.subharmonics is %d, but a wave of that many periods does not close around the %d "
@@ -178,9 +165,9 @@ static shb_status make_part(mhb_receptance *r, const mhb_settings *settings,
 /* The speed model of each harmonic, at the lowest speed. */
 static shb_status make_speeds(mhb_receptance *r, const mhb_settings *s) {
   r->speeds = shb_arena_take(&r->arena, (size_t)r->n_harmonics + 1, sizeof(mhb_speed_model *));
+  const long fundamental = r->disc ? mhb_settings_wave_number(s, r->disc->table->blades) : 0;
   for (int k = 0; k <= r->n_harmonics; k++) {
-    r->speeds[k] =
-        r->disc ? mhb_disc_speeds_use(r->disc, k * wave_of(s, r->disc->table->blades)) : r->at;
+    r->speeds[k] = r->disc ? mhb_disc_speeds_use(r->disc, k * fundamental) : r->at;
     SHB_CHECK(r->speeds[k], SHB_ERR_INPUT, "the modal file lacks the nodal diameter of harmonic %d",
               k);
   }
@@ -210,7 +197,7 @@ static shb_status check_coriolis(const modal_model *model) {
 /* Everything that does not depend on omega. */
 static shb_status set_blade(mhb_receptance *r, const mhb_settings *settings,
                             const mhb_residual_terms *like) {
-  const double step  = settings->to_ground ? 0 : phase_step(settings);
+  const double step  = settings->to_ground ? 0 : mhb_driven_wave_lag(mhb_settings_wave(settings));
   const int contacts = r->ring ? r->ring->blades : settings->contacts > 1 ? settings->contacts : 1;
   r->hold            = HOLD * SHB_TWO_PI * fmin(settings->frequency[0], settings->frequency[1]);
   SHB_TRY(check_coriolis(r->model));
@@ -242,10 +229,10 @@ static shb_status make(mhb_receptance *r, const modal_model *model, const mhb_se
     SHB_TRY(mhb_ring_receptance_create(settings, r->n_harmonics, &r->ring));
     r->model = &settings->ring->whole;
   } else if (settings->disc_run_up) {
-    SHB_TRY(mhb_disc_speeds_create(settings->disc_run_up, &r->disc));
-    r->at = r->disc->at[0];
+    r->disc = mhb_disc_speeds_create(settings->disc_run_up);
+    r->at   = r->disc->at[0];
   } else if (settings->run_up) {
-    SHB_TRY(mhb_speed_model_create(settings->run_up, &r->at));
+    r->at = mhb_speed_model_create(settings->run_up);
   }
   if (r->at) {
     mhb_speed_model_set(r->at, 0);
@@ -265,7 +252,9 @@ static shb_status create(const modal_model *model, const mhb_settings *settings,
                          const mhb_residual_terms *like, mhb_receptance **out) {
   SHB_CHECK(settings->to_ground || model->has_left, SHB_ERR_INPUT,
             "contact.to is neighbour, but the modal file has no /contact/left; set it to ground");
-  SHB_CHECK(settings->to_ground || settings->ring || mhb_wave_shift(settings) >= 0, SHB_ERR_INPUT,
+  SHB_CHECK(settings->to_ground || settings->ring ||
+                mhb_driven_wave_shift(mhb_settings_wave(settings)) >= 0,
+            SHB_ERR_INPUT,
             "mhb.subharmonics is %d, but a wave of that many periods does not close around %d "
             "blades at engine order %d; set it to 1",
             settings->subharmonics, settings->blades, settings->engine_order);

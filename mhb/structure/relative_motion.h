@@ -6,18 +6,10 @@
 #include <complex.h>
 #include <stddef.h>
 
-#include "mhb/problem/settings.h"
+#include "mhb/problem/wave.h"
 
 /* From this many relative motions on, products of matrices are left to BLAS. */
 enum { MHB_WORTH_BLAS = 12 };
-
-/* A neighbour lags in the fundamental by (2 pi/nu)(E/N + l), l any whole number of periods. The
- * least l for which the wave closes around the ring: nu divides E + N l. -1: none does. */
-static inline int mhb_wave_shift(const mhb_settings *s) {
-  for (int l = 0; l < s->subharmonics; l++)
-    if ((s->engine_order + (long)s->blades * l) % s->subharmonics == 0) return l;
-  return -1;
-}
 
 typedef struct {
   int           n, sides; /* 3 pairs; 1 to ground, 2 to the neighbour */

@@ -4,6 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "mesh/base/memory.h"
 #include "mhb/tracking/corner_point.h"
 #include "mhb/tracking/peak_places.h"
 
@@ -145,10 +146,10 @@ shb_status mhb_trace_corner(mhb_balance *balance, const mhb_tracking *tracking,
   *found = false;
   *end   = (mhb_tracking_end){MHB_END_NO_START, MHB_END_NO_START};
   if (tracking->kind != MHB_TRACK_PEAK) return SHB_OK;
-  SHB_TRY(mhb_corner_create(balance, tracking, &t.at));
-  t.beside          = calloc((size_t)balance->n, sizeof(double));
-  shb_status status = t.beside ? SHB_OK : shb_fail(SHB_ERR_IO, __FILE__, __LINE__, "out of memory");
-  if (status == SHB_OK && start(&t, seed, &at))
+  t.at              = mhb_corner_create(balance, tracking);
+  t.beside          = shb_alloc_zeroed((size_t)balance->n, sizeof(double));
+  shb_status status = SHB_OK;
+  if (start(&t, seed, &at))
     status = mhb_trace_peak_places(&t.base, &at, response, branch, found, end);
   free(t.beside);
   mhb_corner_destroy(t.at);

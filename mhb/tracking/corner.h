@@ -9,7 +9,7 @@
 /* Follow a corner or stuck peak from a seed both ways into an empty branch (peak_places.h). It ends
  * at the ends of the range, where the corner is no maximum any more, or where a stuck peak begins
  * to slip (MHB_END_CORNER).
- * *found false: the seed is neither. SHB_ERR_IO: no memory. */
+ * *found false: the seed is neither. */
 shb_status mhb_trace_corner(mhb_balance *balance, const mhb_tracking *tracking,
                             const mhb_tracking_seed *seed, mhb_response *response, int branch,
                             bool *found, mhb_tracking_end *end);

@@ -5,6 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "mesh/base/memory.h"
 #include "mesh/base/root.h"
 #include "mhb/contact/slip_onset.h"
 #include "mhb/numerics/vector.h"
@@ -417,28 +418,23 @@ bool mhb_corner_solve(mhb_corner *c, double value, int sense, double *omega) {
 
 /* ---- creation ---- */
 
-shb_status mhb_corner_create(mhb_balance *balance, const mhb_tracking *tracking,
-                             mhb_corner **corner) {
-  mhb_corner  *c = calloc(1, sizeof *c);
+mhb_corner *mhb_corner_create(mhb_balance *balance, const mhb_tracking *tracking) {
+  mhb_corner  *c = shb_alloc_zeroed(1, sizeof *c);
   const size_t n = (size_t)balance->n, pairs = (size_t)balance->n_pairs;
-  SHB_CHECK(c, SHB_ERR_IO, "out of memory");
   c->balance         = balance;
   c->tracking        = tracking;
   double **vectors[] = {&c->x,        &c->r,    &c->kept,      &c->by_omega,
                         &c->by_value, &c->by_x, &c->onset_by_x};
   for (size_t i = 0; i < sizeof vectors / sizeof *vectors; i++)
     *vectors[i] = shb_arena_take(&c->arena, n, sizeof(double));
-  c->jacobian       = shb_arena_take(&c->arena, n * n, sizeof(double));
-  c->pivot          = shb_arena_take(&c->arena, n, sizeof *c->pivot);
-  c->weight         = shb_arena_take(&c->arena, mhb_amplitude_weights(balance), sizeof *c->weight);
-  c->touching       = shb_arena_take(&c->arena, pairs, sizeof *c->touching);
-  c->closed         = shb_arena_take(&c->arena, pairs, sizeof *c->closed);
-  shb_status status = c->arena.failed ? shb_fail(SHB_ERR_IO, __FILE__, __LINE__, "out of memory")
-                                      : mhb_newton_create((int)n, &c->newton);
-  if (status == SHB_OK) status = mhb_newton_bind(c->newton, balance);
-  if (status != SHB_OK) mhb_corner_destroy(c);
-  if (status == SHB_OK) *corner = c;
-  return status;
+  c->jacobian = shb_arena_take(&c->arena, n * n, sizeof(double));
+  c->pivot    = shb_arena_take(&c->arena, n, sizeof *c->pivot);
+  c->weight   = shb_arena_take(&c->arena, mhb_amplitude_weights(balance), sizeof *c->weight);
+  c->touching = shb_arena_take(&c->arena, pairs, sizeof *c->touching);
+  c->closed   = shb_arena_take(&c->arena, pairs, sizeof *c->closed);
+  c->newton   = mhb_newton_create((int)n);
+  mhb_newton_bind(c->newton, balance);
+  return c;
 }
 
 void mhb_corner_destroy(mhb_corner *c) {

@@ -45,10 +45,9 @@ typedef struct {
   double by_value, onset_by_value; /* and at fixed omega */
 } mhb_corner_state;
 
-/* The balance must outlive it. SHB_ERR_IO: no memory. */
-shb_status mhb_corner_create(mhb_balance *balance, const mhb_tracking *tracking,
-                             mhb_corner **corner);
-void       mhb_corner_destroy(mhb_corner *corner);
+/* The balance must outlive it. */
+mhb_corner *mhb_corner_create(mhb_balance *balance, const mhb_tracking *tracking);
+void        mhb_corner_destroy(mhb_corner *corner);
 
 /* The pairs by which a motion x[n] at a value may be near a corner, the nearest first. Their |h| is
  * a part of the friction limit. Pairs that a symmetry makes alike count as one, by their first.

@@ -5,6 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "mesh/base/memory.h"
 #include "mesh/base/root.h"
 #include "mhb/numerics/vector.h"
 
@@ -318,10 +319,9 @@ void mhb_kink_maximum(mhb_kink *k, double *x, double by[MHB_PEAK_PARAMETERS]) {
 
 /* ---- creation ---- */
 
-shb_status mhb_kink_create(mhb_balance *balance, const mhb_tracking *tracking, mhb_kink **out) {
-  mhb_kink    *k = calloc(1, sizeof *k);
+mhb_kink *mhb_kink_create(mhb_balance *balance, const mhb_tracking *tracking) {
+  mhb_kink    *k = shb_alloc_zeroed(1, sizeof *k);
   const size_t n = (size_t)balance->n, one = n + 1;
-  SHB_CHECK(k, SHB_ERR_IO, "out of memory");
   k->base            = (mhb_peak_family){balance, tracking, is_peak, balance_at};
   k->n               = balance->n;
   double **vectors[] = {&k->first.z,     &k->first.rate,  &k->first.border, &k->last.z,
@@ -335,12 +335,7 @@ shb_status mhb_kink_create(mhb_balance *balance, const mhb_tracking *tracking, m
   k->matrix   = shb_arena_take(&k->arena, one * one, sizeof(double));
   k->pivot    = shb_arena_take(&k->arena, one, sizeof *k->pivot);
   k->weight   = shb_arena_take(&k->arena, mhb_amplitude_weights(balance), sizeof *k->weight);
-  if (k->arena.failed) {
-    mhb_kink_destroy(k);
-    SHB_FAIL(SHB_ERR_IO, "out of memory to follow peaks of %d unknowns", balance->n);
-  }
-  *out = k;
-  return SHB_OK;
+  return k;
 }
 
 void mhb_kink_destroy(mhb_kink *k) {
@@ -358,7 +353,7 @@ shb_status mhb_trace_kink(mhb_balance *balance, const mhb_tracking *tracking,
   *found = false;
   *end   = (mhb_tracking_end){MHB_END_NO_START, MHB_END_NO_START};
   if (tracking->kind != MHB_TRACK_PEAK) return SHB_OK;
-  SHB_TRY(mhb_kink_create(balance, tracking, &k));
+  k                 = mhb_kink_create(balance, tracking);
   shb_status status = SHB_OK;
   if (mhb_kink_start(k, seed->x, &at, &unused) && mhb_is_seeded(seed, at.omega, at.amplitude))
     status = mhb_trace_peak_places(&k->base, &at, response, branch, found, end);

@@ -14,9 +14,9 @@
 
 typedef struct mhb_kink mhb_kink;
 
-/* The balance must outlive it. SHB_ERR_IO: no memory. */
-shb_status mhb_kink_create(mhb_balance *balance, const mhb_tracking *tracking, mhb_kink **kink);
-void       mhb_kink_destroy(mhb_kink *kink);
+/* The balance must outlive it. */
+mhb_kink *mhb_kink_create(mhb_balance *balance, const mhb_tracking *tracking);
+void      mhb_kink_destroy(mhb_kink *kink);
 
 /* The peak at at->value near the motion x[n] and at->omega. false: it is none on a kink.
  *   why  out  MHB_END_SMOOTH: the next maximum of the response curve is smooth; it is in at */
@@ -33,7 +33,7 @@ void mhb_kink_maximum(mhb_kink *kink, double *x, double by[MHB_PEAK_PARAMETERS])
 
 /* Follow the peak on a kink from a seed both ways into an empty branch (peak_places.h). It ends
  * where the peak leaves the kink (MHB_END_SMOOTH).
- * *found false: the seed is no such peak. SHB_ERR_IO: no memory. */
+ * *found false: the seed is no such peak. */
 shb_status mhb_trace_kink(mhb_balance *balance, const mhb_tracking *tracking,
                           const mhb_tracking_seed *seed, mhb_response *response, int branch,
                           bool *found, mhb_tracking_end *end);

@@ -4,6 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "mesh/base/memory.h"
 #include "mhb/branches/branch_stability.h"
 #include "mhb/numerics/vector.h"
 
@@ -47,21 +48,19 @@ struct mhb_multiplier_condition {
 
 shb_status mhb_multiplier_condition_create(mhb_balance *b, mhb_parameter parameter, bool flip,
                                            double rate, mhb_multiplier_condition **out) {
-  mhb_multiplier_condition *c = calloc(1, sizeof *c);
-  SHB_CHECK(c, SHB_ERR_IO, "out of memory");
-  size_t one         = (size_t)b->n + 1;
-  c->balance         = b;
-  c->parameter       = parameter;
-  c->flip            = flip;
-  c->rate            = rate;
-  c->n               = b->n;
-  double **vectors[] = {&c->accepted.z,  &c->accepted.weight, &c->last.z,
-                        &c->last.weight, &c->moved,           &c->r};
+  mhb_multiplier_condition *c   = shb_alloc_zeroed(1, sizeof *c);
+  size_t                    one = (size_t)b->n + 1;
+  c->balance                    = b;
+  c->parameter                  = parameter;
+  c->flip                       = flip;
+  c->rate                       = rate;
+  c->n                          = b->n;
+  double **vectors[]            = {&c->accepted.z,  &c->accepted.weight, &c->last.z,
+                                   &c->last.weight, &c->moved,           &c->r};
   for (size_t i = 0; i < sizeof vectors / sizeof *vectors; i++)
     *vectors[i] = shb_arena_take(&c->arena, one, sizeof(double));
-  shb_status status = c->arena.failed ? shb_fail(SHB_ERR_IO, __FILE__, __LINE__, "out of memory")
-                                      : mhb_evaluation_create(b, &c->displaced);
-  if (status == SHB_OK) status = mhb_branch_floquet_create(b, &c->floquet);
+  c->displaced      = mhb_evaluation_create(b);
+  shb_status status = mhb_branch_floquet_create(b, &c->floquet);
   if (status != SHB_OK) {
     mhb_multiplier_condition_destroy(c);
     return status;
@@ -81,7 +80,7 @@ void mhb_multiplier_condition_destroy(mhb_multiplier_condition *c) {
 /* The solution that an evaluation is of. */
 static mhb_solution solution_of(mhb_multiplier_condition *c, mhb_evaluation *e, const double *x) {
   mhb_balance_use(c->balance, e);
-  return (mhb_solution){e->at.omega, c->balance->law, e->info, x, e->p};
+  return (mhb_solution){e->at.omega, c->balance->law, e->info, x, e->p, c->balance->m};
 }
 
 /* The contacts at a solution z, q; its residual is of no interest. */

@@ -35,7 +35,7 @@ typedef struct {
 } mhb_multiplier_slope;
 
 /* flip: of a real multiplier, else of a complex one. rate: d omega/d xi. The balance must outlive
- * it. SHB_ERR_IO: no memory. */
+ * it. */
 shb_status mhb_multiplier_condition_create(mhb_balance *balance, mhb_parameter parameter, bool flip,
                                            double rate, mhb_multiplier_condition **condition);
 void       mhb_multiplier_condition_destroy(mhb_multiplier_condition *condition);

@@ -4,6 +4,7 @@
 #include <stdlib.h>
 
 #include "mesh/base/constants.h"
+#include "mesh/base/memory.h"
 #include "mesh/base/root.h"
 #include "mhb/branches/record.h"
 #include "mhb/numerics/vector.h"
@@ -66,15 +67,15 @@ static int ascending(const void *a, const void *b) {
   return (x > y) - (x < y);
 }
 
-/* All values of the parameter at points of the branches, ascending. NULL: no memory. */
+/* All values of the parameter at points of the branches, ascending. */
 static double *all_values(const mhb_response *r, int *n) {
   *n = 0;
   for (int b = 0; b < r->n_branches; b++) *n += r->branch[b].n_points;
-  double *value = malloc((size_t)(*n + 1) * sizeof *value);
+  double *value = shb_alloc((size_t)*n, sizeof *value);
   int     at    = 0;
-  for (int b = 0; value && b < r->n_branches; b++)
+  for (int b = 0; b < r->n_branches; b++)
     for (int i = 0; i < r->branch[b].n_points; i++) value[at++] = r->branch[b].value[i];
-  if (value) qsort(value, (size_t)*n, sizeof *value, ascending);
+  qsort(value, (size_t)*n, sizeof *value, ascending);
   return value;
 }
 
@@ -110,9 +111,9 @@ static shb_status corner_at(const search *s, mhb_balance *balance, const mhb_bra
                             const double *x, double *work, peak_place *at, bool *found) {
   mhb_corner *corner;
   double      omega = SHB_TWO_PI * at->frequency;
-  SHB_TRY(mhb_corner_create(balance, s->tracking, &corner));
-  const int pair = corner_of(corner, branch, at->i, work);
-  *found         = false;
+  corner            = mhb_corner_create(balance, s->tracking);
+  const int pair    = corner_of(corner, branch, at->i, work);
+  *found            = false;
   if (pair >= -1) {
     mhb_corner_take(corner, pair, at->value, x);
     *found = mhb_corner_solve(corner, at->value, pair < 0 ? -1 : 0, &omega) &&
@@ -136,18 +137,16 @@ static shb_status smooth_at(const search *s, mhb_balance *balance, const double 
       s->tracking->frequency[1] - s->tracking->frequency[0], mhb_norm(x, balance->n), &system));
   mhb_curve_system *base = mhb_peak_system_base(system);
   mhb_peak_system_measure(base, s->tracking->size);
-  shb_status status = mhb_curve_point_create(base, &point);
-  if (status == SHB_OK) {
-    mhb_peak_system_pack(base, x, SHB_TWO_PI * at->frequency, point.x);
-    point.value = at->value;
-    if (base->solve_at_value(base, 1e-10, &point) == MHB_CONVERGED) {
-      at->amplitude = mhb_peak_system_report(base, &point).amplitude;
-      at->frequency = mhb_peak_system_omega(base, point.x) / SHB_TWO_PI;
-    }
-    mhb_curve_point_destroy(base, &point);
+  mhb_curve_point_create(base, &point);
+  mhb_peak_system_pack(base, x, SHB_TWO_PI * at->frequency, point.x);
+  point.value = at->value;
+  if (base->solve_at_value(base, 1e-10, &point) == MHB_CONVERGED) {
+    at->amplitude = mhb_peak_system_report(base, &point).amplitude;
+    at->frequency = mhb_peak_system_omega(base, point.x) / SHB_TWO_PI;
   }
+  mhb_curve_point_destroy(base, &point);
   base->destroy(base);
-  return status;
+  return SHB_OK;
 }
 
 /* The same of a peak on a kink. */
@@ -156,7 +155,7 @@ static shb_status kink_at(const search *s, mhb_balance *balance, const double *x
   const double   omega = SHB_TWO_PI * at->frequency;
   mhb_peak_place place = {.value = at->value, .omega = omega};
   mhb_end        unused;
-  SHB_TRY(mhb_kink_create(balance, s->tracking, &kink));
+  kink = mhb_kink_create(balance, s->tracking);
   if (mhb_kink_start(kink, x, &place, &unused) && fabs(place.omega / omega - 1) <= INTERPOLATED) {
     at->amplitude = place.amplitude;
     at->frequency = place.omega / SHB_TWO_PI;
@@ -174,19 +173,16 @@ static shb_status peak_at(const search *s, int b, double value, double *amplitud
   mhb_balance      *balance;
   settings.harmonics = branch->n_harmonics;
   SHB_TRY(mhb_balance_create(s->model, &settings, &balance));
-  size_t     n      = (size_t)balance->n;
-  double    *x      = calloc(2 * n, sizeof *x);
-  shb_status status = x ? SHB_OK : shb_fail(SHB_ERR_IO, __FILE__, __LINE__, "out of memory");
-  if (status == SHB_OK) {
-    const double *f = branch->frequency + at.i, from = branch->value[at.i];
-    const double  to = branch->value[at.i + 1], part = to > from ? (value - from) / (to - from) : 0;
-    mhb_recorded_motion(branch, at.i, balance, x);
-    mhb_recorded_motion(branch, at.i + 1, balance, x + n);
-    for (size_t j = 0; j < n; j++) x[j] += part * (x[n + j] - x[j]);
-    at.frequency = f[0] + part * (f[1] - f[0]);
-  }
-  bool corner = false;
-  if (status == SHB_OK) status = corner_at(s, balance, branch, x, x + n, &at, &corner);
+  size_t        n = (size_t)balance->n;
+  double       *x = shb_alloc_zeroed(2 * n, sizeof *x);
+  const double *f = branch->frequency + at.i, from = branch->value[at.i];
+  const double  to = branch->value[at.i + 1], part = to > from ? (value - from) / (to - from) : 0;
+  mhb_recorded_motion(branch, at.i, balance, x);
+  mhb_recorded_motion(branch, at.i + 1, balance, x + n);
+  for (size_t j = 0; j < n; j++) x[j] += part * (x[n + j] - x[j]);
+  at.frequency      = f[0] + part * (f[1] - f[0]);
+  bool       corner = false;
+  shb_status status = corner_at(s, balance, branch, x, x + n, &at, &corner);
   if (status == SHB_OK && !corner) status = smooth_at(s, balance, x, &at);
   if (status == SHB_OK && isnan(at.amplitude)) status = kink_at(s, balance, x, &at);
   *amplitude = at.amplitude;
@@ -268,7 +264,6 @@ shb_status mhb_find_optimum(const modal_model *model, const mhb_settings *settin
   response->optimum = best;
   if (tracking->kind != MHB_TRACK_PEAK) return SHB_OK;
   double *value = all_values(response, &n);
-  SHB_CHECK(value, SHB_ERR_IO, "out of memory");
   recorded_candidates(&s, &best);
   shb_status status = SHB_OK;
   for (int i = 0; i + 1 < n && status == SHB_OK; i++) {

@@ -13,8 +13,7 @@
 /* Find the optimum of the tracked branches of a response, into response->optimum. An exchange is
  * located by solving both peaks. MHB_OPTIMUM_JUMP: a branch ends there inside the range. The least
  * value may then lie in the gap beside it.
- *   settings  in  of the balance; harmonics are those of the branches
- * SHB_ERR_IO: no memory. */
+ *   settings  in  of the balance; harmonics are those of the branches */
 shb_status mhb_find_optimum(const modal_model *model, const mhb_settings *settings,
                             const mhb_tracking *tracking, mhb_response *response);
 

@@ -82,14 +82,12 @@ static shb_status smooth(const search *s, mhb_peak_derivatives *out) {
                                  &made));
   mhb_curve_system *system = mhb_peak_system_base(made);
   mhb_peak_system_measure(system, s->size);
-  shb_status status = mhb_curve_point_create(system, &point);
-  if (status == SHB_OK) {
-    solve_smooth(s, system, &point, out);
-    mhb_balance_use(s->balance, NULL);
-    mhb_curve_point_destroy(system, &point);
-  }
+  mhb_curve_point_create(system, &point);
+  solve_smooth(s, system, &point, out);
+  mhb_balance_use(s->balance, NULL);
+  mhb_curve_point_destroy(system, &point);
   system->destroy(system);
-  return status;
+  return SHB_OK;
 }
 
 /* ---- a peak without slip ---- */
@@ -154,7 +152,7 @@ static void without_slip(const search *s, mhb_corner *corner, mhb_peak_derivativ
 static shb_status find_without_slip(const search *s, const mhb_tracking *tracking,
                                     mhb_peak_derivatives *out) {
   mhb_corner *corner;
-  SHB_TRY(mhb_corner_create(s->balance, tracking, &corner));
+  corner = mhb_corner_create(s->balance, tracking);
   without_slip(s, corner, out);
   mhb_corner_destroy(corner);
   return SHB_OK;
@@ -181,7 +179,7 @@ static shb_status bracketed(const search *s, const mhb_tracking *tracking,
                             mhb_peak_derivatives *out) {
   const mhb_operating_point at = s->balance->eval->at;
   mhb_kink                 *kink;
-  SHB_TRY(mhb_kink_create(s->balance, tracking, &kink));
+  kink = mhb_kink_create(s->balance, tracking);
   mhb_balance_sharpen_law(s->balance, SHARPER);
   take_bracketed(s, kink, out);
   mhb_balance_sharpen_law(s->balance, 1);

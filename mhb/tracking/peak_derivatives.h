@@ -39,7 +39,7 @@ mhb_peak_near mhb_peak_at(double omega);
  *   x, omega  inout, in  [n], rad/s: the solution, which the balance is at; its amplitude in found.
  *                        x becomes that of a smooth peak or of one on a kink
  * The parameters of the balance's operating point are those of the solution, before and after. Its
- * evaluation may be another one then. SHB_ERR_IO: no memory. */
+ * evaluation may be another one then. */
 shb_status mhb_peak_derivatives_find(mhb_balance *balance, int output, mhb_size size,
                                      mhb_peak_near near, double *x, double omega, double found,
                                      mhb_peak_derivatives *derivatives);

@@ -4,6 +4,7 @@
 #include <stdlib.h>
 
 #include "mesh/base/clock.h"
+#include "mesh/base/memory.h"
 #include "mesh/base/progress.h"
 #include "mesh/base/root.h"
 #include "mhb/balance/truncation_error.h"
@@ -43,7 +44,7 @@ static shb_status record(tracer *t, const mhb_peak_place *at, int special, bool 
   t->point.truncation      = mhb_truncation_error(t->truncation, t->point.x);
   t->point.truncation_kind = (int)t->truncation->kind;
   mhb_balance_set_parameter(b, t->family->tracking->parameter);
-  SHB_TRY(mhb_record(t->store, t->segment, b, &t->point, special, now - t->clock));
+  mhb_record(t->store, t->segment, b, &t->point, special, now - t->clock);
   t->clock = now;
   return SHB_OK;
 }
@@ -103,7 +104,7 @@ static shb_status trace_half(tracer *t, mhb_peak_place from, int direction, mhb_
   double              range = tracking->high - tracking->low, step = range / (2 * LEAST_PARTS);
   double              edge = direction > 0 ? tracking->high : tracking->low;
   bool                balanced;
-  SHB_TRY(mhb_response_branch(t->store, MHB_BRANCH_TRACKED, &t->segment));
+  t->segment = mhb_response_branch(t->store, MHB_BRANCH_TRACKED);
   SHB_TRY(record(t, &from, MHB_ORDINARY, &balanced));
   *end = balanced ? MHB_END_NONE : MHB_END_NO_START;
   while (*end == MHB_END_NONE) {
@@ -143,18 +144,19 @@ static shb_status trace_both(tracer *t, const mhb_peak_place *first, mhb_respons
   int down = t->segment;
   SHB_TRY(trace_half(t, *first, 1, &end->high));
   *found = t->store->branch[down].n_points > 0;
-  return *found ? mhb_join_halves(response, branch, t->store, down, t->segment) : SHB_OK;
+  if (*found) mhb_join_halves(response, branch, t->store, down, t->segment);
+  return SHB_OK;
 }
 
 static shb_status make(tracer *t, const mhb_response *response, int branch) {
-  size_t n   = (size_t)t->family->balance->n;
-  t->point.x = calloc(n, sizeof(double));
-  t->point.r = calloc(n, sizeof(double));
-  t->store   = mhb_response_like(response);
-  SHB_CHECK(t->point.x && t->point.r && t->store, SHB_ERR_IO, "out of memory");
+  size_t n              = (size_t)t->family->balance->n;
+  t->point.x            = shb_alloc_zeroed(n, sizeof(double));
+  t->point.r            = shb_alloc_zeroed(n, sizeof(double));
+  t->store              = mhb_response_like(response);
   t->store->n_harmonics = response->branch[branch].n_harmonics;
   SHB_TRY(mhb_truncation_create(t->family->balance, &t->truncation));
-  return mhb_evaluation_create(t->family->balance, &t->point.evaluation);
+  t->point.evaluation = mhb_evaluation_create(t->family->balance);
+  return SHB_OK;
 }
 
 shb_status mhb_trace_peak_places(mhb_peak_family *family, const mhb_peak_place *first,

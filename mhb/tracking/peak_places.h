@@ -35,7 +35,7 @@ mhb_peak_place mhb_peak_place_at(const mhb_peak_place *from, double value);
 /* Follow a family from a peak both ways into an empty branch that ascends in the parameter. Points
  * are as dense as linear interpolation of the amplitude to 3e-5 asks for. MHB_OPTIMUM marks where
  * the amplitude is stationary.
- * *found false: the first place does not balance. SHB_ERR_IO: no memory. */
+ * *found false: the first place does not balance. */
 shb_status mhb_trace_peak_places(mhb_peak_family *family, const mhb_peak_place *first,
                                  mhb_response *response, int branch, bool *found,
                                  mhb_tracking_end *end);

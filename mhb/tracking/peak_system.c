@@ -5,6 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "mesh/base/memory.h"
 #include "mhb/numerics/vector.h"
 
 /* Step of the directional difference, relative to |z|. */
@@ -399,8 +400,8 @@ static mhb_reason solve_at_value(mhb_curve_system *system, double tolerance,
 
 /* ---- creation ---- */
 
-static shb_status evaluation_create(mhb_curve_system *system, mhb_evaluation **evaluation) {
-  return mhb_evaluation_create(of(system)->balance, evaluation);
+static mhb_evaluation *evaluation_create(mhb_curve_system *system) {
+  return mhb_evaluation_create(of(system)->balance);
 }
 
 static void evaluation_destroy(mhb_curve_system *system, mhb_evaluation *evaluation) {
@@ -443,46 +444,45 @@ static shb_status fill(mhb_peak_system *s) {
   s->step_pivot  = shb_arena_take(arena, two, sizeof *s->step_pivot);
   s->amplitude.weight =
       shb_arena_take(arena, mhb_amplitude_weights(s->balance), sizeof *s->amplitude.weight);
-  SHB_CHECK(!arena->failed, SHB_ERR_IO, "out of memory to follow peaks of %d unknowns", s->n);
   s->value     = NAN;
   s->border[n] = 1;
   if (s->kind == MHB_TRACK_FLIP || s->kind == MHB_TRACK_NEIMARK_SACKER)
     return mhb_multiplier_condition_create(s->balance, s->parameter, s->kind == MHB_TRACK_FLIP,
                                            s->rate, &s->condition);
-  return mhb_evaluation_create(s->balance, &s->displaced);
+  s->displaced = mhb_evaluation_create(s->balance);
+  return SHB_OK;
 }
 
 shb_status mhb_peak_system_create(mhb_balance *balance, mhb_tracked_point kind, int output,
                                   mhb_parameter parameter, double range, double length,
                                   mhb_peak_system **out) {
-  mhb_peak_system *s = calloc(1, sizeof *s);
-  SHB_CHECK(s, SHB_ERR_IO, "out of memory");
-  s->balance        = balance;
-  s->kind           = kind;
-  s->output         = output;
-  s->parameter      = parameter;
-  s->rate           = range / length;
-  s->length         = length;
-  s->n              = balance->n;
-  s->base           = (mhb_curve_system){.n                  = balance->n + 1,
-                                         .least              = mhb_parameter_least(parameter),
-                                         .plain              = kind != MHB_TRACK_FOLD,
-                                         .costly             = kind == MHB_TRACK_PEAK,
-                                         .bends              = kind == MHB_TRACK_PEAK,
-                                         .row_length         = balance->n + 1,
-                                         .copies             = 1,
-                                         .copy               = copy,
-                                         .destroy            = destroy,
-                                         .evaluation_create  = evaluation_create,
-                                         .evaluation_destroy = evaluation_destroy,
-                                         .linearise          = linearise,
-                                         .evaluate           = evaluate,
-                                         .factor             = factor,
-                                         .solve              = solve,
-                                         .sign               = sign,
-                                         .solve_at_value     = solve_at_value,
-                                         .unit_of_value      = unit_of_value};
-  shb_status status = fill(s);
+  mhb_peak_system *s = shb_alloc_zeroed(1, sizeof *s);
+  s->balance         = balance;
+  s->kind            = kind;
+  s->output          = output;
+  s->parameter       = parameter;
+  s->rate            = range / length;
+  s->length          = length;
+  s->n               = balance->n;
+  s->base            = (mhb_curve_system){.n                  = balance->n + 1,
+                                          .least              = mhb_parameter_least(parameter),
+                                          .plain              = kind != MHB_TRACK_FOLD,
+                                          .costly             = kind == MHB_TRACK_PEAK,
+                                          .bends              = kind == MHB_TRACK_PEAK,
+                                          .row_length         = balance->n + 1,
+                                          .copies             = 1,
+                                          .copy               = copy,
+                                          .destroy            = destroy,
+                                          .evaluation_create  = evaluation_create,
+                                          .evaluation_destroy = evaluation_destroy,
+                                          .linearise          = linearise,
+                                          .evaluate           = evaluate,
+                                          .factor             = factor,
+                                          .solve              = solve,
+                                          .sign               = sign,
+                                          .solve_at_value     = solve_at_value,
+                                          .unit_of_value      = unit_of_value};
+  shb_status status  = fill(s);
   if (status != SHB_OK) destroy(&s->base);
   if (status == SHB_OK) *out = s;
   return status;

@@ -52,8 +52,7 @@ typedef struct mhb_peak_system mhb_peak_system;
  * must outlive it and be used by nothing else meanwhile.
  *   parameter  in  q, not the frequency
  *   range      in  rad/s, the width of the frequency range
- *   length     in  m, the size of the motion
- * SHB_ERR_IO: no memory. */
+ *   length     in  m, the size of the motion */
 shb_status mhb_peak_system_create(mhb_balance *balance, mhb_tracked_point kind, int output,
                                   mhb_parameter parameter, double range, double length,
                                   mhb_peak_system **system);

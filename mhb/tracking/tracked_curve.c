@@ -6,6 +6,7 @@
 
 #include "mesh/base/clock.h"
 #include "mesh/base/constants.h"
+#include "mesh/base/memory.h"
 #include "mesh/base/progress.h"
 #include "mhb/balance/truncation_error.h"
 #include "mhb/branches/record.h"
@@ -143,7 +144,8 @@ static shb_status started(mhb_segment_host *host, const mhb_seed *seed, mhb_end 
   if (*end != MHB_END_NONE) return SHB_OK;
   mhb_curve_place_free(&t->start);
   t->back = (mhb_curve_return){&t->start, 0};
-  return mhb_curve_place_note(&t->start, host->curve->system, &host->curve->current, 1e-6);
+  mhb_curve_place_note(&t->start, host->curve->system, &host->curve->current, 1e-6);
+  return SHB_OK;
 }
 
 /* A point where no other multiplier is outside is the border of the stable motions. */
@@ -161,7 +163,7 @@ static shb_status record(mhb_segment_host *host, mhb_curve_point *point, int spe
   double  now = shb_seconds();
   mhb_balance_use(t->balance, point->evaluation);
   mhb_balance_set_parameter(t->balance, t->tracking->parameter);
-  SHB_TRY(mhb_record(t->store, t->segment, t->balance, point, special, now - t->clock));
+  mhb_record(t->store, t->segment, t->balance, point, special, now - t->clock);
   if (by_multiplier(t->tracking)) record_multiplier(t, point);
   t->clock = now;
   /* the whole curve is followed again with more harmonics */
@@ -355,11 +357,11 @@ static shb_status trace_half(tracer *t, const double *z, double value, int direc
                             .value      = value,
                             .direction  = direction,
                             .skip_first = false};
-  SHB_TRY(mhb_response_branch(t->store, MHB_BRANCH_TRACKED, segment));
-  t->segment         = *segment;
-  t->direction       = direction;
-  t->clock           = shb_seconds();
-  t->host.max_points = t->tracking->max_points;
+  *segment               = mhb_response_branch(t->store, MHB_BRANCH_TRACKED);
+  t->segment             = *segment;
+  t->direction           = direction;
+  t->clock               = shb_seconds();
+  t->host.max_points     = t->tracking->max_points;
   if (by_multiplier(t->tracking) &&
       mhb_peak_system_choose(curve, z, mhb_peak_system_omega(curve, z), value) != NULL)
     return SHB_OK;
@@ -378,14 +380,12 @@ static shb_status trace_half(tracer *t, const double *z, double value, int direc
   return SHB_OK;
 }
 
-shb_status mhb_join_halves(mhb_response *response, int branch, const mhb_response *store, int low,
-                           int high) {
+void mhb_join_halves(mhb_response *response, int branch, const mhb_response *store, int low,
+                     int high) {
   const int below = store->branch[low].n_points, above = store->branch[high].n_points;
   const int first = below > 0 ? 1 : 0;
-  if (below > 0) SHB_TRY(mhb_response_copy_points(response, branch, store, low, below - 1, 0));
-  if (above > first)
-    SHB_TRY(mhb_response_copy_points(response, branch, store, high, first, above - 1));
-  return SHB_OK;
+  if (below > 0) mhb_response_copy_points(response, branch, store, low, below - 1, 0);
+  if (above > first) mhb_response_copy_points(response, branch, store, high, first, above - 1);
 }
 
 bool mhb_is_seeded(const mhb_tracking_seed *seed, double omega, double amplitude) {
@@ -418,11 +418,12 @@ static shb_status trace_both(tracer *t, const mhb_tracking_seed *seed, double *z
   if (end->low == MHB_END_CLOSED) { /* the other way round it is the same curve */
     end->high = MHB_END_CLOSED;
     *found    = true;
-    return mhb_response_copy_points(response, branch, t->store, down, 0,
-                                    t->store->branch[down].n_points - 1);
+    mhb_response_copy_points(response, branch, t->store, down, 0,
+                             t->store->branch[down].n_points - 1);
+    return SHB_OK;
   }
   SHB_TRY(trace_half(t, z, seed->value, 1, &up, &end->high));
-  SHB_TRY(mhb_join_halves(response, branch, t->store, down, up));
+  mhb_join_halves(response, branch, t->store, down, up);
   *found = response->branch[branch].n_points > 0;
   return SHB_OK;
 }
@@ -437,8 +438,7 @@ static shb_status make_curve(tracer *t, double length) {
   if (tracking->low <= 0)
     mhb_peak_system_passes_zero(mhb_peak_system_base(system),
                                 NEAR_ZERO * (tracking->high - tracking->low));
-  SHB_TRY(mhb_arclength_create(mhb_peak_system_base(system), tracking->low, tracking->high,
-                               &t->host.curve));
+  t->host.curve = mhb_arclength_create(mhb_peak_system_base(system), tracking->low, tracking->high);
   if (tracking->kind == MHB_TRACK_PEAK) {
     t->host.curve->tolerance = SETTLED;
     t->host.curve->longest   = LONGEST_STEP;
@@ -450,24 +450,22 @@ shb_status mhb_trace_tracked(mhb_balance *balance, const mhb_tracking *tracking,
                              const mhb_tracking_seed *seed, mhb_response *response, int branch,
                              bool *found, mhb_tracking_end *end) {
   mhb_event_test test[MOST_TESTS];
-  tracer         t = {.balance = balance, .tracking = tracking, .store = NULL};
-  double        *z = calloc((size_t)balance->n + 1, sizeof *z);
-  *end             = (mhb_tracking_end){MHB_END_NO_START, MHB_END_NO_START};
-  *found           = false;
-  t.host           = (mhb_segment_host){.estimate       = estimate,
-                                        .estimate_event = estimate_event,
-                                        .accept         = accept,
-                                        .started        = started,
-                                        .record         = record,
-                                        .test           = test,
-                                        .events         = &t.events};
-  t.host.n_tests   = make_tests(&t, test);
-  t.store          = mhb_response_like(response);
-  t.stuck          = calloc((size_t)balance->n_pairs, sizeof *t.stuck);
-  shb_status status =
-      z && t.store && t.stuck ? SHB_OK : shb_fail(SHB_ERR_IO, __FILE__, __LINE__, "out of memory");
-  if (status == SHB_OK) t.store->n_harmonics = response->branch[branch].n_harmonics;
-  if (status == SHB_OK) status = make_curve(&t, mhb_norm(seed->x, balance->n));
+  tracer         t     = {.balance = balance, .tracking = tracking, .store = NULL};
+  double        *z     = shb_alloc_zeroed((size_t)balance->n + 1, sizeof *z);
+  *end                 = (mhb_tracking_end){MHB_END_NO_START, MHB_END_NO_START};
+  *found               = false;
+  t.host               = (mhb_segment_host){.estimate       = estimate,
+                                            .estimate_event = estimate_event,
+                                            .accept         = accept,
+                                            .started        = started,
+                                            .record         = record,
+                                            .test           = test,
+                                            .events         = &t.events};
+  t.host.n_tests       = make_tests(&t, test);
+  t.store              = mhb_response_like(response);
+  t.stuck              = shb_alloc_zeroed((size_t)balance->n_pairs, sizeof *t.stuck);
+  t.store->n_harmonics = response->branch[branch].n_harmonics;
+  shb_status status    = make_curve(&t, mhb_norm(seed->x, balance->n));
   if (status == SHB_OK) status = trace_both(&t, seed, z, response, branch, found, end);
   mhb_events_destroy(&t.events);
   mhb_curve_place_free(&t.start);

@@ -42,14 +42,14 @@ typedef struct {
  * mhb_end: the ends of the range, MHB_END_TURNED, MHB_END_CORNER, MHB_END_FREQUENCY. A curve of
  * folds may turn. It ends at the ends of the range, or where it closes. MHB_OPTIMUM marks where the
  * amplitude is stationary along the curve; of a fold, where the frequency is.
- * *found false: no peak near the seed. SHB_ERR_IO: no memory. */
+ * *found false: no peak near the seed. */
 shb_status mhb_trace_tracked(mhb_balance *balance, const mhb_tracking *tracking,
                              const mhb_tracking_seed *seed, mhb_response *response, int branch,
                              bool *found, mhb_tracking_end *end);
 
 /* Append both halves of a curve, each from the seed on, to a branch: the low one from its end, then
- * the high one. The seed's point is in both and is appended once. SHB_ERR_IO: no memory. */
-shb_status mhb_join_halves(mhb_response *response, int branch, const mhb_response *store, int low,
-                           int high);
+ * the high one. The seed's point is in both and is appended once. */
+void mhb_join_halves(mhb_response *response, int branch, const mhb_response *store, int low,
+                     int high);
 
 #endif

@@ -6,6 +6,7 @@
 
 #include "mesh/base/clock.h"
 #include "mesh/base/constants.h"
+#include "mesh/base/memory.h"
 #include "mhb/branches/forced_response.h"
 #include "mhb/response/describe.h"
 #include "mhb/response/publisher.h"
@@ -213,12 +214,11 @@ static bool is_seed(const tracking_run *run, const sweep_peaks *s, const mhb_bra
 }
 
 /* Find the peaks of the sweep. */
-static shb_status find_peaks(const tracking_run *run, sweep_peaks *s) {
+static void find_peaks(const tracking_run *run, sweep_peaks *s) {
   const mhb_response *r = s->sweep;
   int                 n = 0;
   for (int b = 0; b < r->n_branches; b++) n += r->branch[b].n_points;
-  s->peak = malloc((size_t)(n + 1) * sizeof *s->peak);
-  SHB_CHECK(s->peak, SHB_ERR_IO, "out of memory");
+  s->peak = shb_alloc((size_t)n, sizeof *s->peak);
   for (int b = 0; b < r->n_branches; b++) {
     const mhb_branch *branch = &r->branch[b];
     for (int i = 0; i < branch->n_points && branch->kind == MHB_BRANCH_NONLINEAR; i++) {
@@ -227,7 +227,6 @@ static shb_status find_peaks(const tracking_run *run, sweep_peaks *s) {
     }
   }
   for (int i = 0; i < s->n; i++) s->most = fmax(s->most, s->peak[i].amplitude);
-  return SHB_OK;
 }
 
 /* Frequency between points i and i + 1 of a branch, by the cubic through them and those beside.
@@ -308,33 +307,31 @@ static shb_status follow_with(tracking_run *run, const mhb_sweep_peak *peak, dou
   *found                    = false;
   settings.harmonics        = m;
   tracking.tolerance        = judge && m < MOST_HARMONICS ? run->asked->motion_tolerance : 0;
-  SHB_TRY(mhb_response_branch(run->response, MHB_BRANCH_TRACKED, &index));
+  index                     = mhb_response_branch(run->response, MHB_BRANCH_TRACKED);
   run->response->branch[index].n_harmonics = m;
   SHB_TRY(mhb_balance_create(run->model, &settings, &balance));
-  const int  n      = balance->n;
-  double    *x      = calloc(2 * (size_t)n, sizeof *x);
-  shb_status status = x ? SHB_OK : shb_fail(SHB_ERR_IO, __FILE__, __LINE__, "out of memory");
-  if (status == SHB_OK) {
-    const mhb_tracking_seed seed = {.x         = x,
+  const int               n      = balance->n;
+  double                 *x      = shb_alloc_zeroed(2 * (size_t)n, sizeof *x);
+  shb_status              status = SHB_OK;
+  const mhb_tracking_seed seed   = {.x         = x,
                                     .omega     = SHB_TWO_PI * peak->frequency,
                                     .value     = value,
                                     .reach     = peak->reach,
                                     .amplitude = peak->amplitude};
-    mhb_sweep_peak_motion(peak, balance, x, x + n);
-    if (peak->sticks)
-      status = mhb_trace_corner(balance, &run->tracking, &seed, run->response, index, found, &end);
-    if (status == SHB_OK && !*found)
-      status = mhb_trace_tracked(balance, &tracking, &seed, run->response, index, found, &end);
-    if (status == SHB_OK && !*found)
-      status = mhb_trace_kink(balance, &run->tracking, &seed, run->response, index, found, &end);
-  }
+  mhb_sweep_peak_motion(peak, balance, x, x + n);
+  if (peak->sticks)
+    status = mhb_trace_corner(balance, &run->tracking, &seed, run->response, index, found, &end);
+  if (status == SHB_OK && !*found)
+    status = mhb_trace_tracked(balance, &tracking, &seed, run->response, index, found, &end);
+  if (status == SHB_OK && !*found)
+    status = mhb_trace_kink(balance, &run->tracking, &seed, run->response, index, found, &end);
   free(x);
   mhb_balance_destroy(balance);
   if (status != SHB_OK) return status;
   mhb_branch *branch = &run->response->branch[index];
   char        reason[200];
   snprintf(reason, sizeof reason, "%s; %s", end_text(end.low), end_text(end.high));
-  branch->reason   = strdup(reason);
+  branch->reason   = shb_text(reason);
   branch->searched = branch->complete = true;
   *good                               = *found;
   for (int i = 0; i < branch->n_points && judge; i++) {
@@ -389,11 +386,9 @@ static shb_status make_response(tracking_run *run, const mhb_response *sweep) {
   run->settings.n_preloads       = 1;
   run->response =
       mhb_response_create(run->model->n_pairs, run->model->n_probes, run->settings.harmonics);
-  SHB_CHECK(run->response, SHB_ERR_IO, "out of memory");
-  run->response->unfinished = true;
-  run->response->track      = strdup(mhb_track_word(run->asked->track));
-  run->response->output     = strdup(output_name(run));
-  SHB_CHECK(run->response->track && run->response->output, SHB_ERR_IO, "out of memory");
+  run->response->unfinished        = true;
+  run->response->track             = shb_text(mhb_track_word(run->asked->track));
+  run->response->output            = shb_text(output_name(run));
   run->response->tracks_multiplier = mhb_track_by_multiplier(run->response->track);
   run->response->psi               = sweep->psi;
   run->response->phi               = sweep->phi;
@@ -404,7 +399,7 @@ static shb_status make_response(tracking_run *run, const mhb_response *sweep) {
 static shb_status find_seeds(const tracking_run *run, double value, bool outline, sweep_peaks *s) {
   *s                = (sweep_peaks){.value = value, .outline = outline};
   shb_status status = sweep_at(run, value, outline, &s->sweep);
-  if (status == SHB_OK) status = find_peaks(run, s);
+  if (status == SHB_OK) find_peaks(run, s);
   if (status != SHB_OK) sweep_peaks_free(s);
   return status;
 }
@@ -470,24 +465,19 @@ static bool goes_on(const tracking_run *run, int b, int point, double value) {
  * begins or ends. Where a corner ends it is a smooth or stuck peak. */
 static shb_status follow_from_end(tracking_run *run, int b, int point, double value) {
   mhb_response *store = mhb_response_like(run->response);
-  int           index;
   bool          unused;
-  SHB_CHECK(store, SHB_ERR_IO, "out of memory");
   store->n_harmonics = run->response->branch[b].n_harmonics;
-  shb_status status  = mhb_response_branch(store, MHB_BRANCH_TRACKED, &index);
-  if (status == SHB_OK)
-    status = mhb_response_copy_points(store, index, run->response, b, point, point);
-  if (status == SHB_OK) {
-    const mhb_branch    *end  = &store->branch[index];
-    const mhb_sweep_peak peak = {
-        .branch    = end,
-        .frequency = end->frequency[0],
-        .amplitude = mhb_response_amplitude(store, end, 0, run->tracking.output),
-        .reach     = BESIDE_END,
-        .weight    = {0, 1, 0},
-        .sticks    = true};
-    status = follow(run, &peak, value, &unused);
-  }
+  const int index    = mhb_response_branch(store, MHB_BRANCH_TRACKED);
+  mhb_response_copy_points(store, index, run->response, b, point, point);
+  const mhb_branch    *end  = &store->branch[index];
+  const mhb_sweep_peak peak = {
+      .branch    = end,
+      .frequency = end->frequency[0],
+      .amplitude = mhb_response_amplitude(store, end, 0, run->tracking.output),
+      .reach     = BESIDE_END,
+      .weight    = {0, 1, 0},
+      .sticks    = true};
+  const shb_status status = follow(run, &peak, value, &unused);
   mhb_response_destroy(store);
   return status;
 }

@@ -4,11 +4,11 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "mesh/base/memory.h"
 #include "mhb/variation/propagator.h"
 
-shb_status mhb_disc_propagation_create(const mhb_disc_modes *modes, mhb_disc_propagation **out) {
-  mhb_disc_propagation *d = calloc(1, sizeof *d);
-  SHB_CHECK(d, SHB_ERR_IO, "out of memory");
+mhb_disc_propagation *mhb_disc_propagation_create(const mhb_disc_modes *modes) {
+  mhb_disc_propagation *d = shb_alloc_zeroed(1, sizeof *d);
   const size_t N = (size_t)modes->blades, n = (size_t)modes->n, K = (size_t)modes->diameters;
   d->modes      = modes;
   d->propagator = shb_arena_take(&d->arena, K * (size_t)modes->modes * PROPAGATOR, sizeof(double));
@@ -21,12 +21,7 @@ shb_status mhb_disc_propagation_create(const mhb_disc_modes *modes, mhb_disc_pro
   d->force  = shb_arena_take(&d->arena, N * n, sizeof *d->force);
   d->motion = shb_arena_take(&d->arena, N * n, sizeof *d->motion);
   d->row    = shb_arena_take(&d->arena, N, sizeof *d->row);
-  if (d->arena.failed) {
-    mhb_disc_propagation_destroy(d);
-    SHB_FAIL(SHB_ERR_IO, "out of memory for the stability of a disc of %d sectors", modes->blades);
-  }
-  *out = d;
-  return SHB_OK;
+  return d;
 }
 
 void mhb_disc_propagation_destroy(mhb_disc_propagation *d) {

@@ -25,9 +25,9 @@ typedef struct {
   shb_arena             arena;
 } mhb_disc_propagation;
 
-/* SHB_ERR_IO: no memory. The modes must outlive it. */
-shb_status mhb_disc_propagation_create(const mhb_disc_modes *modes, mhb_disc_propagation **disc);
-void       mhb_disc_propagation_destroy(mhb_disc_propagation *disc);
+/* The modes must outlive it. */
+mhb_disc_propagation *mhb_disc_propagation_create(const mhb_disc_modes *modes);
+void                  mhb_disc_propagation_destroy(mhb_disc_propagation *disc);
 
 /* Sub-steps of h seconds. compliance [N n][N n] <- motion of the contacts over h by unit mean
  * forces. */

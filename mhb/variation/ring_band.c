@@ -7,19 +7,17 @@ static int least(int a, int b) {
   return a < b ? a : b;
 }
 
-int mhb_ring_band_create(int blades, int block, mhb_ring_band *b) {
+void mhb_ring_band_create(int blades, int block, mhb_ring_band *b) {
   int n    = blades * block;
   *b       = (mhb_ring_band){.n = n, .block = block, .blades = blades};
   b->width = least(3 * block - 1, n - 1);
   b->row   = shb_arena_take(&b->arena, (size_t)n * (size_t)(3 * b->width + 1), sizeof *b->row);
   b->pivot = shb_arena_take(&b->arena, (size_t)n, sizeof *b->pivot);
   b->place = shb_arena_take(&b->arena, (size_t)n, sizeof *b->place);
-  if (b->arena.failed) return 0;
   for (int i = 0; i < n; i++) {
     int blade = i / block, folded = 2 * blade < blades ? 2 * blade : 2 * (blades - blade) - 1;
     b->place[i] = folded * block + i % block;
   }
-  return 1;
 }
 
 void mhb_ring_band_destroy(mhb_ring_band *b) {

@@ -27,8 +27,8 @@ typedef struct {
   shb_arena arena;
 } mhb_ring_band;
 
-/* For blades of block unknowns each, blade by blade. Returns 0 without memory. */
-int  mhb_ring_band_create(int blades, int block, mhb_ring_band *band);
+/* For blades of block unknowns each, blade by blade. */
+void mhb_ring_band_create(int blades, int block, mhb_ring_band *band);
 void mhb_ring_band_destroy(mhb_ring_band *band);
 
 /* Blades coupled to a blade, itself among them, each once. Returns their number, up to three. */

@@ -5,45 +5,40 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "mesh/base/memory.h"
 #include "mhb/numerics/simd.h"
 #include "mhb/variation/propagator.h"
 
 /* Rows of a jump in the workspace: measure . y, and three of a contact. */
 enum { JUMP_ROWS = 4 };
 
-shb_status mhb_slider_propagation_create(const mhb_stuck_springs *springs, int capacity,
-                                         mhb_slider_propagation **out) {
-  mhb_slider_propagation *x = calloc(1, sizeof *x);
-  SHB_CHECK(x, SHB_ERR_IO, "out of memory");
-  size_t     n = (size_t)springs->n, m = (size_t)springs->modes, contacts = n / 3;
-  size_t     width = (size_t)mhb_whole_lanes(capacity);
-  shb_arena *a     = &x->arena;
-  x->springs       = springs;
-  x->capacity      = (int)width;
-  x->h             = -1;
-  x->Y             = shb_arena_take(a, (2 * m + 5 * contacts) * width, sizeof(double));
-  x->z             = shb_arena_take(a, n * width, sizeof(double));
-  x->held          = shb_arena_take(a, n * width, sizeof(double));
-  x->g             = shb_arena_take(a, m * width, sizeof(double));
-  x->active        = shb_arena_take(a, contacts, sizeof(int));
-  x->is_active     = shb_arena_take(a, contacts, sizeof(bool));
-  x->stuck         = shb_arena_take(a, n * m, sizeof(double));
-  x->answer        = shb_arena_take(a, 2 * n * m, sizeof(double));
-  x->slider        = shb_arena_take(a, n * n, sizeof(double));
-  x->system        = shb_arena_take(a, n * n, sizeof(double));
-  x->pivot         = shb_arena_take(a, n + m, sizeof(int));
-  x->feedback      = shb_arena_take(a, n * m, sizeof(double));
-  x->laws          = shb_arena_take(a, n * m + m * m, sizeof(double));
-  x->propagator    = shb_arena_take(a, PROPAGATOR * m, sizeof(double));
-  x->inverse       = shb_arena_take(a, m * m, sizeof(double));
-  x->half          = shb_arena_take(a, m * m, sizeof(double));
-  x->work          = shb_arena_take(a, (3 * m + 3 * n + JUMP_ROWS) * width, sizeof(double));
-  if (!a->failed) {
-    *out = x;
-    return SHB_OK;
-  }
-  mhb_slider_propagation_destroy(x);
-  SHB_FAIL(SHB_ERR_IO, "out of memory for the stability of %d columns", capacity);
+mhb_slider_propagation *mhb_slider_propagation_create(const mhb_stuck_springs *springs,
+                                                      int                      capacity) {
+  mhb_slider_propagation *x = shb_alloc_zeroed(1, sizeof *x);
+  size_t                  n = (size_t)springs->n, m = (size_t)springs->modes, contacts = n / 3;
+  size_t                  width = (size_t)mhb_whole_lanes(capacity);
+  shb_arena              *a     = &x->arena;
+  x->springs                    = springs;
+  x->capacity                   = (int)width;
+  x->h                          = -1;
+  x->Y                          = shb_arena_take(a, (2 * m + 5 * contacts) * width, sizeof(double));
+  x->z                          = shb_arena_take(a, n * width, sizeof(double));
+  x->held                       = shb_arena_take(a, n * width, sizeof(double));
+  x->g                          = shb_arena_take(a, m * width, sizeof(double));
+  x->active                     = shb_arena_take(a, contacts, sizeof(int));
+  x->is_active                  = shb_arena_take(a, contacts, sizeof(bool));
+  x->stuck                      = shb_arena_take(a, n * m, sizeof(double));
+  x->answer                     = shb_arena_take(a, 2 * n * m, sizeof(double));
+  x->slider                     = shb_arena_take(a, n * n, sizeof(double));
+  x->system                     = shb_arena_take(a, n * n, sizeof(double));
+  x->pivot                      = shb_arena_take(a, n + m, sizeof(int));
+  x->feedback                   = shb_arena_take(a, n * m, sizeof(double));
+  x->laws                       = shb_arena_take(a, n * m + m * m, sizeof(double));
+  x->propagator                 = shb_arena_take(a, PROPAGATOR * m, sizeof(double));
+  x->inverse                    = shb_arena_take(a, m * m, sizeof(double));
+  x->half                       = shb_arena_take(a, m * m, sizeof(double));
+  x->work = shb_arena_take(a, (3 * m + 3 * n + JUMP_ROWS) * width, sizeof(double));
+  return x;
 }
 
 void mhb_slider_propagation_destroy(mhb_slider_propagation *x) {

@@ -42,10 +42,10 @@ typedef struct {
   shb_arena arena;
 } mhb_slider_propagation;
 
-/* Room for capacity columns. The springs must outlive it. SHB_ERR_IO: no memory. */
-shb_status mhb_slider_propagation_create(const mhb_stuck_springs *springs, int capacity,
-                                         mhb_slider_propagation **propagation);
-void       mhb_slider_propagation_destroy(mhb_slider_propagation *propagation);
+/* Room for capacity columns. The springs must outlive it. */
+mhb_slider_propagation *mhb_slider_propagation_create(const mhb_stuck_springs *springs,
+                                                      int                      capacity);
+void                    mhb_slider_propagation_destroy(mhb_slider_propagation *propagation);
 
 /* All rows zero, for a number of columns. */
 void mhb_slider_propagation_clear(mhb_slider_propagation *propagation, int columns);

@@ -5,10 +5,11 @@
 #include <stdlib.h>
 #include <string.h>
 
-shb_status mhb_stuck_springs_create(const mhb_modal_structure *s, mhb_stuck_springs **out) {
-  mhb_stuck_springs *x = calloc(1, sizeof *x);
-  SHB_CHECK(x, SHB_ERR_IO, "out of memory");
-  size_t contacts = (size_t)s->contacts, n = 3 * contacts, m = (size_t)s->modes;
+#include "mesh/base/memory.h"
+
+mhb_stuck_springs *mhb_stuck_springs_create(const mhb_modal_structure *s) {
+  mhb_stuck_springs *x        = shb_alloc_zeroed(1, sizeof *x);
+  size_t             contacts = (size_t)s->contacts, n = 3 * contacts, m = (size_t)s->modes;
   x->structure = s;
   x->n         = (int)n;
   x->modes     = s->modes;
@@ -24,13 +25,8 @@ shb_status mhb_stuck_springs_create(const mhb_modal_structure *s, mhb_stuck_spri
     x->matrix = shb_arena_take(&x->arena, n * n, sizeof(double));
     x->pivot  = shb_arena_take(&x->arena, n, sizeof(int));
   }
-  if (x->arena.failed) {
-    mhb_stuck_springs_destroy(x);
-    SHB_FAIL(SHB_ERR_IO, "out of memory for the stability of %d contacts", s->contacts);
-  }
   mhb_stuck_springs_forget(x);
-  *out = x;
-  return SHB_OK;
+  return x;
 }
 
 void mhb_stuck_springs_destroy(mhb_stuck_springs *x) {

@@ -31,10 +31,9 @@ typedef struct {
   shb_arena                  arena;
 } mhb_stuck_springs;
 
-/* Of a structure on the ground, which must outlive it. SHB_ERR_IO: no memory. */
-shb_status mhb_stuck_springs_create(const mhb_modal_structure *structure,
-                                    mhb_stuck_springs        **springs);
-void       mhb_stuck_springs_destroy(mhb_stuck_springs *springs);
+/* Of a structure on the ground, which must outlive it. */
+mhb_stuck_springs *mhb_stuck_springs_create(const mhb_modal_structure *structure);
+void               mhb_stuck_springs_destroy(mhb_stuck_springs *springs);
 
 /* Set all from the laws [contact]; nothing is done if their stiffnesses are those of the last call.
  * Returns 0 if singular. */

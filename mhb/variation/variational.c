@@ -3,6 +3,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "mesh/base/memory.h"
 #include "mhb/variation/propagator.h"
 
 static int unknowns(const mhb_modal_structure *s) {
@@ -33,7 +34,7 @@ static void take_laws(mhb_variational *v) {
   v->dp         = shb_arena_take(&v->arena, n, sizeof(double));
 }
 
-static int take_band(mhb_variational *v) {
+static void take_band(mhb_variational *v) {
   const mhb_modal_structure *s      = v->structure;
   size_t                     n      = (size_t)unknowns(s);
   int                        groups = mhb_modal_structure_groups(s);
@@ -45,31 +46,25 @@ static int take_band(mhb_variational *v) {
     v->propagator = shb_arena_take(&v->arena, (size_t)oscillators(s) * PROPAGATOR, sizeof(double));
   v->compliance = shb_arena_take(&v->arena, n * n, sizeof(double));
   v->neighbour  = shb_arena_take(&v->arena, (size_t)groups, sizeof *v->neighbour);
-  int ok        = mhb_ring_band_create(groups, unknowns(s) / groups, &v->band);
-  if (ok && s->disc) ok = mhb_disc_propagation_create(s->disc, &v->disc) == SHB_OK;
-  if (!ok || v->arena.failed) return 0;
+  mhb_ring_band_create(groups, unknowns(s) / groups, &v->band);
+  if (s->disc) v->disc = mhb_disc_propagation_create(s->disc);
   for (int b = 0; b < groups; b++)
     v->n_neighbours = mhb_ring_band_neighbours(&v->band, b, v->neighbour[b]);
-  return 1;
 }
 
-shb_status mhb_variational_create(const mhb_modal_structure *s, const mhb_stuck_springs *springs,
-                                  int capacity, mhb_variational **out) {
-  mhb_variational *v = calloc(1, sizeof *v);
-  SHB_CHECK(v, SHB_ERR_IO, "out of memory");
-  v->structure = s;
-  v->capacity  = capacity;
-  v->rows      = 2 * modal_rows(s) + 5 * s->contacts;
-  v->h         = -1;
+mhb_variational *mhb_variational_create(const mhb_modal_structure *s,
+                                        const mhb_stuck_springs *springs, int capacity) {
+  mhb_variational *v = shb_alloc_zeroed(1, sizeof *v);
+  v->structure       = s;
+  v->capacity        = capacity;
+  v->rows            = 2 * modal_rows(s) + 5 * s->contacts;
+  v->h               = -1;
   take_laws(v);
-  int ok = springs ? mhb_slider_propagation_create(springs, capacity, &v->sliders) == SHB_OK
-                   : take_band(v);
-  if (!ok || v->arena.failed) {
-    mhb_variational_destroy(v);
-    SHB_FAIL(SHB_ERR_IO, "out of memory for the stability of %d columns", capacity);
-  }
-  *out = v;
-  return SHB_OK;
+  if (springs)
+    v->sliders = mhb_slider_propagation_create(springs, capacity);
+  else
+    take_band(v);
+  return v;
 }
 
 void mhb_variational_destroy(mhb_variational *v) {

@@ -48,13 +48,12 @@ typedef struct {
   shb_arena               arena;
 } mhb_variational;
 
-/* Room for capacity columns. SHB_ERR_IO: no memory. Structure and springs must outlive it.
+/* Room for capacity columns. Structure and springs must outlive it.
  *   springs  in  of a blade on the ground: only contacts that slip or are open cost anything
  *                (slider_propagation.h), with the same result. Else NULL */
-shb_status mhb_variational_create(const mhb_modal_structure *structure,
-                                  const mhb_stuck_springs *springs, int capacity,
-                                  mhb_variational **variational);
-void       mhb_variational_destroy(mhb_variational *variational);
+mhb_variational *mhb_variational_create(const mhb_modal_structure *structure,
+                                        const mhb_stuck_springs *springs, int capacity);
+void             mhb_variational_destroy(mhb_variational *variational);
 
 /* All rows zero, for a number of columns. */
 void mhb_variational_clear(mhb_variational *variational, int columns);

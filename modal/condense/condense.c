@@ -10,13 +10,13 @@
 #include "modal/condense/few_columns.h"
 #include "modal/condense/many_columns.h"
 
-static shb_status allocate(const modal_condensation *to, int n_modes, modal_model *model) {
+static void allocate(const modal_condensation *to, int n_modes, modal_model *model) {
   *model = (modal_model){.n_modes  = n_modes,
                          .n_pairs  = to->n_pairs,
                          .has_left = to->has_left,
                          .n_probes = to->probe.n / 3,
                          .n_load   = to->load.n_harmonics};
-  return modal_model_allocate(model, NULL, NULL);
+  modal_model_allocate(model, NULL, NULL);
 }
 
 static PetscErrorCode fill_shapes(const fem_system *system, const modal_eigen *eigen,
@@ -74,7 +74,7 @@ static shb_status fill_terms(const fem_system *system, const modal_eigen *eigen,
 shb_status modal_condense(const fem_system *system, const modal_eigen *eigen,
                           const modal_condensation *to, shb_progress *progress,
                           modal_model *model) {
-  SHB_TRY(allocate(to, eigen->n, model));
+  allocate(to, eigen->n, model);
   SHB_TRY(fill_modes(system, eigen, to, model));
   return fill_terms(system, eigen, to, progress, model);
 }

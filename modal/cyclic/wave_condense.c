@@ -75,14 +75,14 @@ static void sample(const workspace *w, const modal_dofs *dofs, const double comp
 /* ------------------------------------------------------------------ model */
 
 /* Allocate the arrays of a model, its imaginary part and the load of the backward wave. */
-static shb_status allocate(const workspace *w) {
+static void allocate(const workspace *w) {
   const modal_condensation *to = w->to;
   w->model->n_modes            = w->modes->n;
   w->model->n_pairs            = to->n_pairs;
   w->model->has_left           = to->has_left;
   w->model->n_probes           = to->probe.n / 3;
   w->model->n_load             = to->load.n_harmonics;
-  return modal_model_allocate(w->model, w->imaginary, w->backward);
+  modal_model_allocate(w->model, w->imaginary, w->backward);
 }
 
 static void split(size_t n, const double complex *value, double *re, double *im) {
@@ -435,8 +435,8 @@ shb_status wave_condense(wave_operator *op, const wave_modes *modes, const modal
   memset(model, 0, sizeof *model);
   memset(imaginary, 0, sizeof *imaginary);
   memset(backward, 0, sizeof *backward);
-  shb_status status = allocate(&w);
-  if (status == SHB_OK) status = fill(&w);
+  allocate(&w);
+  const shb_status status = fill(&w);
   free_workspace(&w);
   if (op->is_real || load_is_real(&to->load)) modal_model_free(backward);
   if (op->is_real) modal_model_free(imaginary);

@@ -76,6 +76,20 @@ static shb_status check_shape(const char *label, h5_shape found, h5_shape wanted
   return SHB_OK;
 }
 
+/* HDF5 gives a fill value where nothing was written, and where a view finds no source. */
+static shb_status check_written(hid_t set, const char *label, size_t bytes) {
+  const hid_t        creation = H5Dget_create_plist(set);
+  const H5D_layout_t layout   = creation >= 0 ? H5Pget_layout(creation) : H5D_LAYOUT_ERROR;
+  H5D_space_status_t space;
+  if (creation >= 0) H5Pclose(creation);
+  SHB_CHECK(layout != H5D_VIRTUAL, SHB_ERR_INPUT,
+            "%s is a view of other datasets (a virtual dataset); copy the values into it", label);
+  SHB_CHECK(
+      bytes == 0 || H5Dget_space_status(set, &space) < 0 || space != H5D_SPACE_STATUS_NOT_ALLOCATED,
+      SHB_ERR_INPUT, "%s holds no values: it was never written", label);
+  return SHB_OK;
+}
+
 /* A small damaged file can declare terabytes. No filter of HDF5 compresses by more than about
  * 1000. */
 static shb_status check_size(hid_t set, const char *label, size_t bytes) {
@@ -83,7 +97,7 @@ static shb_status check_size(hid_t set, const char *label, size_t bytes) {
   SHB_CHECK(bytes < (1u << 24) || bytes / 2048 <= stored, SHB_ERR_INPUT,
             "%s declares %zu bytes of data, but the file holds %llu: damaged, or never written",
             label, bytes, (unsigned long long)stored);
-  return SHB_OK;
+  return check_written(set, label, bytes);
 }
 
 /* Read the whole dataset as type into malloc'ed memory. */

@@ -4,6 +4,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "mesh/base/memory.h"
+
 /* Parts of the file. */
 typedef struct {
   h5_shape nodes, set, entries, weights, areas;
@@ -68,17 +70,14 @@ static int number_nodes(const parts *p, int *place) {
   return n;
 }
 
-static shb_status allocate(modal_contact_face *f, int entries) {
+static void allocate(modal_contact_face *f, int entries) {
   const size_t n = (size_t)f->n_nodes;
-  f->node        = calloc(3 * n + 1, sizeof *f->node);
-  f->area        = calloc(n + 1, sizeof *f->area);
-  f->element     = calloc((size_t)f->n_elements * (size_t)f->corners + 1, sizeof *f->element);
-  f->entry_node  = calloc((size_t)entries + 1, sizeof *f->entry_node);
-  f->entry_pair  = calloc((size_t)entries + 1, sizeof *f->entry_pair);
-  f->entry_part  = calloc((size_t)entries + 1, sizeof *f->entry_part);
-  SHB_CHECK(f->node && f->area && f->element && f->entry_node && f->entry_pair && f->entry_part,
-            SHB_ERR_IO, "out of memory for a contact face of %d nodes", f->n_nodes);
-  return SHB_OK;
+  f->node        = shb_alloc_zeroed(3 * n, sizeof *f->node);
+  f->area        = shb_alloc_zeroed(n, sizeof *f->area);
+  f->element     = shb_alloc_zeroed((size_t)f->n_elements * (size_t)f->corners, sizeof *f->element);
+  f->entry_node  = shb_alloc_zeroed((size_t)entries, sizeof *f->entry_node);
+  f->entry_pair  = shb_alloc_zeroed((size_t)entries, sizeof *f->entry_pair);
+  f->entry_part  = shb_alloc_zeroed((size_t)entries, sizeof *f->entry_part);
 }
 
 /* A node of no pair, as corners of quadratic elements with one pair a node, takes the mean over the
@@ -100,9 +99,8 @@ static void add_corners(modal_contact_face *f, double *sum) {
 }
 
 /* Weights of quadratic elements may be negative at corners: parts go by their size. */
-static shb_status fill(const parts *p, const int *place, modal_contact_face *f) {
-  double *sum = calloc((size_t)f->n_nodes + 1, sizeof *sum);
-  SHB_CHECK(sum, SHB_ERR_IO, "out of memory for a contact face of %d nodes", f->n_nodes);
+static void fill(const parts *p, const int *place, modal_contact_face *f) {
+  double *sum = shb_alloc_zeroed((size_t)f->n_nodes, sizeof *sum);
   for (size_t i = 0; i < p->nodes.dim[0]; i++)
     if (place[i] >= 0) memcpy(f->node + 3 * place[i], p->node + 3 * i, 3 * sizeof *f->node);
   for (size_t i = 0; i < h5_count(p->set); i++) f->element[i] = place[p->set_of[i]];
@@ -120,13 +118,12 @@ static shb_status fill(const parts *p, const int *place, modal_contact_face *f) 
   for (int e = 0; e < f->n_entries; e++)
     f->entry_part[e] = sum[f->entry_node[e]] > 0 ? f->entry_part[e] / sum[f->entry_node[e]] : 0;
   free(sum);
-  return SHB_OK;
 }
 
 /* Most entries of one node. */
 static int most_entries(const parts *p) {
-  int *count = calloc(p->nodes.dim[0] + 1, sizeof *count), most = 0;
-  for (size_t i = 0; count && i < p->entries.dim[0]; i++) {
+  int *count = shb_alloc_zeroed(p->nodes.dim[0], sizeof *count), most = 0;
+  for (size_t i = 0; i < p->entries.dim[0]; i++) {
     int *at = &count[p->entry[3 * i + 1]];
     if (++*at > most) most = *at;
   }
@@ -142,8 +139,7 @@ static int room_of(const modal_contact_face *f, const parts *p) {
 
 shb_status modal_contact_face_read(const char *path, modal_contact_face *f) {
   hid_t      file;
-  parts      p     = {0};
-  int       *place = NULL;
+  parts      p = {0};
   shb_status status;
   *f = (modal_contact_face){0};
   SHB_TRY(h5_open(path, &file));
@@ -151,19 +147,16 @@ shb_status modal_contact_face_read(const char *path, modal_contact_face *f) {
   status = read_parts(file, &p);
   h5_close(file);
   if (status == SHB_OK) status = check(path, &p);
-  if (status == SHB_OK) place = malloc(p.nodes.dim[0] * sizeof *place + 1);
-  if (status == SHB_OK && !place)
-    status = shb_fail(SHB_ERR_IO, __FILE__, __LINE__, "out of memory for the contact face");
   if (status == SHB_OK) {
+    int *place    = shb_alloc(p.nodes.dim[0], sizeof *place);
     f->n_nodes    = number_nodes(&p, place);
     f->n_elements = (int)p.set.dim[0];
     f->corners    = (int)p.set.dim[1];
-    status        = allocate(f, (int)p.entries.dim[0] + room_of(f, &p));
+    allocate(f, (int)p.entries.dim[0] + room_of(f, &p));
+    fill(&p, place, f);
+    free(place);
   }
-  if (status == SHB_OK) status = fill(&p, place, f);
-  free(place);
   parts_free(&p);
-  if (status != SHB_OK) modal_contact_face_free(f);
   return status;
 }
 

@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "mesh/base/constants.h"
+#include "mesh/base/memory.h"
 
 void modal_shroud_axes(double psi, double phi, double T0[3][3]) {
   double cs = cos(psi), ss = sin(psi), cf = cos(phi), sf = sin(phi);
@@ -133,12 +134,11 @@ static double spread_of(const modal_model *model, const modal_joining *j, const 
 }
 
 /* turn = T0_patch T0_pair^T; the identity without normals, where all pairs have the same axes. */
-static shb_status set_turns(const modal_model *model, modal_joining *j) {
+static void set_turns(const modal_model *model, modal_joining *j) {
   for (int i = 0; i < j->n_pairs; i++)
     for (int d = 0; d < 3; d++) j->turn[9 * i + 4 * d] = 1;
-  if (!model->normal) return SHB_OK;
-  double *normal = malloc(3 * (size_t)j->n_patches * sizeof *normal);
-  SHB_CHECK(normal, SHB_ERR_IO, "out of memory for %d patches", j->n_patches);
+  if (!model->normal) return;
+  double *normal = shb_alloc(3 * (size_t)j->n_patches, sizeof *normal);
   mean_normals(model, j, normal);
   j->spread = spread_of(model, j, normal);
   for (int i = 0; i < j->n_pairs; i++) {
@@ -152,16 +152,13 @@ static shb_status set_turns(const modal_model *model, modal_joining *j) {
             to[d][0] * from[e][0] + to[d][1] * from[e][1] + to[d][2] * from[e][2];
   }
   free(normal);
-  return SHB_OK;
 }
 
-static shb_status set_weights(const modal_model *model, modal_joining *j) {
-  double *total = calloc((size_t)j->n_patches, sizeof *total);
-  SHB_CHECK(total, SHB_ERR_IO, "out of memory for %d patches", j->n_patches);
+static void set_weights(const modal_model *model, modal_joining *j) {
+  double *total = shb_alloc_zeroed((size_t)j->n_patches, sizeof *total);
   for (int i = 0; i < j->n_pairs; i++) total[j->patch[i]] += area_of(model, i);
   for (int i = 0; i < j->n_pairs; i++) j->weight[i] = area_of(model, i) / total[j->patch[i]];
   free(total);
-  return SHB_OK;
 }
 
 shb_status modal_joining_create(const modal_model *model, int patches, modal_joining *j) {
@@ -174,14 +171,11 @@ shb_status modal_joining_create(const modal_model *model, int patches, modal_joi
   SHB_CHECK(patches >= interfaces && patches <= model->n_pairs, SHB_ERR_INPUT,
             "%d patches asked of %d contact pairs on %d faces", patches, model->n_pairs,
             interfaces);
-  site *sites       = malloc(n * sizeof *sites);
-  j->patch          = malloc(n * sizeof *j->patch);
-  j->weight         = malloc(n * sizeof *j->weight);
-  j->turn           = calloc(9 * n, sizeof *j->turn);
-  shb_status status = SHB_OK;
-  if (!sites || !j->patch || !j->weight || !j->turn)
-    status = shb_fail(SHB_ERR_IO, __FILE__, __LINE__, "out of memory for %d pairs", j->n_pairs);
-  for (int f = 0, first = 0; f < interfaces && status == SHB_OK; f++) {
+  site *sites = shb_alloc(n, sizeof *sites);
+  j->patch    = shb_alloc(n, sizeof *j->patch);
+  j->weight   = shb_alloc(n, sizeof *j->weight);
+  j->turn     = shb_alloc_zeroed(9 * n, sizeof *j->turn);
+  for (int f = 0, first = 0; f < interfaces; f++) {
     int found = 0;
     for (int i = 0; i < j->n_pairs; i++)
       if (interface_of(model, i) == f) sites[found++] = (site){0, i};
@@ -189,11 +183,10 @@ shb_status modal_joining_create(const modal_model *model, int patches, modal_joi
     bisect(model, sites, found, first, part, j);
     first += part;
   }
-  if (status == SHB_OK) status = set_weights(model, j);
-  if (status == SHB_OK) status = set_turns(model, j);
+  set_weights(model, j);
+  set_turns(model, j);
   free(sites);
-  if (status != SHB_OK) modal_joining_free(j);
-  return status;
+  return SHB_OK;
 }
 
 void modal_joining_free(modal_joining *j) {
@@ -210,8 +203,8 @@ void modal_joining_free(modal_joining *j) {
 static double *mean_rows(const modal_joining *j, int sides, const double *from, size_t n) {
   const size_t pairs = 3 * (size_t)j->n_pairs, patches = 3 * (size_t)j->n_patches;
   if (!from) return NULL;
-  double *to = calloc((size_t)sides * patches * n + 1, sizeof *to);
-  for (size_t row = 0; to && row < (size_t)sides * pairs; row++) {
+  double *to = shb_alloc_zeroed((size_t)sides * patches * n, sizeof *to);
+  for (size_t row = 0; row < (size_t)sides * pairs; row++) {
     size_t side = row / pairs, pair = row % pairs / 3, axis = row % 3;
     for (size_t d = 0; d < 3; d++) {
       double  part = j->weight[pair] * j->turn[9 * pair + 3 * d + axis];
@@ -224,7 +217,7 @@ static double *mean_rows(const modal_joining *j, int sides, const double *from, 
 
 /* [rows][columns] -> [columns][rows], numbers of so many doubles. */
 static double *transposed(const double *from, size_t rows, size_t columns, size_t size) {
-  double *to = from ? malloc(rows * columns * size * sizeof *to + 1) : NULL;
+  double *to = from ? shb_alloc(rows * columns * size, sizeof *to) : NULL;
   for (size_t i = 0; to && i < rows; i++)
     for (size_t k = 0; k < columns; k++)
       memcpy(to + (k * rows + i) * size, from + (i * columns + k) * size, size * sizeof *to);
@@ -262,15 +255,15 @@ static double *mean_both(const modal_joining *j, int sides, const double *from, 
 static double *bound_tails(const modal_joining *j, int sides, const double *from) {
   const size_t pairs = 3 * (size_t)j->n_pairs, patches = 3 * (size_t)j->n_patches;
   if (!from) return NULL;
-  double *to = calloc(2 * (size_t)sides * patches + 1, sizeof *to);
-  for (size_t row = 0; to && row < (size_t)sides * pairs; row++) {
+  double *to = shb_alloc_zeroed(2 * (size_t)sides * patches, sizeof *to);
+  for (size_t row = 0; row < (size_t)sides * pairs; row++) {
     size_t side = row / pairs, pair = row % pairs / 3, axis = row % 3;
     for (size_t d = 0; d < 3; d++)
       for (size_t t = 0; t < 2; t++)
         to[2 * (side * patches + 3 * (size_t)j->patch[pair] + d) + t] +=
             j->weight[pair] * fabs(j->turn[9 * pair + 3 * d + axis]) * sqrt(from[2 * row + t]);
   }
-  for (size_t i = 0; to && i < 2 * (size_t)sides * patches; i++) to[i] *= to[i];
+  for (size_t i = 0; i < 2 * (size_t)sides * patches; i++) to[i] *= to[i];
   return to;
 }
 
@@ -282,16 +275,16 @@ static void *describe_patches(const modal_dataset *row, const modal_model *a,
   const size_t each    = row->dims[1] ? (size_t)modal_size_of(a, row->dims[1]) : 1;
   const void  *from    = modal_dataset_get(row, a);
   if (row->kind == MODAL_INDEX) {
-    int *to = calloc(patches, sizeof *to);
-    for (int i = 0; to && i < j->n_pairs; i++) to[j->patch[i]] = ((const int *)from)[i];
+    int *to = shb_alloc_zeroed(patches, sizeof *to);
+    for (int i = 0; i < j->n_pairs; i++) to[j->patch[i]] = ((const int *)from)[i];
     return to;
   }
-  double *to = calloc(each * patches, sizeof *to);
-  if (to && from == a->normal) {
+  double *to = shb_alloc_zeroed(each * patches, sizeof *to);
+  if (from == a->normal) {
     mean_normals(a, j, to);
     return to;
   }
-  for (int i = 0; to && i < j->n_pairs; i++)
+  for (int i = 0; i < j->n_pairs; i++)
     for (size_t d = 0; d < each; d++)
       to[each * (size_t)j->patch[i] + d] +=
           (each > 1 ? j->weight[i] : 1) * ((const double *)from)[each * (size_t)i + d];
@@ -317,39 +310,31 @@ static void *joined_array(const modal_dataset *row, const modal_model *of, const
 }
 
 /* The arrays of a, whose sizes are those of `of`, joined. */
-static shb_status join_arrays(const modal_model *of, const modal_model *a, const modal_joining *j,
-                              double sign, modal_model *b) {
-  bool whole = true;
+static void join_arrays(const modal_model *of, const modal_model *a, const modal_joining *j,
+                        double sign, modal_model *b) {
   *b         = modal_model_sizes(of);
   b->n_pairs = j->n_patches;
-  for (const modal_dataset *row = modal_datasets; row->path && whole; row++) {
+  for (const modal_dataset *row = modal_datasets; row->path; row++) {
     void *data = strpbrk(row->dims, "plc") ? joined_array(row, of, a, j, sign)
                                            : modal_dataset_copy(row, of, a);
     modal_dataset_set(row, b, data);
-    whole = data || !modal_dataset_get(row, a);
   }
-  if (whole) return SHB_OK;
-  modal_model_free(b);
-  return shb_fail(SHB_ERR_IO, __FILE__, __LINE__, "out of memory for %d patches", j->n_patches);
 }
 
-shb_status modal_join(const modal_model *a, const modal_joining *j, modal_model *b) {
-  return join_arrays(a, a, j, 1, b);
+void modal_join(const modal_model *a, const modal_joining *j, modal_model *b) {
+  join_arrays(a, a, j, 1, b);
 }
 
-shb_status modal_join_diameters(const modal_nodal_diameters *a, const modal_joining *j,
-                                modal_nodal_diameters *b) {
-  SHB_TRY(modal_nodal_diameters_create(a->blades, a->n, b));
-  shb_status status = SHB_OK;
-  for (int i = 0; i < a->n && status == SHB_OK; i++) {
+void modal_join_diameters(const modal_nodal_diameters *a, const modal_joining *j,
+                          modal_nodal_diameters *b) {
+  modal_nodal_diameters_create(a->blades, a->n, b);
+  for (int i = 0; i < a->n; i++) {
     const modal_model *of = &a->model[i];
     b->diameter[i]        = a->diameter[i];
-    status                = join_arrays(of, of, j, 1, &b->model[i]);
-    if (status == SHB_OK) status = join_arrays(of, &a->imaginary[i], j, -1, &b->imaginary[i]);
-    if (status == SHB_OK) status = join_arrays(of, &a->backward[i], j, 1, &b->backward[i]);
+    join_arrays(of, of, j, 1, &b->model[i]);
+    join_arrays(of, &a->imaginary[i], j, -1, &b->imaginary[i]);
+    join_arrays(of, &a->backward[i], j, 1, &b->backward[i]);
   }
-  if (status != SHB_OK) modal_nodal_diameters_free(b);
-  return status;
 }
 
 void modal_joining_spread(const modal_joining *j, int sides, const double complex *force,

@@ -38,18 +38,17 @@ int modal_joinable(const modal_model *model);
  *
  *   patches  in  1 to n_pairs, of all interfaces together; each has one at least
  *
- * Errors: SHB_ERR_INPUT a model without positions, or too few or too many patches; SHB_ERR_IO no
- * memory. */
+ * Errors: SHB_ERR_INPUT a model without positions, or too few or too many patches. */
 shb_status modal_joining_create(const modal_model *model, int patches, modal_joining *joining);
 void       modal_joining_free(modal_joining *joining); /* also on a zeroed struct */
 
 /* The joined model, to be freed. The tails become bounds: of the mean of several motions by the
- * mean of their roots. SHB_ERR_IO: no memory. */
-shb_status modal_join(const modal_model *model, const modal_joining *joining, modal_model *joined);
+ * mean of their roots. */
+void modal_join(const modal_model *model, const modal_joining *joining, modal_model *joined);
 
 /* The same at every nodal diameter, of a joining of the first model. */
-shb_status modal_join_diameters(const modal_nodal_diameters *diameters,
-                                const modal_joining *joining, modal_nodal_diameters *joined);
+void modal_join_diameters(const modal_nodal_diameters *diameters, const modal_joining *joining,
+                          modal_nodal_diameters *joined);
 
 /* out[n_contact of the model] <- forces on its pairs by forces on the patches, [n_contact of the
  * joined model], both with this stride. */

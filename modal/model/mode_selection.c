@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "mesh/base/constants.h"
+#include "mesh/base/memory.h"
 #include "modal/model/receptance.h"
 #include "modal/model/reduce.h"
 #include "modal/model/residual_series.h"
@@ -41,11 +42,10 @@ static modal_model shapes_of_imaginary(const modal_model *re, const modal_model 
 }
 
 /* Largest diagonal receptance of the full model, to which errors are relative. */
-static shb_status find_scales(selection *s) {
+static void find_scales(selection *s) {
   const size_t    n     = (size_t)s->n;
-  double complex *value = calloc(2 * n * n, sizeof *value), *more = value + n * n;
-  SHB_CHECK(value, SHB_ERR_IO, "out of memory for the receptance");
-  modal_model im = {0};
+  double complex *value = shb_alloc_zeroed(2 * n * n, sizeof *value), *more = value + n * n;
+  modal_model     im = {0};
   if (s->imaginary) im = shapes_of_imaginary(s->model, s->imaginary);
   for (int f = 0; f < SAMPLES; f++) {
     modal_receptance(s->model, omega_at(s, f), value);
@@ -55,7 +55,6 @@ static shb_status find_scales(selection *s) {
       s->scale[f] = fmax(s->scale[f], cabs(value[c * (n + 1)] + more[c * (n + 1)]));
   }
   free(value);
-  return SHB_OK;
 }
 
 /* Relative error of the model with fewer modes. */
@@ -68,14 +67,12 @@ static double error_of(const selection *s, const modal_model *fewer) {
 }
 
 /* Copy the contact part of the model, the part that the selection reduces. A load is not needed. */
-static shb_status copy_contact(const modal_model *model, modal_model *copy) {
+static void copy_contact(const modal_model *model, modal_model *copy) {
   *copy        = modal_model_sizes(model);
   copy->n_load = copy->n_probes = 0;
-  SHB_TRY(modal_model_copy(model, copy));
+  modal_model_copy(model, copy);
   if (!copy->modal_force)
-    copy->modal_force = calloc((size_t)model->n_modes, sizeof *copy->modal_force);
-  SHB_CHECK(copy->modal_force, SHB_ERR_IO, "out of memory to choose the modes");
-  return SHB_OK;
+    copy->modal_force = shb_alloc_zeroed((size_t)model->n_modes, sizeof *copy->modal_force);
 }
 
 static shb_status remove_modes(selection *s, double tolerance, modal_model *reduced, int *modes,
@@ -100,9 +97,9 @@ shb_status modal_select_modes(const modal_model *model, double band, double tole
   modal_model reduced;
   SHB_CHECK(modal_series_has_fourth(model) && !model->residual_diagonal && model->contact_tail,
             SHB_ERR_INPUT, "the modal model does not hold what estimates its error");
-  shb_status status = copy_contact(model, &reduced);
-  if (status == SHB_OK) status = find_scales(&s);
-  if (status == SHB_OK) status = remove_modes(&s, tolerance, &reduced, modes, error);
+  copy_contact(model, &reduced);
+  find_scales(&s);
+  shb_status status = remove_modes(&s, tolerance, &reduced, modes, error);
   modal_model_free(&reduced);
   return status;
 }
@@ -113,7 +110,7 @@ shb_status modal_modes_suffice(const modal_model *model, const modal_model *imag
       .model = model, .imaginary = imaginary, .n = modal_model_contact_dofs(model), .band = band};
   SHB_CHECK(modal_series_has_fourth(model) && model->contact_tail, SHB_ERR_INPUT,
             "the modal model does not hold what estimates its error");
-  SHB_TRY(find_scales(&s));
+  find_scales(&s);
   *error  = error_of(&s, model);
   *enough = *error <= tolerance && model->frequency[model->n_modes - 1] >= BAND_MARGIN * band;
   return SHB_OK;

@@ -12,7 +12,7 @@
  *   modes  out  0 if the model has too few
  *   error  out  of these modes; of all modes if they are too few
  *
- * Errors: SHB_ERR_INPUT a model without residual terms and their tail; SHB_ERR_IO no memory. */
+ * Errors: SHB_ERR_INPUT a model without residual terms and their tail. */
 shb_status modal_select_modes(const modal_model *model, double band, double tolerance, int *modes,
                               double *error);
 

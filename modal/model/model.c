@@ -5,6 +5,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "mesh/base/memory.h"
+
 static const char model_format[] = "shroudhb modal model";
 /* Version 2 adds several speeds (modal/model/speeds.h), version 3 nodal diameters
  * (modal/model/nodal_diameters.h). The model itself is as in version 1. */
@@ -41,8 +43,7 @@ static shb_status write_scales(hid_t at, const modal_model *model) {
 static shb_status write_split(hid_t at, const modal_dataset *row, h5_shape shape, const double *re,
                               const double *im) {
   const size_t    n = h5_count(shape);
-  double complex *z = malloc(n * sizeof *z);
-  SHB_CHECK(z, SHB_ERR_IO, "out of memory");
+  double complex *z = shb_alloc(n, sizeof *z);
   for (size_t i = 0; i < n; i++) z[i] = CMPLX(re[i], im[i]);
   shb_status status = h5_write_complex(at, row->path, shape, z, row->units, row->long_name);
   free(z);
@@ -166,14 +167,13 @@ static shb_status read_split(hid_t at, const char *dataset, h5_shape shape, doub
   double complex *z = NULL;
   SHB_TRY(h5_read_complex(at, dataset, &shape, &z));
   const size_t n = h5_count(shape);
-  *re            = malloc((n + 1) * sizeof **re);
-  *im            = malloc((n + 1) * sizeof **im);
-  for (size_t i = 0; *re && *im && i < n; i++) {
+  *re            = shb_alloc(n, sizeof **re);
+  *im            = shb_alloc(n, sizeof **im);
+  for (size_t i = 0; i < n; i++) {
     (*re)[i] = creal(z[i]);
     (*im)[i] = cimag(z[i]);
   }
   free(z);
-  SHB_CHECK(*re && *im, SHB_ERR_IO, "out of memory");
   return SHB_OK;
 }
 
@@ -215,11 +215,9 @@ static h5_shape shape_in_file(const modal_dataset *row, const modal_model *model
   return both;
 }
 
-static shb_status zero(const modal_dataset *row, const modal_model *sizes, modal_model *model) {
-  void *data = calloc(modal_dataset_count(row, sizes) + 1, modal_dataset_width(row));
-  SHB_CHECK(data, SHB_ERR_IO, "out of memory");
+static void zero(const modal_dataset *row, const modal_model *sizes, modal_model *model) {
+  void *data = shb_alloc_zeroed(modal_dataset_count(row, sizes), modal_dataset_width(row));
   modal_dataset_set(row, model, data);
-  return SHB_OK;
 }
 
 static shb_status read_row(const source *from, const modal_dataset *row) {
@@ -227,8 +225,9 @@ static shb_status read_row(const source *from, const modal_dataset *row) {
   modal_model *im    = row->kind == MODAL_SPLIT ? from->imaginary : NULL;
   const bool   empty = modal_dataset_count(row, model) == 0, wanted = row->with && !empty;
   if (row->zeros && model->n_residual > 0 && (empty || !h5_exists(from->at, row->path))) {
-    SHB_TRY(zero(row, model, model));
-    return im ? zero(row, model, im) : SHB_OK;
+    zero(row, model, model);
+    if (im) zero(row, model, im);
+    return SHB_OK;
   }
   if (empty || !h5_exists(from->at, wanted ? row->with : row->path)) return SHB_OK;
   void      *data  = NULL;
@@ -274,8 +273,7 @@ static shb_status read_backward(hid_t at, const modal_dataset *row, const modal_
     SHB_TRY(h5_read_complex(at, path, &shape, &back));
   } else {
     const size_t n = h5_count(shape);
-    back           = malloc(n * sizeof *back);
-    SHB_CHECK(back, SHB_ERR_IO, "out of memory");
+    back           = shb_alloc(n, sizeof *back);
     for (size_t i = 0; i < n; i++) back[i] = conj(forward[i]);
   }
   modal_dataset_set(row, loads, back);
@@ -340,14 +338,13 @@ shb_status modal_model_read(const char *path, modal_model *model) {
   return status;
 }
 
-shb_status modal_model_release_terms(modal_model *model, int first) {
+void modal_model_release_terms(modal_model *model, int first) {
   enum { TERMS = 3 };
   double **const term[TERMS] = {&model->residual_flexibility, &model->residual_inertia,
                                 &model->residual_fourth};
   const size_t   n           = (size_t)modal_model_contact_dofs(model);
-  if (model->residual_diagonal || !*term[0] || !*term[1] || !*term[2]) return SHB_OK;
-  double *diagonal = malloc((TERMS * n + 1) * sizeof *diagonal);
-  SHB_CHECK(diagonal, SHB_ERR_IO, "out of memory for the residual terms");
+  if (model->residual_diagonal || !*term[0] || !*term[1] || !*term[2]) return;
+  double *diagonal = shb_alloc(TERMS * n, sizeof *diagonal);
   for (size_t t = 0; t < TERMS; t++)
     for (size_t i = 0; i < n; i++) diagonal[t * n + i] = (*term[t])[i * (n + 1)];
   model->residual_diagonal = diagonal;
@@ -355,7 +352,6 @@ shb_status modal_model_release_terms(modal_model *model, int first) {
     free(*term[t]);
     *term[t] = NULL;
   }
-  return SHB_OK;
 }
 
 void modal_model_free(modal_model *model) {

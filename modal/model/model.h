@@ -49,8 +49,8 @@ shb_status modal_model_read(const char *path, modal_model *model);
 
 /* Free the residual matrices from a term on (0 R, 1 R2, 2 R3). Their diagonals are kept, for the
  * error estimate of the series. All that is made of the matrices must be made before. Nothing
- * happens without all three of them. SHB_ERR_IO: no memory; the model is as before. */
-shb_status modal_model_release_terms(modal_model *model, int first);
+ * happens without all three of them. */
+void modal_model_release_terms(modal_model *model, int first);
 
 void modal_model_free(modal_model *model);
 

@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "mesh/base/constants.h"
+#include "mesh/base/memory.h"
 
 int modal_model_contact_dofs(const modal_model *model) {
   return 3 * model->n_pairs * (model->has_left ? 2 : 1);
@@ -395,31 +396,24 @@ void modal_dataset_free(const modal_dataset *row, modal_model *model) {
 }
 
 static char **copy_names(char *const *name, size_t n) {
-  char **copy  = calloc(n + 1, sizeof *copy);
-  bool   whole = copy;
-  for (size_t i = 0; whole && i < n; i++) whole = (copy[i] = strdup(name[i]));
-  for (size_t i = 0; copy && !whole && i < n; i++) free(copy[i]);
-  if (whole) return copy;
-  free(copy);
-  return NULL;
+  char **copy = shb_alloc(n, sizeof *copy);
+  for (size_t i = 0; i < n; i++) copy[i] = shb_text(name[i]);
+  return copy;
 }
 
 void *modal_dataset_copy(const modal_dataset *row, const modal_model *sizes,
                          const modal_model *model) {
-  const void  *data  = modal_dataset_get(row, model);
-  const size_t n     = modal_dataset_count(row, sizes);
-  const size_t bytes = n * modal_dataset_width(row);
+  const void  *data = modal_dataset_get(row, model);
+  const size_t n = modal_dataset_count(row, sizes), width = modal_dataset_width(row);
   if (!data) return NULL;
   if (row->kind == MODAL_NAMES) return copy_names((char *const *)data, n);
-  void *copy = malloc(bytes + 1);
-  return copy ? memcpy(copy, data, bytes) : NULL;
+  return memcpy(shb_alloc(n, width), data, n * width);
 }
 
-static bool allocate(const modal_dataset *row, const modal_model *sizes, modal_model *of) {
+static void allocate(const modal_dataset *row, const modal_model *sizes, modal_model *of) {
   const size_t n = modal_dataset_count(row, sizes);
-  if (!of || (n == 0 && strpbrk(row->dims, "plc"))) return true;
-  modal_dataset_set(row, of, calloc(n + 1, modal_dataset_width(row)));
-  return modal_dataset_get(row, of);
+  if (!of || (n == 0 && strpbrk(row->dims, "plc"))) return;
+  modal_dataset_set(row, of, shb_alloc_zeroed(n, modal_dataset_width(row)));
 }
 
 static bool is_computed(const modal_dataset *row, const modal_model *model) {
@@ -427,17 +421,15 @@ static bool is_computed(const modal_dataset *row, const modal_model *model) {
   return row->part == MODAL_KEPT && strchr(row->dims, 'm') && row->offset != AT(coriolis);
 }
 
-shb_status modal_model_allocate(modal_model *model, modal_model *imaginary, modal_model *backward) {
-  bool made = true;
-  for (const modal_dataset *row = modal_datasets; row->path && made; row++) {
+void modal_model_allocate(modal_model *model, modal_model *imaginary, modal_model *backward) {
+  for (const modal_dataset *row = modal_datasets; row->path; row++) {
     modal_model *second = row->kind == MODAL_SPLIT  ? imaginary
                           : row->kind == MODAL_LOAD ? backward
                                                     : NULL;
-    if (is_computed(row, model)) made = allocate(row, model, model) && allocate(row, model, second);
+    if (!is_computed(row, model)) continue;
+    allocate(row, model, model);
+    allocate(row, model, second);
   }
-  SHB_CHECK(made, SHB_ERR_IO, "out of memory for a modal model of %d contact dofs",
-            modal_model_contact_dofs(model));
-  return SHB_OK;
 }
 
 modal_model modal_model_sizes(const modal_model *model) {
@@ -447,14 +439,9 @@ modal_model modal_model_sizes(const modal_model *model) {
   return to;
 }
 
-shb_status modal_model_copy(const modal_model *model, modal_model *copy) {
-  for (const modal_dataset *row = modal_datasets; row->path; row++) {
-    void *data = modal_dataset_copy(row, copy, model);
-    SHB_CHECK(data || !modal_dataset_get(row, model), SHB_ERR_IO,
-              "out of memory for a modal model");
-    modal_dataset_set(row, copy, data);
-  }
-  return SHB_OK;
+void modal_model_copy(const modal_model *model, modal_model *copy) {
+  for (const modal_dataset *row = modal_datasets; row->path; row++)
+    modal_dataset_set(row, copy, modal_dataset_copy(row, copy, model));
 }
 
 bool modal_dataset_is_term(const modal_dataset *row) {

@@ -134,7 +134,7 @@ void *modal_dataset_get(const modal_dataset *row, const modal_model *model);
 void  modal_dataset_set(const modal_dataset *row, modal_model *model, void *data);
 void  modal_dataset_free(const modal_dataset *row, modal_model *model); /* NULL afterwards */
 
-/* A copy of the array, of a model with these sizes; NULL: there is none, or no memory. */
+/* A copy of the array, of a model with these sizes; NULL: there is none. */
 void *modal_dataset_copy(const modal_dataset *row, const modal_model *sizes,
                          const modal_model *model);
 
@@ -143,20 +143,16 @@ void *modal_dataset_copy(const modal_dataset *row, const modal_model *sizes,
  * NULL.
  *
  *   model                in out  its sizes
- *   imaginary, backward  out     of a travelling wave; NULL: real
- *
- * SHB_ERR_IO: no memory; the models can then only be freed. */
-shb_status modal_model_allocate(modal_model *model, modal_model *imaginary, modal_model *backward);
+ *   imaginary, backward  out     of a travelling wave; NULL: real */
+void modal_model_allocate(modal_model *model, modal_model *imaginary, modal_model *backward);
 
 /* A model of the same sizes without arrays. */
 modal_model modal_model_sizes(const modal_model *model);
 
 /* Copy the arrays to a model of these sizes, or of fewer load harmonics, or without probes.
  *
- *   copy  in   its sizes
- *
- * SHB_ERR_IO: no memory; it can then only be freed. */
-shb_status modal_model_copy(const modal_model *model, modal_model *copy);
+ *   copy  in   its sizes */
+void modal_model_copy(const modal_model *model, modal_model *copy);
 
 /* Whether the row is one of the terms R, R2 and R3. */
 bool modal_dataset_is_term(const modal_dataset *row);

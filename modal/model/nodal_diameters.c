@@ -4,19 +4,17 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "mesh/base/memory.h"
+
 enum { MOST_BLADES = 10000, NAME = 32, LABEL = 1024 };
 
-shb_status modal_nodal_diameters_create(int blades, int n, modal_nodal_diameters *d) {
+void modal_nodal_diameters_create(int blades, int n, modal_nodal_diameters *d) {
   const size_t count = (size_t)n;
-  *d                 = (modal_nodal_diameters){.blades    = blades,
-                                               .n         = n,
-                                               .diameter  = calloc(count, sizeof *d->diameter),
-                                               .model     = calloc(count, sizeof *d->model),
-                                               .imaginary = calloc(count, sizeof *d->imaginary),
-                                               .backward  = calloc(count, sizeof *d->backward)};
-  if (d->diameter && d->model && d->imaginary && d->backward) return SHB_OK;
-  modal_nodal_diameters_free(d);
-  SHB_FAIL(SHB_ERR_IO, "out of memory for %d nodal diameters", n);
+  *d                 = (modal_nodal_diameters){.blades = blades, .n = n};
+  d->diameter        = shb_alloc_zeroed(count, sizeof *d->diameter);
+  d->model           = shb_alloc_zeroed(count, sizeof *d->model);
+  d->imaginary       = shb_alloc_zeroed(count, sizeof *d->imaginary);
+  d->backward        = shb_alloc_zeroed(count, sizeof *d->backward);
 }
 
 void modal_nodal_diameters_free(modal_nodal_diameters *d) {
@@ -174,8 +172,10 @@ static shb_status read_all(hid_t file, const char *path, modal_nodal_diameters *
   if (status == SHB_OK)
     status = h5_read_attribute_ints(file, "/", "nodal_diameters", &n, &diameter);
   if (status == SHB_OK) status = check_list(path, blades, n, diameter);
-  if (status == SHB_OK) status = modal_nodal_diameters_create(blades, n, d);
-  if (status == SHB_OK) memcpy(d->diameter, diameter, (size_t)n * sizeof *diameter);
+  if (status == SHB_OK) {
+    modal_nodal_diameters_create(blades, n, d);
+    memcpy(d->diameter, diameter, (size_t)n * sizeof *diameter);
+  }
   free(diameter);
   for (int i = 0; status == SHB_OK && i < d->n; i++) status = read_group(file, path, d, i);
   return status;

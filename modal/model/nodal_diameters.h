@@ -29,8 +29,8 @@ typedef struct {
   double             sign;      /* of the imaginary parts */
 } modal_wave;
 
-/* Allocate n models of N blades; all zero. Errors: SHB_ERR_IO no memory. */
-shb_status modal_nodal_diameters_create(int blades, int n, modal_nodal_diameters *diameters);
+/* Allocate n models of N blades; all zero. */
+void modal_nodal_diameters_create(int blades, int n, modal_nodal_diameters *diameters);
 
 /* Write the groups to an open modal file that has its provenance. Sets format_version. */
 shb_status modal_nodal_diameters_write(hid_t file, const modal_nodal_diameters *diameters);

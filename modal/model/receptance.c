@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "mesh/base/constants.h"
+#include "mesh/base/memory.h"
 #include "modal/model/residual_series.h"
 
 static const double *shape_of(const modal_model *model, int dof) {
@@ -80,17 +81,15 @@ typedef struct {
 
 /* of is zeroed. value stays NULL where the samples would be too large, and with Coriolis terms,
  * which they would lack. */
-static shb_status sample(const modal_model *model, samples *of) {
+static void sample(const modal_model *model, samples *of) {
   const int    m = model->n_modes, n = modal_model_contact_dofs(model), count = SAMPLES + m;
   const size_t each = (size_t)n * (size_t)n;
   *of               = (samples){.n = n, .count = count};
   if (n == 0 || model->coriolis || (size_t)count * each * sizeof(double complex) > MAX_BYTES)
-    return SHB_OK;
-  of->frequency = malloc((size_t)count * sizeof *of->frequency);
-  of->error     = malloc((size_t)count * sizeof *of->error);
-  of->value     = malloc((size_t)count * each * sizeof *of->value);
-  SHB_CHECK(of->frequency && of->error && of->value, SHB_ERR_IO,
-            "out of memory for the receptance");
+    return;
+  of->frequency    = shb_alloc((size_t)count, sizeof *of->frequency);
+  of->error        = shb_alloc((size_t)count, sizeof *of->error);
+  of->value        = shb_alloc((size_t)count * each, sizeof *of->value);
   const double top = 1.1 * model->frequency[m - 1];
   for (int f = 0; f < SAMPLES; f++) of->frequency[f] = top * f / (SAMPLES - 1);
   memcpy(of->frequency + SAMPLES, model->frequency, (size_t)m * sizeof *of->frequency);
@@ -100,7 +99,6 @@ static shb_status sample(const modal_model *model, samples *of) {
     modal_receptance(model, SHB_TWO_PI * of->frequency[f], value);
     of->error[f] = modal_receptance_error(model, SHB_TWO_PI * of->frequency[f], value);
   }
-  return SHB_OK;
 }
 
 static void samples_free(samples *of) {
@@ -130,17 +128,18 @@ static shb_status write_samples(hid_t file, const samples *s) {
 
 shb_status modal_receptance_write(hid_t file, const modal_model *model) {
   samples    s;
-  shb_status status = sample(model, &s);
-  if (status == SHB_OK && s.value) status = write_samples(file, &s);
+  shb_status status = SHB_OK;
+  sample(model, &s);
+  if (s.value) status = write_samples(file, &s);
   samples_free(&s);
   return status;
 }
 
 shb_status modal_receptance_replace(hid_t file, const modal_model *model) {
   samples    s;
-  shb_status status = sample(model, &s);
-  if (status == SHB_OK && s.value)
-    status = h5_replace_complex(file, "receptance/contact", of_values(&s), s.value);
+  shb_status status = SHB_OK;
+  sample(model, &s);
+  if (s.value) status = h5_replace_complex(file, "receptance/contact", of_values(&s), s.value);
   if (status == SHB_OK && s.value && s.error[0] >= 0)
     status = h5_replace_double(file, "receptance/error", H5_SHAPE((hsize_t)s.count), s.error);
   samples_free(&s);

@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "mesh/base/constants.h"
+#include "mesh/base/memory.h"
 
 /* A model and, of a travelling wave, its imaginary parts and the load of the backward wave
  * (modal/model/nodal_diameters.h); both NULL of a real one. */
@@ -46,24 +47,21 @@ static void drop_residuals(const parts *p) {
 }
 
 /* Allocate an array as zeros, if it is missing. */
-static bool allocate(const modal_dataset *row, const modal_model *sizes, modal_model *of) {
+static void allocate(const modal_dataset *row, const modal_model *sizes, modal_model *of) {
   if (!modal_dataset_get(row, of))
     modal_dataset_set(row, of,
-                      calloc(modal_dataset_count(row, sizes) + 1, modal_dataset_width(row)));
-  return modal_dataset_get(row, of);
+                      shb_alloc_zeroed(modal_dataset_count(row, sizes), modal_dataset_width(row)));
 }
 
 /* Allocate the terms that are missing. R3 is not added to a model with R2 but without R3: it would
  * hold the few modes left out here only. */
-static bool allocate_terms(const parts *p) {
-  const bool fourth   = p->re->residual_fourth || !p->re->residual_inertia;
-  bool       complete = true;
+static void allocate_terms(const parts *p) {
+  const bool fourth = p->re->residual_fourth || !p->re->residual_inertia;
   for (const modal_dataset *row = modal_datasets; row->path; row++) {
     if (!modal_dataset_is_term(row) || (row->part == MODAL_R3 && !fourth)) continue;
-    complete = allocate(row, p->re, p->re) && complete;
-    if (second_of(p, row)) complete = allocate(row, p->re, second_of(p, row)) && complete;
+    allocate(row, p->re, p->re);
+    if (second_of(p, row)) allocate(row, p->re, second_of(p, row));
   }
-  return complete;
 }
 
 /* re + j im [rows][columns] += a b^H / scale; im NULL: real */
@@ -120,32 +118,29 @@ static void add_term(const modal_dataset *row, const parts *p, const left_out *o
 
 /* Copy [rows][n] to [rows][more + n], whose first more columns are zero, and free the old one. */
 static void *widen(void *data, size_t rows, size_t n, size_t more, size_t size) {
-  char *wide = calloc(rows * (n + more) + 1, size);
-  for (size_t i = 0; wide && data && i < rows; i++)
+  char *wide = shb_alloc_zeroed(rows * (n + more), size);
+  for (size_t i = 0; data && i < rows; i++)
     memcpy(wide + (i * (n + more) + more) * size, (const char *)data + i * n * size, n * size);
   free(data);
   return wide;
 }
 
 /* Insert more residual modes, zero, before those that exist. The number of them is as before. */
-static bool widen_row(const modal_dataset *row, const modal_model *sizes, size_t more,
+static void widen_row(const modal_dataset *row, const modal_model *sizes, size_t more,
                       modal_model *of) {
   const size_t n    = (size_t)sizes->n_residual;
   const size_t rows = row->dims[1] ? (size_t)modal_size_of(sizes, row->dims[0]) : 1;
   modal_dataset_set(row, of,
                     widen(modal_dataset_get(row, of), rows, n, more, modal_dataset_width(row)));
-  return modal_dataset_get(row, of);
 }
 
-static bool widen_residual_modes(const parts *p, int more) {
-  bool made = true;
+static void widen_residual_modes(const parts *p, int more) {
   for (const modal_dataset *row = modal_datasets; row->path; row++) {
     if (row->part != MODAL_RESIDUAL_MODES) continue;
-    made = widen_row(row, p->re, (size_t)more, p->re) && made;
-    if (second_of(p, row)) made = widen_row(row, p->re, (size_t)more, second_of(p, row)) && made;
+    widen_row(row, p->re, (size_t)more, p->re);
+    if (second_of(p, row)) widen_row(row, p->re, (size_t)more, second_of(p, row));
   }
   p->re->n_residual += more;
-  return made;
 }
 
 /* Store a mode as residual mode at: exact but for its damping. */
@@ -170,12 +165,13 @@ static void set_residual_mode(const parts *p, int mode, int at, const double com
 }
 
 /* Move the modes from index modes on to the residual terms and residual modes. */
-static shb_status move_to_residuals(const parts *p, int modes) {
+static void move_to_residuals(const parts *p, int modes) {
   const int       c = modal_model_contact_dofs(p->re), q = 3 * p->re->n_probes;
-  double complex *phi = calloc((size_t)(c + q) + 1, sizeof *phi), *psi = phi ? phi + c : NULL;
-  bool            complete = phi && allocate_terms(p), exact = complete && p->re->residual_fourth;
-  if (exact) complete = widen_residual_modes(p, p->re->n_modes - modes);
-  for (int mode = modes; complete && mode < p->re->n_modes; mode++) {
+  double complex *phi = shb_alloc_zeroed((size_t)c + (size_t)q, sizeof *phi), *psi = phi + c;
+  allocate_terms(p);
+  const bool exact = p->re->residual_fourth;
+  if (exact) widen_residual_modes(p, p->re->n_modes - modes);
+  for (int mode = modes; mode < p->re->n_modes; mode++) {
     for (int i = 0; i < c; i++) phi[i] = at_contact(p, i, mode);
     for (int i = 0; i < q; i++) psi[i] = at_probe(p, i, mode);
     const double   w  = SHB_TWO_PI * p->re->frequency[mode];
@@ -184,8 +180,6 @@ static shb_status move_to_residuals(const parts *p, int modes) {
     if (exact) set_residual_mode(p, mode, mode - modes, phi, psi);
   }
   free(phi);
-  SHB_CHECK(complete, SHB_ERR_IO, "no memory for the residual terms of %d contact dofs", c);
-  return SHB_OK;
 }
 
 /* Shrink [rows][from] to [rows][to] in place. */
@@ -212,7 +206,7 @@ static shb_status reduce(const parts *p, int modes, bool residuals) {
   SHB_CHECK(modes >= 1 && modes <= model->n_modes, SHB_ERR_INPUT,
             "%d modes are to be kept; there are 1 to %d", modes, model->n_modes);
   if (!residuals) drop_residuals(p);
-  if (residuals && modes < model->n_modes) SHB_TRY(move_to_residuals(p, modes));
+  if (residuals && modes < model->n_modes) move_to_residuals(p, modes);
   for (const modal_dataset *row = modal_datasets; row->path; row++) {
     shrink_row(row, model, modes, model);
     if (second_of(p, row)) shrink_row(row, model, modes, second_of(p, row));

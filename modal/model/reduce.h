@@ -14,8 +14,7 @@
  *              residual modes without damping.
  *              false: modes left out and all residual terms are dropped.
  *
- * With all modes and residuals the model is unchanged. Errors: SHB_ERR_INPUT modes out of range;
- * SHB_ERR_IO no memory (the model can then only be freed). */
+ * With all modes and residuals the model is unchanged. Errors: SHB_ERR_INPUT modes out of range. */
 shb_status modal_model_reduce(modal_model *model, int modes, bool residuals);
 
 /* The same of a travelling wave, with phi phi^H for phi phi^T; imaginary and backward of

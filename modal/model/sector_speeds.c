@@ -4,16 +4,15 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "mesh/base/memory.h"
+
 enum { NAME = 32, LABEL = 1024 };
 
-shb_status modal_sector_speeds_create(int blades, int n, modal_sector_speeds *s) {
+void modal_sector_speeds_create(int blades, int n, modal_sector_speeds *s) {
   *s = (modal_sector_speeds){.blades   = blades,
                              .n        = n,
-                             .diameter = calloc((size_t)n, sizeof *s->diameter),
-                             .at       = calloc((size_t)n, sizeof *s->at)};
-  if (s->diameter && s->at) return SHB_OK;
-  modal_sector_speeds_free(s);
-  SHB_FAIL(SHB_ERR_IO, "out of memory for %d nodal diameters", n);
+                             .diameter = shb_alloc_zeroed((size_t)n, sizeof *s->diameter),
+                             .at       = shb_alloc_zeroed((size_t)n, sizeof *s->at)};
 }
 
 void modal_sector_speeds_free(modal_sector_speeds *s) {
@@ -71,7 +70,7 @@ static shb_status read_one(hid_t file, const char *path, modal_sector_speeds *s,
 static shb_status read_all(hid_t file, const char *path, const modal_nodal_diameters *d,
                            modal_sector_speeds *s) {
   if (d->n == 0 || !h5_exists(file, "/nodal_diameter_0/speeds/mode")) return SHB_OK;
-  SHB_TRY(modal_sector_speeds_create(d->blades, d->n, s));
+  modal_sector_speeds_create(d->blades, d->n, s);
   memcpy(s->diameter, d->diameter, (size_t)d->n * sizeof *s->diameter);
   for (int i = 0; i < s->n; i++) SHB_TRY(read_one(file, path, s, i));
   return SHB_OK;

@@ -15,8 +15,8 @@ typedef struct {
   modal_speeds *at;       /* [n] the same speeds at each */
 } modal_sector_speeds;
 
-/* Allocate n nodal diameters, all zero. Errors: SHB_ERR_IO no memory. */
-shb_status modal_sector_speeds_create(int blades, int n, modal_sector_speeds *speeds);
+/* Allocate n nodal diameters, all zero. */
+void modal_sector_speeds_create(int blades, int n, modal_sector_speeds *speeds);
 
 /* Write them to an open modal file that has the groups of the nodal diameters. */
 shb_status modal_sector_speeds_write(hid_t file, const modal_sector_speeds *speeds);

@@ -5,31 +5,27 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "mesh/base/memory.h"
+
 const double modal_speeds_mac_limit = 0.5;
 
 enum { MAX_SPEEDS = 256 };
 
-shb_status modal_speeds_create(int n, int n_modes, modal_speeds *s) {
+void modal_speeds_create(int n, int n_modes, modal_speeds *s) {
   const size_t all = (size_t)n * (size_t)n_modes;
   *s               = (modal_speeds){.n       = n,
                                     .n_modes = n_modes,
-                                    .speed   = calloc((size_t)n, sizeof *s->speed),
-                                    .model   = calloc((size_t)n, sizeof *s->model),
-                                    .mode    = calloc(all, sizeof *s->mode),
-                                    .mac     = calloc(all, sizeof *s->mac)};
-  if (s->speed && s->model && s->mode && s->mac) return SHB_OK;
-  modal_speeds_free(s);
-  SHB_FAIL(SHB_ERR_IO, "out of memory for the modes of %d speeds", n);
+                                    .speed   = shb_alloc_zeroed((size_t)n, sizeof *s->speed),
+                                    .model   = shb_alloc_zeroed((size_t)n, sizeof *s->model),
+                                    .mode    = shb_alloc_zeroed(all, sizeof *s->mode),
+                                    .mac     = shb_alloc_zeroed(all, sizeof *s->mac)};
 }
 
-shb_status modal_speeds_make_complex(modal_speeds *s) {
+void modal_speeds_make_complex(modal_speeds *s) {
   const size_t n = (size_t)s->n, m = (size_t)s->n_modes;
-  s->imaginary         = calloc(n, sizeof *s->imaginary);
-  s->backward          = calloc(n, sizeof *s->backward);
-  s->overlap_imaginary = calloc(n * m * m, sizeof *s->overlap_imaginary);
-  SHB_CHECK(s->imaginary && s->backward && s->overlap_imaginary, SHB_ERR_IO,
-            "out of memory for the modes of %d speeds", s->n);
-  return SHB_OK;
+  s->imaginary         = shb_alloc_zeroed(n, sizeof *s->imaginary);
+  s->backward          = shb_alloc_zeroed(n, sizeof *s->backward);
+  s->overlap_imaginary = shb_alloc_zeroed(n * m * m, sizeof *s->overlap_imaginary);
 }
 
 double modal_speeds_frequency(const modal_speeds *s, int i, int track) {
@@ -60,8 +56,7 @@ static shb_status write_overlap(hid_t at, const modal_speeds *s) {
   const size_t   n   = h5_count(all);
   if (!s->overlap_imaginary)
     return h5_write_double(at, "speeds/overlap", all, s->overlap, "-", text);
-  double complex *z = malloc(n * sizeof *z);
-  SHB_CHECK(z, SHB_ERR_IO, "out of memory for the modes of %d speeds", s->n);
+  double complex *z = shb_alloc(n, sizeof *z);
   for (size_t i = 0; i < n; i++) z[i] = CMPLX(s->overlap[i], s->overlap_imaginary[i]);
   shb_status status = h5_write_complex(at, "speeds/overlap", all, z, "-", text);
   free(z);
@@ -91,9 +86,8 @@ static shb_status write_tracks(hid_t at, const modal_speeds *s, double *frequenc
 }
 
 shb_status modal_speeds_write_at(hid_t at, const modal_speeds *s) {
-  double *frequency = malloc((size_t)s->n * (size_t)s->n_modes * sizeof *frequency);
-  SHB_CHECK(frequency, SHB_ERR_IO, "out of memory for the modes of %d speeds", s->n);
-  shb_status status = write_tracks(at, s, frequency);
+  double    *frequency = shb_alloc((size_t)s->n * (size_t)s->n_modes, sizeof *frequency);
+  shb_status status    = write_tracks(at, s, frequency);
   free(frequency);
   for (int i = 0; status == SHB_OK && i < s->n; i++) status = write_one(at, s, i);
   return status;
@@ -186,17 +180,15 @@ static shb_status read_overlap(hid_t at, const char *path, modal_speeds *s) {
     SHB_TRY(h5_read_double(at, "speeds/overlap", &all, &s->overlap));
     return check_overlap(path, s);
   }
-  double complex *z      = NULL;
-  shb_status      status = h5_read_complex(at, "speeds/overlap", &all, &z);
-  const size_t    n      = h5_count(all);
-  if (status == SHB_OK) s->overlap = malloc(n * sizeof *s->overlap);
-  for (size_t i = 0; s->overlap && i < n; i++) {
+  double complex *z = NULL;
+  SHB_TRY(h5_read_complex(at, "speeds/overlap", &all, &z));
+  const size_t n = h5_count(all);
+  s->overlap     = shb_alloc(n, sizeof *s->overlap);
+  for (size_t i = 0; i < n; i++) {
     s->overlap[i]           = creal(z[i]);
     s->overlap_imaginary[i] = cimag(z[i]);
   }
   free(z);
-  SHB_TRY(status);
-  SHB_CHECK(s->overlap, SHB_ERR_IO, "out of memory for the modes of %d speeds", s->n);
   return check_overlap(path, s);
 }
 
@@ -207,8 +199,8 @@ shb_status modal_speeds_read_at(hid_t at, const char *path, bool is_complex, mod
             SHB_ERR_INPUT, "%s: /speeds/mode must be [speeds, modes], 1 to %d speeds", path,
             MAX_SPEEDS);
   all = shape;
-  SHB_TRY(modal_speeds_create((int)shape.dim[0], (int)shape.dim[1], s));
-  if (is_complex) SHB_TRY(modal_speeds_make_complex(s));
+  modal_speeds_create((int)shape.dim[0], (int)shape.dim[1], s);
+  if (is_complex) modal_speeds_make_complex(s);
   int       *mode  = NULL;
   double    *speed = NULL, *mac = NULL;
   h5_shape   one    = H5_SHAPE(shape.dim[0]);

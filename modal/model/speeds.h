@@ -31,11 +31,11 @@ typedef struct {
 /* Below this MAC a track has lost its mode. */
 extern const double modal_speeds_mac_limit;
 
-/* Allocate n speeds of n_modes modes; models are zeroed. Errors: SHB_ERR_IO no memory. */
-shb_status modal_speeds_create(int n, int n_modes, modal_speeds *speeds);
+/* Allocate n speeds of n_modes modes; models are zeroed. */
+void modal_speeds_create(int n, int n_modes, modal_speeds *speeds);
 
-/* Make them those of a travelling wave: the three arrays, zero. Errors: SHB_ERR_IO no memory. */
-shb_status modal_speeds_make_complex(modal_speeds *speeds);
+/* Make them those of a travelling wave: the three arrays, zero. */
+void modal_speeds_make_complex(modal_speeds *speeds);
 
 /* Frequency of a track at speed s, Hz. */
 double modal_speeds_frequency(const modal_speeds *speeds, int s, int track);

@@ -4,6 +4,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "mesh/base/memory.h"
+
 /* Equation i of the second derivatives: row [n] of the matrix, right [n] multiplies the values. */
 static void equation(const double *x, int n, int i, double *row, double *right) {
   memset(row, 0, (size_t)n * sizeof *row);
@@ -57,15 +59,11 @@ static void parabola(const double *x, double *second) {
     }
 }
 
-shb_status modal_spline_create(int n, const double *x, modal_spline *s) {
+void modal_spline_create(int n, const double *x, modal_spline *s) {
   const size_t square = (size_t)n * (size_t)n;
-  double      *A      = malloc(square * sizeof *A);
-  *s = (modal_spline){n, malloc((size_t)n * sizeof(double)), calloc(square, sizeof(double))};
-  if (!A || !s->x || !s->second) {
-    free(A);
-    modal_spline_free(s);
-    SHB_FAIL(SHB_ERR_IO, "out of memory to interpolate between %d speeds", n);
-  }
+  double      *A      = shb_alloc(square, sizeof *A);
+  *s                  = (modal_spline){n, shb_alloc((size_t)n, sizeof(double)),
+                                       shb_alloc_zeroed(square, sizeof(double))};
   memcpy(s->x, x, (size_t)n * sizeof *x);
   if (n == 3) parabola(x, s->second);
   if (n > 3) {
@@ -73,7 +71,6 @@ shb_status modal_spline_create(int n, const double *x, modal_spline *s) {
     solve(n, A, s->second);
   }
   free(A);
-  return SHB_OK;
 }
 
 void modal_spline_weights(const modal_spline *s, double x, double *weight, double *slope) {

@@ -6,16 +6,13 @@
 #ifndef MODAL_MODEL_SPLINE_H
 #define MODAL_MODEL_SPLINE_H
 
-#include "mesh/base/status.h"
-
 typedef struct {
   int     n;
   double *x;      /* [n] ascending, distinct */
   double *second; /* [n][n] second derivative at point i of the spline that is 1 at point j */
 } modal_spline;
 
-/* Errors: SHB_ERR_IO no memory. */
-shb_status modal_spline_create(int n, const double *x, modal_spline *spline);
+void modal_spline_create(int n, const double *x, modal_spline *spline);
 
 /* Weights at x, [n], and their derivatives, [n] or NULL. Outside the range the end pieces
  * continue. */

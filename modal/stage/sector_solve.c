@@ -47,7 +47,7 @@ shb_status modal_sector_check(MPI_Comm comm, const modal_settings *settings) {
   return SHB_OK;
 }
 
-shb_status modal_sector_list(const modal_settings *settings, modal_nodal_diameters *out) {
+void modal_sector_list(const modal_settings *settings, modal_nodal_diameters *out) {
   const int most = settings->blades / 2;
   int      *list = shb_alloc((size_t)most + 1, sizeof *list), n = 0;
   for (int d = 0; d <= most; d++) {
@@ -55,10 +55,9 @@ shb_status modal_sector_list(const modal_settings *settings, modal_nodal_diamete
     for (int i = 0; i < settings->n_diameters; i++) wanted = wanted || settings->diameter[i] == d;
     if (wanted) list[n++] = d;
   }
-  shb_status status = modal_nodal_diameters_create(settings->blades, n, out);
-  if (status == SHB_OK) memcpy(out->diameter, list, (size_t)n * sizeof *list);
+  modal_nodal_diameters_create(settings->blades, n, out);
+  memcpy(out->diameter, list, (size_t)n * sizeof *list);
   free(list);
-  return status;
 }
 
 /* Residual columns are kept as long as those of all nodal diameters take less than this in the
@@ -213,7 +212,7 @@ shb_status modal_sector_solve(const mesh_fe *mesh, const modal_settings *setting
                               modal_sector_tracks *tracks, modal_sector *sector) {
   modal_body *body = NULL;
   memset(sector, 0, sizeof *sector);
-  SHB_TRY(modal_sector_list(settings, &sector->models));
+  modal_sector_list(settings, &sector->models);
   shb_status status = modal_body_create(mesh, settings, &body);
   if (status == SHB_OK) {
     work w = {.body     = &body->body,

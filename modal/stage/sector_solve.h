@@ -20,7 +20,7 @@ typedef struct {
 shb_status modal_sector_check(MPI_Comm comm, const modal_settings *settings);
 
 /* The nodal diameters wanted, ascending, with 0; their models are zero. */
-shb_status modal_sector_list(const modal_settings *settings, modal_nodal_diameters *models);
+void modal_sector_list(const modal_settings *settings, modal_nodal_diameters *models);
 
 /* Add the other nodal diameters to that of 0; settings->modes is their number, not 0.
  *

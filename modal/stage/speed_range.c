@@ -181,17 +181,17 @@ static shb_status choose_modes(MPI_Comm comm, const mesh_fe *mesh, const modal_s
 }
 
 /* The tracks of all nodal diameters of a sector. */
-static shb_status begin_sector(speed_work *r) {
+static void begin_sector(speed_work *r) {
   modal_nodal_diameters models;
-  SHB_TRY(modal_sector_list(&r->settings, &models));
-  shb_status status = modal_sector_tracks_create(&models, r->out->n, r->out->speed, r->out->n_modes,
-                                                 &r->sector->speeds, &r->tracks);
+  modal_sector_list(&r->settings, &models);
+  modal_sector_tracks_create(&models, r->out->n, r->out->speed, r->out->n_modes, &r->sector->speeds,
+                             &r->tracks);
   modal_nodal_diameters_free(&models);
-  return status;
 }
 
 static shb_status solve_all(speed_work *r, modal_result *result) {
-  shb_status status = r->sector ? begin_sector(r) : SHB_OK;
+  shb_status status = SHB_OK;
+  if (r->sector) begin_sector(r);
   for (int s = 0; status == SHB_OK && s < r->out->n; s++) status = solve_speed(r, s, result);
   if (status == SHB_OK && r->sector) {
     r->sector->speeds.at[0] = *r->out;
@@ -214,7 +214,7 @@ shb_status modal_speed_range_solve(MPI_Comm comm, const mesh_fe *mesh,
                   .sector   = sector};
   memset(result, 0, sizeof *result);
   SHB_TRY(choose_modes(comm, mesh, settings, progress, &r.settings.modes));
-  SHB_TRY(modal_speeds_create(settings->n_speeds, r.settings.modes, speeds));
+  modal_speeds_create(settings->n_speeds, r.settings.modes, speeds);
   const size_t m  = (size_t)speeds->n_modes;
   speeds->overlap = shb_alloc_zeroed((size_t)speeds->n * m * m, sizeof *speeds->overlap);
   memcpy(speeds->speed, settings->speeds, (size_t)speeds->n * sizeof *speeds->speed);

@@ -34,26 +34,22 @@ void modal_tracks_continue(const double *overlap, int s, int *next, modal_speeds
   }
 }
 
-static shb_status create_speeds(const modal_nodal_diameters *models, int i, int n,
-                                const double *speed, int m, modal_speeds *out) {
-  SHB_TRY(modal_speeds_create(n, m, out));
+static void create_speeds(const modal_nodal_diameters *models, int i, int n, const double *speed,
+                          int m, modal_speeds *out) {
+  modal_speeds_create(n, m, out);
   memcpy(out->speed, speed, (size_t)n * sizeof *speed);
-  out->overlap       = shb_alloc_zeroed((size_t)n * (size_t)m * (size_t)m, sizeof *out->overlap);
-  const bool is_real = 2 * models->diameter[i] == models->blades;
-  return is_real ? SHB_OK : modal_speeds_make_complex(out);
+  out->overlap = shb_alloc_zeroed((size_t)n * (size_t)m * (size_t)m, sizeof *out->overlap);
+  if (2 * models->diameter[i] != models->blades) modal_speeds_make_complex(out);
 }
 
-shb_status modal_sector_tracks_create(const modal_nodal_diameters *models, int n,
-                                      const double *speed, int m, modal_sector_speeds *speeds,
-                                      modal_sector_tracks *tracks) {
+void modal_sector_tracks_create(const modal_nodal_diameters *models, int n, const double *speed,
+                                int m, modal_sector_speeds *speeds, modal_sector_tracks *tracks) {
   *tracks = (modal_sector_tracks){.speeds = speeds};
-  SHB_TRY(modal_sector_speeds_create(models->blades, models->n, speeds));
+  modal_sector_speeds_create(models->blades, models->n, speeds);
   memcpy(speeds->diameter, models->diameter, (size_t)models->n * sizeof *models->diameter);
-  for (int i = 1; i < models->n; i++)
-    SHB_TRY(create_speeds(models, i, n, speed, m, &speeds->at[i]));
+  for (int i = 1; i < models->n; i++) create_speeds(models, i, n, speed, m, &speeds->at[i]);
   tracks->first  = shb_alloc_zeroed((size_t)models->n, sizeof *tracks->first);
   tracks->before = shb_alloc_zeroed((size_t)models->n, sizeof *tracks->before);
-  return SHB_OK;
 }
 
 void modal_sector_tracks_free(modal_sector_tracks *tracks) {

@@ -24,10 +24,9 @@ typedef struct {
 
 /* Allocate those of all nodal diameters of the models, with m modes at each of n speeds.
  * modal_sector_tracks_free must be called in any case. */
-shb_status modal_sector_tracks_create(const modal_nodal_diameters *models, int n,
-                                      const double *speed, int m, modal_sector_speeds *speeds,
-                                      modal_sector_tracks *tracks);
-void       modal_sector_tracks_free(modal_sector_tracks *tracks); /* the speeds are kept */
+void modal_sector_tracks_create(const modal_nodal_diameters *models, int n, const double *speed,
+                                int m, modal_sector_speeds *speeds, modal_sector_tracks *tracks);
+void modal_sector_tracks_free(modal_sector_tracks *tracks); /* the speeds are kept */
 
 /* Continue the tracks of nodal diameter i (an index) to its modes, and take over their shapes.
  * Threads may do so at once for different i. */

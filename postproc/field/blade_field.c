@@ -4,7 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "mhb/structure/relative_motion.h"
+#include "mhb/problem/wave.h"
 #include "modal/hdf5/h5.h"
 #include "modal/model/nodal_diameters.h"
 
@@ -242,12 +242,10 @@ shb_status post_blade_field_read_wave(post_blade_field *f, const char *path, int
 int post_blade_wave(const post_blade_field *f, const mhb_branch *b, int k, bool *backward) {
   *backward = false;
   if (f->n_waves == 0) return 0;
-  const mhb_settings own = {
-      .engine_order = f->engine_order, .blades = f->blades, .subharmonics = b->order};
-  const long shift = mhb_wave_shift(&own);
-  const long wave  = k * ((f->engine_order + f->blades * shift) / b->order);
-  const int  n     = modal_nodal_diameter(wave, f->blades);
-  *backward        = (wave - n) % f->blades != 0;
+  const long wave = k * mhb_driven_wave_number(mhb_driven_wave_of(f->engine_order, f->turns_right,
+                                                                  f->blades, b->order));
+  const int  n    = modal_nodal_diameter(wave, f->blades);
+  *backward       = (wave - n) % f->blades != 0;
   for (int i = 0; i < f->n_waves; i++)
     if (f->diameter[i] == n) return i;
   return -1;
@@ -286,6 +284,7 @@ shb_status post_blade_field_match(post_blade_field *f, const mhb_response *respo
   if (f->n_waves == 0) return SHB_OK;
   hid_t file;
   f->engine_order = response->engine_order;
+  f->turns_right  = response->turns_right;
   SHB_TRY(h5_open(path, &file));
   shb_status status = SHB_OK;
   for (int i = 0; status == SHB_OK && i < response->n_branches; i++)

@@ -34,6 +34,7 @@ typedef struct {
   int              n_waves;      /* nodal diameters in the file; 0: a blade without a disc */
   int              blades;       /* N */
   int              engine_order; /* of the response */
+  bool             turns_right;  /* its rotor */
   int             *diameter;     /* [n_waves] */
   post_wave_field *wave;         /* [n_waves] */
   bool             motion;       /* whether shapes are wanted */

@@ -9,16 +9,15 @@
 
 #include "mesh/base/constants.h"
 #include "mesh/base/vec3.h"
-#include "mhb/structure/relative_motion.h"
+#include "mhb/problem/wave.h"
 #include "postproc/field/peak_stress.h"
 
 /* rad, phi/nu, as the balance has it. */
 static void set_lag(post_period *p) {
-  const mhb_settings wave = {
-      .engine_order = p->engine_order, .blades = p->blades, .subharmonics = p->order};
-  const int shift = p->blades > 0 ? mhb_wave_shift(&wave) : -1;
-  p->closes       = shift >= 0;
-  if (p->closes) p->lag = SHB_TWO_PI / p->order * ((double)p->engine_order / p->blades + shift);
+  const mhb_driven_wave wave =
+      mhb_driven_wave_of(p->engine_order, p->turns_right, p->blades, p->order);
+  p->closes = p->blades > 0 && mhb_driven_wave_shift(wave) >= 0;
+  if (p->closes) p->lag = mhb_driven_wave_lag(wave);
 }
 
 /* Sums of the harmonics, rows[rows][width] with `each` numbers a node, must be finite in single
@@ -53,6 +52,7 @@ shb_status post_period_create(const post_blade_field *field, const mhb_response 
                      .order        = b->order,
                      .frequency    = b->frequency[b->modal.point[kept]],
                      .engine_order = response->engine_order,
+                     .turns_right  = response->turns_right,
                      .blades       = response->blades,
                      .axis         = axis};
   set_lag(p);

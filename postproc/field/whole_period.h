@@ -20,6 +20,7 @@ typedef struct {
   bool                    closes;         /* the wave around the ring; else only blade 0 counts */
   double                  lag;            /* rad, of the right neighbour at harmonic 1 */
   int                     engine_order, blades;
+  bool                    turns_right; /* the rotor */
   mesh_axis               axis;
   double                 *displacement; /* [2 k + (0 real, 1 imaginary)][n][3] m, mesh axes */
   double                 *stress;       /* [2 k + part][n][6] Pa */

@@ -6,7 +6,7 @@
 #include <string.h>
 
 #include "mesh/base/constants.h"
-#include "mhb/structure/relative_motion.h"
+#include "mhb/problem/wave.h"
 #include "postproc/draw/number_format.h"
 #include "postproc/report/still_blade.h"
 
@@ -266,11 +266,9 @@ static void put_waves(const post_blade_field *f, const mhb_branch *b, const wave
 
 /* rad, by which the right neighbour lags at the fundamental. */
 static double lag_of(const mhb_response *r, const mhb_branch *b) {
-  const mhb_settings own = {
-      .engine_order = r->engine_order, .blades = r->blades, .subharmonics = b->order};
-  const int shift = r->blades > 0 ? mhb_wave_shift(&own) : -1;
-  if (shift < 0) return 0;
-  return SHB_TWO_PI / b->order * ((double)r->engine_order / r->blades + shift);
+  const mhb_driven_wave wave =
+      mhb_driven_wave_of(r->engine_order, r->turns_right, r->blades, b->order);
+  return r->blades > 0 && mhb_driven_wave_shift(wave) >= 0 ? mhb_driven_wave_lag(wave) : 0;
 }
 
 static void put_point(const post_analysis *analysis, const post_blade_field *f, const waves *w,
@@ -380,7 +378,10 @@ shb_status post_blade_data(const post_analysis *analysis, const post_blade_view 
     post_put(out, ",\"points\":[");
     put_points(analysis, f, &w, modes, out);
     post_put(out, "],\"axis\":[%g,%g,%g],\"blades\":%d,\"lag\":%.9g}", axis[0], axis[1], axis[2],
-             r->blades, r->blades > 0 ? SHB_TWO_PI * r->engine_order / r->blades : 0);
+             r->blades,
+             r->blades > 0 ? mhb_driven_wave_lag(
+                                 mhb_driven_wave_of(r->engine_order, r->turns_right, r->blades, 1))
+                           : 0);
   }
   free(data);
   post_skin_free(&skin);

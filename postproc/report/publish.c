@@ -95,8 +95,8 @@ static shb_status add_safe(const post_job *job, work *w) {
 }
 
 /* The models of a disc at one speed; only the lists are its own. */
-static shb_status at_speed(const modal_sector_speeds *all, int speed, modal_nodal_diameters *out) {
-  SHB_TRY(modal_nodal_diameters_create(all->blades, all->n, out));
+static void at_speed(const modal_sector_speeds *all, int speed, modal_nodal_diameters *out) {
+  modal_nodal_diameters_create(all->blades, all->n, out);
   for (int i = 0; i < all->n; i++) {
     const modal_speeds *at = &all->at[i];
     out->diameter[i]       = all->diameter[i];
@@ -105,7 +105,6 @@ static shb_status at_speed(const modal_sector_speeds *all, int speed, modal_noda
     out->imaginary[i] = at->imaginary[speed];
     out->backward[i]  = at->backward[speed];
   }
-  return SHB_OK;
 }
 
 static void release(modal_nodal_diameters *d) {
@@ -121,11 +120,11 @@ static shb_status find_stuck(const mhb_settings *settings, const work *w, int sp
   modal_nodal_diameters models = {0};
   const bool            disc   = c->blades > 0;
   const modal_model    *model  = disc ? &w->sector.at[0].model[speed] : &c->speeds->model[speed];
-  shb_status            status = disc ? at_speed(&w->sector, speed, &models) : SHB_OK;
-  here.nodal_diameters         = disc ? &models : NULL;
-  if (status == SHB_OK)
-    status = mhb_stuck_frequencies(model, &here, disc ? c->diameter : settings->engine_order,
-                                   c->n_stuck, c->stuck + speed * c->n_stuck);
+  if (disc) at_speed(&w->sector, speed, &models);
+  here.nodal_diameters = disc ? &models : NULL;
+  const shb_status status =
+      mhb_stuck_frequencies(model, &here, disc ? c->diameter : settings->engine_order, c->n_stuck,
+                            c->stuck + speed * c->n_stuck);
   release(&models);
   return status;
 }

@@ -85,7 +85,7 @@ static shb_status error_of(const scene *c, const row *of, double *error) {
   int                iterations;
   c->model(&model);
   shb_status status = mhb_balance_create(&model, &s, &b);
-  if (status == SHB_OK) status = mhb_newton_create(b->n, &newton);
+  if (status == SHB_OK) newton = mhb_newton_create(b->n);
   double *x = status == SHB_OK ? calloc((size_t)b->n, sizeof *x) : NULL;
   if (x) {
     x[b->nb + 1] = creal(of->first);

@@ -103,7 +103,7 @@ static shb_status exact_create(const random_case *c, exact *e) {
   s->motion_tolerance = 0;
   SHB_TRY(mhb_balance_create(&c->model, s, &e->balance));
   mhb_balance_set_preload(e->balance, s->n0[0]);
-  SHB_TRY(mhb_newton_create(e->balance->n, &e->newton));
+  e->newton      = mhb_newton_create(e->balance->n);
   const size_t n = (size_t)e->balance->n + 1;
   e->x           = calloc(3 * n, sizeof(double));
   e->fine        = e->x + n;

@@ -74,9 +74,8 @@ static row integrate(const scene *s, int steps, double tolerance, int rest,
   mhb_steady_state         *orbit;
   mhb_steady_state_settings settings = {tolerance, 100000};
   double                    seconds[MAX_POINTS], worst = 0;
-  if (mhb_integrator_create(&s->model, &s->settings, 1, &g) != SHB_OK ||
-      mhb_steady_state_create(g, &orbit) != SHB_OK)
-    return (row){NAN, NAN};
+  if (mhb_integrator_create(&s->model, &s->settings, 1, &g) != SHB_OK) return (row){NAN, NAN};
+  orbit = mhb_steady_state_create(g);
   for (int i = 0; i < s->n; i++) {
     double complex u[3];
     mhb_integrator_set(g, AWAY * s->w[i], s->settings.n0[0], steps);
@@ -104,9 +103,8 @@ static row balance(const scene *s, int harmonics, double tolerance) {
   mhb_newton  *newton;
   double       seconds[MAX_POINTS], worst = 0;
   settings.harmonics = harmonics;
-  if (mhb_balance_create(&s->model, &settings, &b) != SHB_OK ||
-      mhb_newton_create(b->n, &newton) != SHB_OK)
-    return (row){NAN, NAN};
+  if (mhb_balance_create(&s->model, &settings, &b) != SHB_OK) return (row){NAN, NAN};
+  newton = mhb_newton_create(b->n);
   mhb_balance_set_preload(b, settings.n0[0]);
   double *x = calloc((size_t)b->n, sizeof *x);
   for (int i = 0; x && i < s->n; i++) {

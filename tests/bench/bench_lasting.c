@@ -29,6 +29,7 @@
 #include <string.h>
 
 #include "mesh/base/constants.h"
+#include "mesh/base/memory.h"
 #include "mesh/base/progress.h"
 #include "mhb/branches/forced_response.h"
 #include "mhb/ring/lasting.h"
@@ -79,18 +80,14 @@ static shb_status settle(const modal_model *model, const mhb_settings *s, const 
   mhb_ring        ring;
   mhb_ring_output out;
   SHB_TRY(mhb_ring_model_create(model, s, wave->n0, wave->omega, &m));
-  shb_status status = mhb_ring_model_set(m, wave->omega, steps);
-  if (status == SHB_OK) status = mhb_ring_create(m, &ring);
-  if (status == SHB_OK) {
-    status = mhb_ring_output_create(&ring, &out);
-    if (status == SHB_OK) {
-      integrate(&ring, &out, wave, to);
-      mhb_ring_output_destroy(&out);
-    }
-    mhb_ring_destroy(&ring);
-  }
+  mhb_ring_model_set(m, wave->omega, steps);
+  mhb_ring_create(m, &ring);
+  mhb_ring_output_create(&ring, &out);
+  integrate(&ring, &out, wave, to);
+  mhb_ring_output_destroy(&out);
+  mhb_ring_destroy(&ring);
   mhb_ring_model_destroy(m);
-  return status;
+  return SHB_OK;
 }
 
 /* One row. *fault grows if a regular point misses the goal. */
@@ -145,14 +142,13 @@ static shb_status other_starts(const modal_model *model, const mhb_settings *s,
   mhb_ring_model *m;
   mhb_starts      starts = {.scale = 1};
   mhb_noise       noise  = {.state = 777};
-  int             steps, copy = 0;
+  int             copy   = 0;
   double          mean[BLOCKS], spread[BLOCKS];
-  double         *peaks = NULL;
   SHB_TRY(mhb_ring_model_create(model, s, wave->n0, wave->omega, &m));
-  shb_status status = mhb_ring_steps(m, wave->omega, STEPS[1], &steps);
-  if (status == SHB_OK) status = mhb_starts_create(m, &starts);
-  if (status == SHB_OK) peaks = malloc(sizeof *peaks * BLOCK * BLOCKS * (size_t)m->blades);
-  for (int i = -1; i < OTHERS && peaks; i++) {
+  mhb_ring_steps(m, wave->omega, STEPS[1]);
+  mhb_starts_create(m, &starts);
+  double *peaks = shb_alloc((size_t)BLOCK * BLOCKS * (size_t)m->blades, sizeof *peaks);
+  for (int i = -1; i < OTHERS; i++) {
     mhb_start_begin(&starts, 0);
     mhb_ring_start(&starts.ring, wave->n_harmonics, wave->force);
     if (i < 0) {
@@ -168,7 +164,7 @@ static shb_status other_starts(const modal_model *model, const mhb_settings *s,
   free(peaks);
   mhb_starts_destroy(&starts);
   mhb_ring_model_destroy(m);
-  return status;
+  return SHB_OK;
 }
 
 /* One row. *missed grows if a larger motion was. */

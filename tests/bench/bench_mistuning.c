@@ -170,9 +170,9 @@ static distance distance_from_wave(const modal_model *blade, const mhb_response 
   distance          worst  = {0, 0};
   tuned.ring               = NULL;
   if (mhb_balance_create(&ring->whole, s, &b) == SHB_OK &&
-      mhb_balance_create(blade, &tuned, &wave) == SHB_OK &&
-      mhb_ring_system_create(b, &system) == SHB_OK &&
-      mhb_newton_create(wave->n, &newton) == SHB_OK) {
+      mhb_balance_create(blade, &tuned, &wave) == SHB_OK) {
+    system = mhb_ring_system_create(b);
+    newton = mhb_newton_create(wave->n);
     mhb_balance_set_preload(b, s->n0[0]);
     mhb_balance_set_preload(wave, s->n0[0]);
     double *x = calloc(7 * (size_t)b->n + 3, sizeof *x), *next = x + b->n, *r = next + b->n,
@@ -244,8 +244,8 @@ static double memory_of(const mhb_mistuned_ring *ring, const mhb_settings *s) {
   mhb_truncation *t     = NULL;
   mhb_arclength  *curve = NULL;
   if (mhb_balance_create(&ring->whole, s, &b) != SHB_OK) return taken;
-  if (mhb_truncation_create(b, &t) == SHB_OK &&
-      mhb_balance_curve_create(b, s->frequency[0], s->frequency[1], &curve) == SHB_OK) {
+  if (mhb_truncation_create(b, &t) == SHB_OK) {
+    curve = mhb_balance_curve_create(b, s->frequency[0], s->frequency[1]);
     taken = allocated() - before;
     mhb_arclength_destroy(curve);
   }

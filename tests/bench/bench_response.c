@@ -106,7 +106,7 @@ static shb_status time_steps(const modal_model *model, const mhb_settings *s, sw
   double         low = SHB_TWO_PI * s->frequency[0];
   SHB_TRY(mhb_balance_create(model, s, &b));
   mhb_balance_set_preload(b, s->n0[0]);
-  SHB_TRY(mhb_balance_curve_create(b, low, SHB_TWO_PI * s->frequency[1], &path));
+  path                          = mhb_balance_curve_create(b, low, SHB_TWO_PI * s->frequency[1]);
   double               *x       = calloc((size_t)b->n, sizeof(double));
   mhb_arclength_outcome outcome = MHB_ARCLENGTH_STALLED;
   if (mhb_first_solution(mhb_balance_curve_of(path)->newton, b, low, path->tolerance, x,
@@ -281,7 +281,7 @@ static shb_status run_pairs(int pairs, int harmonics, pairs_row *row) {
   shroud_face_model(pairs, 150, &model);
   SHB_TRY(mhb_balance_create(&model, &s, &b));
   mhb_balance_set_preload(b, s.n0[0]);
-  SHB_TRY(mhb_balance_curve_create(b, SHB_TWO_PI * 215, SHB_TWO_PI * 320, &path));
+  path              = mhb_balance_curve_create(b, SHB_TWO_PI * 215, SHB_TWO_PI * 320);
   *row              = (pairs_row){.pairs = pairs};
   double    *x      = calloc((size_t)b->n, sizeof(double));
   shb_status status = walk(path, b, x, row);

@@ -56,8 +56,8 @@ static shb_status make(const modal_model *model, const mhb_settings *s, double o
                        mhb_ring_model **m, mhb_ring *ring) {
   double complex none[3 * 64] = {0};
   SHB_TRY(mhb_ring_model_create(model, s, s->n0[0], omega, m));
-  SHB_TRY(mhb_ring_model_set(*m, omega, steps));
-  SHB_TRY(mhb_ring_create(*m, ring));
+  mhb_ring_model_set(*m, omega, steps);
+  mhb_ring_create(*m, ring);
   mhb_ring_start(ring, 0, none);
   return SHB_OK;
 }

@@ -160,7 +160,8 @@ shb_status bench_precision(const char *name, const modal_model *model, const mhb
   reference.harmonics = FINE;
   SHB_TRY(mhb_balance_create(model, &reference, &fine));
   mhb_balance_set_preload(fine, s.n0[0]);
-  shb_status status = mhb_newton_create(fine->n, &newton);
+  newton            = mhb_newton_create(fine->n);
+  shb_status status = SHB_OK;
   printf("\n%s\n  %-14s %6s %5s %5s %10s %10s %10s\n", name, "", "points", "lost", "to H", "s",
          "error 95 %", "worst");
   if (status == SHB_OK) status = fixed_rows(model, s, newton, fine, &cheapest, &at);

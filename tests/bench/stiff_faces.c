@@ -78,7 +78,7 @@ static shb_status time_first(const modal_model *model, const mhb_settings *s, do
   int            iterations;
   SHB_TRY(mhb_balance_create(model, s, &b));
   mhb_balance_set_preload(b, s->n0[0]);
-  SHB_TRY(mhb_balance_curve_create(b, low, SHB_TWO_PI * s->frequency[1], &path));
+  path                    = mhb_balance_curve_create(b, low, SHB_TWO_PI * s->frequency[1]);
   double          *x      = calloc((size_t)b->n, sizeof(double));
   const mhb_reason reason = x ? mhb_first_solution(mhb_balance_curve_of(path)->newton, b, low,
                                                    path->tolerance, x, &iterations)

@@ -1,5 +1,6 @@
 #include "tests/bench/studied_designs.h"
 
+#include <cblas.h>
 #include <math.h>
 #include <omp.h>
 #include <stdio.h>
@@ -16,6 +17,7 @@
 shb_status studied_model(const char *file, case_model *model) {
   *model = (case_model){.settings = file ? z_notch_settings() : random_settings(7)};
   omp_set_num_threads(1);
+  openblas_set_num_threads(1); /* small systems: others would only wait, and count as time */
   model->settings.lasting = MHB_LASTING_NEVER;
   if (file) return modal_model_read(file, &model->model);
   random_model(1, WITH_LEFT, 1, &model->model);

@@ -3,7 +3,8 @@
 Five blades with random shapes at both contact faces, stuck throughout, are solved as one structure:
 the right face of blade b and the left face of blade b + 1 are joined by springs along v, u, w, and
 the load of blade b lags by 2 pi E b/N. Motion, force and probe of blade 0 must be the program's. A
-wave the other way must differ. The drawing must be what docs/figures/sector.py draws.
+wave the other way must differ, and is that of a rotor that turns to the right. The drawing must be
+what docs/figures/sector.py draws.
 """
 import subprocess
 import sys
@@ -21,7 +22,7 @@ KV, KU = 4e4, np.array([[2e4, 5e3], [5e3, 3e4]])
 
 CASE = """name: ring
 modal: {{file: ring.modal.h5}}
-rotor: {{blades: {blades}}}
+rotor: {{blades: {blades}, turns: {turns}}}
 excitation: {{engine_order: {order}}}
 contact: {{to: neighbour, psi: 35 deg, phi: 12 deg, mu: 1, ku: [2e4, 5e3, 3e4], kv: 4e4, n0: {n0}}}
 mhb: {{frequency: [60 Hz, 200 Hz], harmonics: 1}}
@@ -74,19 +75,21 @@ def distance(a, b):
     return np.abs(a - b).max() / np.abs(b).max()
 
 
-def check_order(program, folder, model, order):
-    case = folder / "ring.yaml"
-    case.write_text(CASE.format(blades=BLADES, order=order, n0=N0))
+def check_order(program, folder, model, order, turns):
+    case, lag = folder / "ring.yaml", 1 if turns == "left" else -1
+    case.write_text(CASE.format(blades=BLADES, order=order, n0=N0, turns=turns))
     subprocess.run([program, "mhb", "--quiet", "--force", str(case)], check=True)
     with h5py.File(folder / "ring.response.h5") as file:
         branch = file["branch_2"]
+        assert file.attrs["engine_order"] == order
+        assert ("rotor_turns" in file.attrs) == (turns == "right")
         assert branch.attrs["kind"] in ("nonlinear", b"nonlinear")
         i = len(branch["frequency"]) // 3
         w = 2 * np.pi * branch["frequency"][i]
         found = [branch[name][i, 0, :, 1] for name in ("motion", "force", "probe")]
-    for a, b in zip(found, solve_ring(model, order, w, 1)):
+    for a, b in zip(found, solve_ring(model, order, w, lag)):
         assert distance(a, b) < 1e-12, distance(a, b)
-    for a, b in zip(found, solve_ring(model, order, w, -1)):
+    for a, b in zip(found, solve_ring(model, order, w, -lag)):
         assert distance(a, b) > 0.1, distance(a, b)
 
 
@@ -108,8 +111,8 @@ def main():
              "right": rng.normal(size=(3, MODES)), "left": rng.normal(size=(3, MODES)),
              "force": 10 * rng.normal(size=MODES)}
     write_model(folder / "ring.modal.h5", model)
-    for order in (2, 3):
-        check_order(program, folder, model, order)
+    for order, turns in ((2, "left"), (3, "left"), (2, "right"), (6, "right")):
+        check_order(program, folder, model, order, turns)
     check_drawing(Path(__file__).resolve().parents[2])
 
 

@@ -31,7 +31,7 @@ void floquet_branch(const modal_model *model, const mhb_settings *s, const mhb_r
     mhb_balance_set_preload(b, branch->n0[i]);
     point_of(r, branch, i, 0, x);
     mhb_balance_evaluate(b, x, omega, unused, NULL, NULL);
-    mhb_solution solution = {omega, b->law, b->eval->info, x, b->eval->p};
+    mhb_solution solution = {omega, b->law, b->eval->info, x, b->eval->p, b->m};
     mhb_floquet_evaluate(stability, &solution, &m);
     out[i] = summary(&m);
   }

@@ -7,7 +7,7 @@ shb_test(mhb/numerics UNIT block_cyclic extent fourier lu tail thin_product
 shb_test(mhb/contact UNIT transitions slip slip_onset static_friction slider sensitivity
   dense_output time_history INTEGRATION contact reference_law accuracy continuity random
   LIBRARIES tests_motions)
-shb_test(mhb/problem INTEGRATION interfaces parameter LIBRARIES tests_models)
+shb_test(mhb/problem UNIT wave INTEGRATION interfaces parameter LIBRARIES tests_models)
 shb_test(mhb/mistuning UNIT deviation_table deviations mistuned_ring LIBRARIES tests_models)
 shb_test(mhb/structure UNIT cyclic_flexibility gyroscopic nodal_diameters receptance ring_receptance
   speed_model LIBRARIES tests_models)
@@ -38,8 +38,8 @@ shb_test(mhb/continuation UNIT arclength_scalar balance_curve closed_curve corre
 shb_test(mhb/amplification UNIT whitehead INTEGRATION ring_response LIBRARIES tests_models)
 shb_test(mhb/branches UNIT free_body branch_completion chain linear_limits main_branch peak_search
   period_doubling record tracer
-  INTEGRATION branch_stability forced_response harmonic_selection
-  lasting_motion mistuned_sweep run_up secondary_branches ring_search unfinished_curve
+  INTEGRATION branch_stability forced_response harmonic_selection lasting_motion mistuned_sweep
+  multiplier_error run_up secondary_branches ring_search unfinished_curve
   NIGHTLY verdicts LIBRARIES tests_models)
 shb_test(mhb/branches INTEGRATION stiff_disc disc_run_up PROGRAM test_mhb_branches_modal
   LIBRARIES tests_fem tests_box tests_models shb_modal shb_mesh_blade)

@@ -101,8 +101,7 @@ static void place_point(const fixture_options *o, mhb_branch *b, int p, double t
 
 static shb_status add_branch(mhb_response *r, mhb_branch_kind kind, double n0,
                              const fixture_options *o, int n) {
-  int at;
-  SHB_TRY(mhb_response_branch(r, kind, &at));
+  const int at = mhb_response_branch(r, kind);
   double x = kind == MHB_BRANCH_OPEN ? -40 : kind == MHB_BRANCH_STUCK ? 40 : log(fmax(n0, 1) / 100);
   fixture_curve c = curve_at(x, o->scale);
   if (kind != MHB_BRANCH_NONLINEAR) c.bend = 0;
@@ -110,8 +109,7 @@ static shb_status add_branch(mhb_response *r, mhb_branch_kind kind, double n0,
   for (int i = 0; i < n; i++) {
     double theta =
         n > 1 && o->n_points > 1 ? from + (to - from) * i / (o->n_points - 1) : SHB_PI / 2;
-    int p;
-    SHB_TRY(mhb_response_point(r, at, &p));
+    const int   p    = mhb_response_point(r, at);
     mhb_branch *b    = &r->branch[at];
     double      a    = fixture_amplitude(&c, theta);
     b->frequency[p]  = fixture_frequency(&c, theta);

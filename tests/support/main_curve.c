@@ -10,14 +10,13 @@ static shb_status trace(const modal_model *model, const mhb_settings *s, int har
                         mhb_monitor *monitor, double *seconds, mhb_response *stopped,
                         mhb_response **out) {
   mhb_balance *balance;
-  int          branch;
   *out = NULL;
   SHB_TRY(mhb_balance_create(model, s, &balance));
   mhb_balance_set_preload(balance, s->n0[0]);
   mhb_balance_set_parameter(balance, s->parameter);
   *out              = mhb_response_create(model->n_pairs, model->n_probes, harmonics);
   shb_status status = *out ? SHB_OK : shb_fail(SHB_ERR_IO, __FILE__, __LINE__, "out of memory");
-  if (status == SHB_OK) status = mhb_response_branch(*out, MHB_BRANCH_NONLINEAR, &branch);
+  if (status == SHB_OK) mhb_response_branch(*out, MHB_BRANCH_NONLINEAR);
   if (status == SHB_OK) (*out)->parameter = s->parameter;
   if (status == SHB_OK && stopped) {
     (*out)->branch[0].unfinished  = stopped->branch[0].unfinished;

@@ -19,7 +19,7 @@ void periodic_create(const modal_model *model, const mhb_settings *settings, dou
   *p = (periodic){.settings = *settings, .omega = omega};
   assert_int_equal(mhb_balance_create(model, &p->settings, &p->residual), SHB_OK);
   mhb_balance *b = p->residual;
-  assert_int_equal(mhb_newton_create(b->n, &newton), SHB_OK);
+  newton         = mhb_newton_create(b->n);
   mhb_balance_set_preload(b, settings->n0[0]);
   p->x = calloc((size_t)b->n, sizeof(double));
   if (guess) {
@@ -30,7 +30,7 @@ void periodic_create(const modal_model *model, const mhb_settings *settings, dou
   }
   mhb_balance_evaluate(b, p->x, omega, newton->r, NULL, NULL);
   mhb_newton_destroy(newton);
-  p->solution = (mhb_solution){omega, b->law, b->eval->info, p->x, b->eval->p};
+  p->solution = (mhb_solution){omega, b->law, b->eval->info, p->x, b->eval->p, b->m};
 }
 
 void periodic_destroy(periodic *p) {

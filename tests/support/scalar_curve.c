@@ -80,7 +80,7 @@ mhb_arclength *scalar_curve(scalar_function f, double low, double high) {
                                .solve          = solve,
                                .sign           = sign,
                                .solve_at_value = solve_at_value};
-  assert_ok(mhb_arclength_create(&s->base, low, high, &curve));
+  curve   = mhb_arclength_create(&s->base, low, high);
   return curve;
 }
 

@@ -16,7 +16,7 @@ void cold_solution(const modal_model *model, const mhb_settings *settings, doubl
   mhb_newton  *newton;
   int          iterations;
   assert_int_equal(mhb_balance_create(model, settings, &residual), SHB_OK);
-  assert_int_equal(mhb_newton_create(residual->n, &newton), SHB_OK);
+  newton = mhb_newton_create(residual->n);
   mhb_balance_set_preload(residual, settings->n0[0]);
   assert_int_equal(mhb_first_solution(newton, residual, omega, tolerance, x, &iterations),
                    MHB_CONVERGED);

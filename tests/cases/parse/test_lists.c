@@ -247,6 +247,19 @@ static void interfaces_are_read(void **state) {
   case_free(&file);
 }
 
+static const char own_modes[] =
+    "modal: {file: b.msh}\n"                                                               /* 1 */
+    "contact: {psi: 0, to: ground, interfaces: [{name: a, mu: 1, ku: 2, kv: 1, n0: 1}]}\n" /* 2 */
+    "mhb: {frequency: [0.14, 0.25]}\n";                                                    /* 3 */
+
+/* A key that both the modal file and the list leave no room for gets one remedy. */
+static void a_fault_has_one_remedy(void **state) {
+  (void)state;
+  static const fault rows[] = {
+      {"{psi: 0, ", "{psi: 0, ", "2:16: error: contact.psi: put it into contact.interfaces", 1}};
+  check_faults(own_modes, rows, 1);
+}
+
 static void faults_of_interfaces(void **state) {
   (void)state;
   static const fault rows[] = {
@@ -327,7 +340,7 @@ int main(void) {
       cmocka_unit_test(keys_of_each_interface), cmocka_unit_test(materials_are_read),
       cmocka_unit_test(faults_of_materials),    cmocka_unit_test(loads_are_read),
       cmocka_unit_test(faults_of_loads),        cmocka_unit_test(interfaces_are_read),
-      cmocka_unit_test(faults_of_interfaces),
+      cmocka_unit_test(faults_of_interfaces),   cmocka_unit_test(a_fault_has_one_remedy),
   };
   return cmocka_run_group_tests_name("cases.lists", tests, NULL, NULL);
 }

@@ -62,8 +62,8 @@ static void create_balance(const modal_model *of, int harmonics, balance *b) {
   b->settings           = file.mhb;
   b->settings.harmonics = harmonics;
   assert_ok(mhb_balance_create(of, &b->settings, &b->residual));
-  assert_ok(mhb_newton_create(b->residual->n, &b->newton));
-  assert_ok(mhb_newton_bind(b->newton, b->residual));
+  b->newton = mhb_newton_create(b->residual->n);
+  mhb_newton_bind(b->newton, b->residual);
 }
 
 static void destroy_balance(balance *b) {

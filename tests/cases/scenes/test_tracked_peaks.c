@@ -90,8 +90,7 @@ static void check_halves(mhb_balance *balance, const mhb_tracking *tracking, mhb
   mhb_response           *store = mhb_response_like(r);
   mhb_tracking_end        end;
   bool                    found;
-  int                     index;
-  assert_ok(mhb_response_branch(store, MHB_BRANCH_TRACKED, &index));
+  const int               index = mhb_response_branch(store, MHB_BRANCH_TRACKED);
   assert_ok(mhb_trace_kink(balance, tracking, &seed, store, index, &found, &end));
   const mhb_branch *b = &store->branch[index];
   assert_true(found);
@@ -126,7 +125,7 @@ static void check_at(const case_model *model, mhb_response *r, int point) {
   mhb_kink      *kink;
   mhb_end        why;
   assert_ok(mhb_balance_create(&model->model, &settings, &balance));
-  assert_ok(mhb_kink_create(balance, &tracking, &kink));
+  kink = mhb_kink_create(balance, &tracking);
   double x[balance->n], there[balance->n], by[MHB_PEAK_PARAMETERS];
   mhb_recorded_motion(branch, point, balance, x);
   assert_true(mhb_kink_start(kink, x, &at, &why));

@@ -262,22 +262,25 @@ static void forces_and_tractions(void **state) {
   scratch_remove(folder);
 }
 
-/* The same file with the line ends, byte order mark and file end of other editors. */
-static void damping_laws(void **state) {
+static void values_of_several_forms(void **state) {
   (void)state;
+  static const char DAMPING[] = "damping: 0.23 %", SPEED[] = "2900 rpm";
   static const struct {
-    const char *text, *setting;
+    const char *old, *text, *setting;
   } rows[] = {
-      {"damping: 0.25 %", "modal.damping = 0.0025\n"},
-      {"damping: [0.125, 0.25 %, 0.5]", "modal.damping = 0.125 0.0025 0.5\n"},
-      {"damping: {loss_factor: 0.25}", "modal.damping = loss_factor 0.25\n"},
-      {"damping: {rayleigh: [12.5, 0.25 s]}", "modal.damping = rayleigh 12.5 0.25\n"},
+      {SPEED, "2900 rpm, coriolis: yes", "rotor.coriolis = left\n"},
+      {SPEED, "2900 rpm, turns: right, coriolis: yes", "rotor.coriolis = right\n"},
+      {SPEED, "2900 rpm, turns: right", "rotor.coriolis = no\n"},
+      {DAMPING, "damping: 0.25 %", "modal.damping = 0.0025\n"},
+      {DAMPING, "damping: [0.125, 0.25 %, 0.5]", "modal.damping = 0.125 0.0025 0.5\n"},
+      {DAMPING, "damping: {loss_factor: 0.25}", "modal.damping = loss_factor 0.25\n"},
+      {DAMPING, "damping: {rayleigh: [12.5, 0.25 s]}", "modal.damping = rayleigh 12.5 0.25\n"},
   };
   char folder[SCRATCH_PATH], *said;
   scratch_create(folder);
   for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
     case_file f;
-    char     *text = scratch_case("damping: 0.23 %", rows[i].text);
+    char     *text = scratch_case(rows[i].old, rows[i].text);
     assert_int_equal(read_text(folder, "x.yaml", text, &f, &said), SHB_OK);
     char *settings = case_settings(&f, CASE_MODAL);
     if (!strstr(settings, rows[i].setting)) fail_msg("no %s in %s", rows[i].setting, settings);
@@ -322,6 +325,7 @@ static void materials_with_axes(void **state) {
   scratch_remove(folder);
 }
 
+/* The same file with the line ends, byte order mark and file end of other editors. */
 static void line_ends_and_marks(void **state) {
   (void)state;
   char folder[SCRATCH_PATH], *said, *text = scratch_case(NULL, NULL), *other = malloc(8192);
@@ -400,7 +404,7 @@ int main(void) {
                                      cmocka_unit_test(stages_ask_for_their_own),
                                      cmocka_unit_test(forces_and_tractions),
                                      cmocka_unit_test(materials_with_axes),
-                                     cmocka_unit_test(damping_laws),
+                                     cmocka_unit_test(values_of_several_forms),
                                      cmocka_unit_test(line_ends_and_marks),
                                      cmocka_unit_test(truncated_anywhere),
                                      cmocka_unit_test(one_byte_wrong)};

@@ -187,7 +187,9 @@ static void numbers_and_ranges(void **state) {
   (void)state;
   static const fault rows[] = {
       {"nu: 0.29", "nu: 0,3",
-       "c.yaml:11:30: error: material: a number where a key belongs; write decimals with a "
+       "c.yaml:11:28: error: material.nu: 0,3 has a decimal comma; write 0.3", 1},
+      {"nu: 0.29", "nu: 0, 3",
+       "c.yaml:11:31: error: material: a number where a key belongs; write decimals with a "
        "point, such as 2.1",
        1},
       {"0.31\n", "0,3\n",
@@ -254,6 +256,14 @@ static void numbers_and_ranges(void **state) {
       {"2900 rpm", "0 rpm, coriolis: right",
        "c.yaml:12:45: error: rotor.coriolis: needs rotor.speed above 0; at rest there are no "
        "Coriolis forces",
+       1},
+      {"2900 rpm", "2900 rpm, turns: right, coriolis: left",
+       "c.yaml:12:62: error: rotor.coriolis: is of the other sense than rotor.turns; write "
+       "coriolis: yes",
+       1},
+      {"2900 rpm", "2900 rpm, turns: round",
+       "c.yaml:12:45: error: rotor.turns: 'round' is not known; expected one of left, "
+       "right",
        1},
       {"2900 rpm", "[]", "c.yaml:12:28: error: rotor.speed: 0 speeds; there may be 1 to 256", 1},
       {"2900 rpm", "[1 rpm, -3 rpm]",
@@ -635,7 +645,7 @@ static void not_yaml(void **state) {
       {"mu: 0.31", "mu: 0.31\n  \"kv\\0x\": 2",
        "c.yaml:25:3: error: contact: holds the character \\0, which ends text", 1},
       {"mu: 0.31", "mu: \"\\e[31m\\N\\x9b0.31\"",
-       "c.yaml:24:7: error: contact.mu: '?[31m????0.31' is not a number; expected a number", 1},
+       "c.yaml:24:7: error: contact.mu: '?[31m??0.31' is not a number; expected a number", 1},
       {"  scale: 1.3", "---",
        "c.yaml:34:1: error: a second document begins here; one file holds one case", 1}};
   check_faults(rows, COUNT(rows));

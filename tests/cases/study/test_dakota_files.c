@@ -28,12 +28,12 @@ static void both_formats_are_read(void **state) {
   (void)state;
   check_parameters(
       "  2 variables\n  1.25e+01 contact__n0\n -3.0e-03 contact__mu\n 2 functions\n"
-      " 3 ASV_1:peak\n 1 ASV_2:frequency\n 1 derivative_variables\n 2 DVV_1:mu\n"
+      " 3 ASV_1:peak\n 1 ASV_2:frequency\n 1 derivative_variables\n 2 DVV_1:contact__mu\n"
       " 0 analysis_components\n 1 eval_id\n");
   check_parameters(
       "{ DAKOTA_VARS = 2 }\n{ contact__n0 = 1.25e+01 }\n{ contact__mu = -3.0e-03 }\n"
       "{ DAKOTA_FNS = 2 }\n{ ASV_1:peak = 3 }\n{ ASV_2:frequency = 1 }\n"
-      "{ DAKOTA_DER_VARS = 1 }\n{ DVV_1:mu = 2 }\n{ DAKOTA_EVAL_ID = 1 }\n");
+      "{ DAKOTA_DER_VARS = 1 }\n{ DVV_1:contact__mu = 2 }\n{ DAKOTA_EVAL_ID = 1 }\n");
 }
 
 static void descriptors_become_paths(void **state) {
@@ -95,6 +95,10 @@ static void faults_are_told(void **state) {
       {"1 variables\nnan a\n1 functions\n", "is no number"},
       {"1 variables\n1 a\n1 functions\n1 ASV_1\n", "names no response"},
       {"1 variables\n1 a\n2 functions\n1 ASV_1:peak\n", "2 functions are announced, 1 stand there"},
+      {"1 variables\n1 a b\n1 functions\n1 ASV_1:peak\n", "'b' stands behind '1 a'"},
+      {"1 variables\n1 a\n1 functions\n1 ASV_2:peak\n", "expected ASV_1:peak"},
+      {"1 variables\n1 a\n1 functions\n1 ASV_1:peak\n1 derivative_variables\n1 DVV_1:b\n",
+       "1 DVV_1:b: variable 1 is a"},
       {"1 variables\n1 a\n1 functions\n1 ASV_1:peak\n2 DVV_1:a\n",
        "2 DVV_1:a: expected a whole number from 1 to 1"}};
   for (size_t i = 0; i < sizeof faults / sizeof *faults; i++) {

@@ -19,9 +19,9 @@ from programs import bring_your_own, run, write
 BIN, SCENE = os.path.abspath(sys.argv[1]), os.path.abspath(sys.argv[2])
 
 
-def check(text, code=0, name='s.yaml'):
+def check(text, code=0, name='s.yaml', case='case.yaml'):
     """What `shroudhb check` says of a study of the case."""
-    write(name, 'case: case.yaml\n' + text)
+    write(name, f'case: {case}\n' + text)
     return run(os.path.join(BIN, 'shroudhb'), 'check', name, code=code)
 
 
@@ -45,6 +45,11 @@ def check_percent():
     for numbers in '{uniform: [0.2, 10 %]}', '{triangular: [0.1, 0.2, 30 %]}', \
             '{truncated_normal: [0.3, 0.03, 20 %, 0.4]}':
         refuses(f'uncertain: {{contact.mu: {numbers}}}\nsamples: 8\n', 'percent of what?')
+    for numbers in '{triangular: [10 %, 0.2, 30 %]}', '{normal: [30 %, 0.03]}', \
+            '{uniform: [20 %, 0.4]}':
+        refuses(f'uncertain: {{contact.mu: {numbers}}}\nsamples: 8\n', 'percent of what?')
+    refuses('uncertain: {modal.damping: {lognormal: [0.2 %, 10 %]}}\nsamples: 8\n',
+            "'10 %' of a mean of '0.2 %': is it relative to the mean?")
 
 
 def check_commas():
@@ -52,16 +57,25 @@ def check_commas():
     for values, told in (('[0,2, 0,4]', '0,2 has a decimal comma; write 0.2'),
                          ('[0.2, 0,4]', '0,4 has a decimal comma; write 0.4'),
                          ('[0,05]', '0,05 has a decimal comma; write 0.05'),
-                         ('[0,2,0,4]', 'is 0, which value 1 is already; every value once'),
-                         ('{from: 0,1, to: 0.4, points: 3}', 'write decimals with a point'),
-                         ('{from: 0.1, to: 0,4, points: 3}', 'write decimals with a point'),
+                         ('[0,2,0,4]', '0,2 has a decimal comma; write 0.2'),
+                         ('[0,25,1,5]', '0,25 has a decimal comma; write 0.25'),
+                         ('{from: 0,1, to: 0.4, points: 3}',
+                          'vary.contact.n0.from: 0,1 has a decimal comma; write 0.1'),
+                         ('{from: 0.1, to: 0,4, points: 3}',
+                          'vary.contact.n0.to: 0,4 has a decimal comma; write 0.4'),
+                         ('{from: 0.1, to: 0.4, points: 2,5}',
+                          'vary.contact.n0.points: 2,5 has a decimal comma'),
                          ('0,3', 'write 0.3 with a decimal point')):
         refuses(f'vary: {{contact.n0: {values}}}\n' if values[0] != '0' else
                 f'vary:\n  contact.n0: {values}\n', told)
     refuses('vary: {contact.n0: [0,2 N, 0,4 N]}\n', '0,2 N has a decimal comma; write 0.2 N')
     refuses('uncertain: {contact.mu: {normal: [0,3, 0,05]}}\nsamples: 8\n',
             '0,3 has a decimal comma')
-    for values in '[0,2,4]', '[1, 2, 4]', '[0.2,0.4, 0.6]', '[ 1 , 2 ]':
+    refuses('vary: {contact.n0: 0,3}\n', 'vary.contact.n0: 0,3 has a decimal comma; write 0.3')
+    refuses('vary: {contact.n0: {from: 0.1, to: 1}}\n'
+            'optimise: {minimise: peak, at_most: {peak: 0,1 mm}}\n',
+            'optimise.at_most.peak: 0,1 mm has a decimal comma; write 0.1 mm')
+    for values in '[0,2,4]', '[1,2,3,4]', '[1, 2, 4]', '[0.2,0.4, 0.6]', '[ 1 , 2 ]':
         check(f'vary: {{contact.n0: {values}}}\n')
 
 
@@ -83,6 +97,14 @@ def check_limits():
         out = check(optimise.format(f'at_least: {{stress: {given}}}'))
         assert f'limit     stress at least {shown}' in out, out
     run(sys.executable, 'write_modal.py')
+    refuses(optimise.format('at_least: {frequency: -1 Hz}'),
+            'frequency: -1 Hz: no design is below 0')
+    check(optimise.format('at_most: {peak: 1}')) # the modal file may have any size
+    meshed = os.path.join(SCENE, '..', 'first_case', 'case.yaml')
+    for bare, code in ('1', 2), ('100', 2), ('0.001', 0), ('60 mm', 0):
+        out = check('vary: {contact.n0: {from: 10 N, to: 100 N}}\n'
+                    f'optimise: {{minimise: peak, at_most: {{peak: {bare}}}}}\n', code, case=meshed)
+        assert code == 0 or f'peak: {bare} m: did you mean {bare} mm?' in out, out
 
 
 def check_echo():

@@ -41,12 +41,21 @@ def workers_of(parent):
     return found
 
 
+def has_answered(worker):
+    """Whether a worker has written a design to its manager. Before, it writes a copy of the case."""
+    try:
+        with open(f'/proc/{worker}/io', encoding='utf-8') as source:
+            written = int(dict(line.split(': ') for line in source)['wchar'])
+            return written > os.path.getsize('case.yaml')
+    except OSError:
+        return False
+
+
 def wait_for_designs(study, name):
-    """Until the study has a worker at work and some designs are done."""
-    while not workers_of(study.pid):
+    """Until a worker of the study has done a design."""
+    while not any(map(has_answered, workers_of(study.pid))):
+        assert study.poll() is None, f'{name} is done already'
         time.sleep(0.01)
-    time.sleep(0.5)
-    assert study.poll() is None, f'{name} is done already'
 
 
 def alive(process):
@@ -63,7 +72,7 @@ def check_interrupt():
     run(FRONT, 'study', '--quiet', '--force', 'whole.yaml')
     os.rename('whole.study.h5', 'kept.h5')
     for name, number, group in (('one', signal.SIGINT, False), ('all', signal.SIGINT, True),
-                                ('term', signal.SIGTERM, True)):
+                                ('term', signal.SIGTERM, True), ('hup', signal.SIGHUP, True)):
         write(f'{name}.yaml', 'case: case.yaml\n' + MANY)
         study = start(name, start_new_session=True)
         wait_for_designs(study, name)
@@ -84,12 +93,23 @@ def check_interrupt():
         os.remove(f'{name}.study.h5')
 
 
+def is_mapped(segment):
+    """Whether a process that lives, such as one of another test, has a segment in its memory."""
+    for entry in filter(str.isdigit, os.listdir('/proc')):
+        try:
+            with open(f'/proc/{entry}/maps', encoding='utf-8') as source:
+                if f'/dev/shm/{segment}' in source.read():
+                    return True
+        except OSError:
+            continue
+    return not os.path.exists(f'/dev/shm/{segment}')
+
+
 def nothing_new_stays(before):
-    """Other tests that run now remove their own segments."""
-    ends = time.monotonic() + 60
-    while set(os.listdir('/dev/shm')) - before and time.monotonic() < ends:
-        time.sleep(0.2)
-    assert set(os.listdir('/dev/shm')) <= before, set(os.listdir('/dev/shm')) - before
+    """What other tests have in memory is theirs to remove; the study's processes are gone."""
+    ours = {name for name in set(os.listdir('/dev/shm')) - before
+            if os.path.isfile(f'/dev/shm/{name}') and not is_mapped(name)}
+    assert not ours, ours
 
 
 def check_death():

@@ -171,6 +171,26 @@ static void names_show_what_they_are(void **state) {
     assert_false(shb_name_is_plain(refused[i]));
 }
 
+/* What a message repeats cannot command a terminal, nor show another text than there is. */
+static void messages_show_what_they_are(void **state) {
+  (void)state;
+  static const char *const rows[][2] = {{"größe\t翼\n𝜇", "größe 翼 𝜇"},
+                                        {"\x1b[31m", "?[31m"},
+                                        {"a\u202eb\u2066", "a?b?"},
+                                        {"\xc2\x85", "?"},
+                                        {"\xff"
+                                         "a\xe2\x80",
+                                         "?a??"},
+                                        {"\xc0\xaf", "??"}, /* '/', too long */
+                                        {"\ufffd", "\ufffd"}};
+  for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
+    char text[64];
+    snprintf(text, sizeof text, "%s", rows[i][0]);
+    shb_plain_text(text);
+    assert_string_equal(text, rows[i][1]);
+  }
+}
+
 static int n_entries(void) {
   int  n    = 0;
   DIR *list = opendir(scratch_folder);
@@ -249,6 +269,7 @@ int main(void) {
       cmocka_unit_test(unfinished_files_are_removed_at_an_end_at_once),
       cmocka_unit_test(orphans_are_removed),
       cmocka_unit_test(fingerprints_are_fnv_1a),
-      cmocka_unit_test(names_show_what_they_are)};
+      cmocka_unit_test(names_show_what_they_are),
+      cmocka_unit_test(messages_show_what_they_are)};
   return cmocka_run_group_tests(tests, scratch_make, scratch_remove);
 }

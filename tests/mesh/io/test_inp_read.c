@@ -15,6 +15,7 @@
 
 #include "mesh/io/inp_write.h"
 #include "tests/support/box.h"
+#include "tests/support/check.h"
 #include "tests/support/read_mesh.h"
 #include "tests/support/scratch_folder.h"
 
@@ -317,8 +318,12 @@ static void faults_are_named_with_their_line(void **state) {
       {"*NODE\n1, 0, , 0\n", 2, "'' is not a number"},
       {"*NODE\n1.5, 0, 0, 0\n", 2, "'1.5' is not a number of a node"},
       {"*NODE\n-1, 0, 0, 0\n", 2, "'-1' is not a number of a node"},
-      {"*NODE, SYSTEM=C\n1, 0, 0, 0\n", 1, "*NODE with SYSTEM is not supported"},
-      {"** x\n*INCLUDE, INPUT=mesh/nodes.inp\n", 2, "*INCLUDE of 'mesh/nodes.inp'"},
+      {"*NODE, SYSTEM=X\n1, 0, 0, 0\n", 1, "*NODE: SYSTEM=X; expected R, C or S"},
+      {"*SYSTEM\n0, 0, 0, 1, 0, 0\n2, 0, 0\n", 1, "*SYSTEM: its points lie on a line"},
+      {"** x\n*INCLUDE, INPUT=mesh/nodes.inp\n", 2, "*INCLUDE: 'mesh/nodes.inp' is no file"},
+      {"*INCLUDE\n", 1, "*INCLUDE: names no file; give INPUT=FILE"},
+      {"*Include, input='bar.inp'\n", 1, "*INCLUDE: 'bar.inp' includes itself"},
+      {"*NODE, INPUT=none.csv\n", 1, "*NODE: 'none.csv' is no file"},
       {NODES "1, 2, 3, 4\n", 12, "node 1 is given twice, first in line 2"},
       {NODES ELEMENT "1,1,2,3,4,5,6,7,8,9,10\n", 14, "element 1 is given twice, first in line 13"},
       {NODES "*ELEMENT, TYPE=C3D10\n1,1,2,3,4,5,6,7,8\n", 13,
@@ -327,7 +332,7 @@ static void faults_are_named_with_their_line(void **state) {
       {NODES "*ELEMENT, TYPE=C3D10\n1,1,2,3,4,5,6,7,8,9,77\n", 13,
        "element 1 uses node 77, which is absent"},
       {NODES "*ELEMENT, TYPE=C3D4\n1,1,2,3,4\n", 12,
-       "C3D4 is not supported; C3D10 and C3D20(R) are: second"},
+       "C3D4 is not supported; C3D10 and C3D20 are: second"},
       {NODES "*ELEMENT, TYPE=C3D15\n", 12, "C3D15 is not supported"},
       {NODES "*ELEMENT\n", 12, "(none) is not supported"},
       {NODES ELEMENT "*NGEN\n1, 5, 1\n", 14, "*NGEN is not supported"},
@@ -359,14 +364,140 @@ static void faults_are_named_with_their_line(void **state) {
       {NODES ELEMENT "*ELSET, ELSET=root\n1\n", 15, "is a volume, not a face"},
       {NODES ELEMENT "*ELEMENT, TYPE=S6, ELSET=root\n2, 1, 2, 3, 5, 6, 11\n", 15,
        "node 11 of element 2 belongs to no"},
-      {"*PART, NAME=A\n*END PART\n*PART, NAME=B\n", 3, "a second *PART"},
-      {"*INSTANCE, NAME=A\n0, 0, 1\n", 1, "*INSTANCE is moved"},
+      {NODES ELEMENT "*NSET, NSET=root, ELSET=F\n", 14, "element set 'F' is not defined"},
+      {NODES ELEMENT "*SURFACE, NAME=a\nE, S1\n*SURFACE, NAME=root, COMBINE=DIFFERENCE\na\n", 16,
+       "COMBINE=DIFFERENCE is not supported"},
+      {NODES ELEMENT "*SURFACE, NAME=root, COMBINE=UNION\na\n", 15, "surface 'a' is not defined"},
+      {"*PART, NAME=A\n*END PART\n*PART, NAME=B\n", 0, "has 2 parts, but no *INSTANCE"},
+      {"*PART, NAME=A\n*END PART\n*PART, NAME=a\n", 3, "there are two of the name 'a'"},
+      {"*INSTANCE, NAME=A\n0, 0, 1\n", 1, "there is no *PART '' before it"},
+      {"*PART, NAME=P\n*END PART\n*INSTANCE, NAME=A, PART=p\n0, 0, 1\n1, 2\n", 3,
+       "its rotation has 2 values"},
+      {"*NSET, NSET=a, INSTANCE=I\n1\n", 1, "there is no *INSTANCE 'I' before it"},
       {NODES "*ELEMENT, TYPE=C3D10\n1,1,3,2,4,5,6,7,8,9,10\n*SURFACE, NAME=root\n1, S1\n", 0,
        "1 of 1 elements inverted"},
   };
   for (size_t i = 0; i < sizeof faults / sizeof *faults; i++) {
     put(faults[i].text);
     refused(faults[i].line, faults[i].words);
+  }
+}
+
+static void put_beside(const char *name, const char *text) {
+  FILE *file = fopen(scratch(name), "w");
+  assert_non_null(file);
+  fputs(text, file);
+  fclose(file);
+}
+
+/* Coordinates of the node of that number. */
+static const double *node_of(const mesh_fe *mesh, long tag) {
+  for (int i = 0; i < mesh->n_nodes; i++)
+    if (mesh->node_tag[i] == tag) return mesh->coordinates + 3 * i;
+  fail_msg("no node %ld", tag);
+  return NULL;
+}
+
+static void assert_point(const double *x, double a, double b, double c) {
+  assert_near(x[0], a, 1e-15);
+  assert_near(x[1], b, 1e-15);
+  assert_near(x[2], c, 1e-15);
+}
+
+/* The element at the origin of the tests below, read with one group or more. */
+static void read_text_mesh(const char *text, mesh_fe *mesh) {
+  put(text);
+  if (read_mesh(path, mesh) != SHB_OK) fail_msg("%s: %s", text, shb_message());
+}
+
+static void included_text_stands_in_its_place(void **state) {
+  (void)state;
+  static const char whole[] =
+      "*NODE\n*INCLUDE, INPUT=rows\n10,0,.5,.5\n*include, input=\"rest of it\"\n";
+  mesh_fe mesh;
+  put_beside("rows", "1,0,0,0\n2,1,0,0\n3,0,1,0\n*INCLUDE, INPUT=more\n9,.5,0,.5\n");
+  put_beside("more", "4,0,0,1\r\n5,.5,0,0\r\n6,.5,.5,0\r\n7,0,.5,0\r\n8,0,0,.5");
+  put_beside("rest of it", ELEMENT "*INCLUDE, INPUT=groups\n");
+  put_beside("groups", "*SURFACE, NAME=root\nE, S1\n");
+  read_text_mesh(whole, &mesh);
+  assert_int_equal(mesh.n_nodes, 10);
+  assert_int_equal(mesh.set[MESH_ROOT].n, 1);
+  assert_point(node_of(&mesh, 8), 0, 0, .5);
+  mesh_fe_free(&mesh);
+  put_beside("groups", "*SURFACE, NAME=root\n\nE, S9\n");
+  put(whole);
+  assert_int_equal(read_mesh(path, &mesh), SHB_ERR_INPUT);
+  assert_non_null(strstr(shb_message(), "/groups:3: *SURFACE: 'E'; expected"));
+  put_beside("groups", "*INCLUDE, INPUT=rest of it\n"); /* in a circle */
+  assert_int_equal(read_mesh(path, &mesh), SHB_ERR_INPUT);
+  assert_non_null(strstr(shb_message(), "/groups:1: *INCLUDE: 'rest of it' includes itself"));
+  put("*NODE, INPUT=rows\n" ELEMENT "*NODE\n10,0,.5,.5\n*SURFACE, NAME=root\n1, S2\n");
+  assert_int_equal(read_mesh(path, &mesh), SHB_OK);
+  mesh_fe_free(&mesh);
+  for (int i = 0; i < 4; i++)
+    unlink(scratch((const char *const[]){"rows", "more", "rest of it", "groups"}[i]));
+}
+
+static void instances_are_moved_and_then_turned(void **state) {
+  (void)state;
+  mesh_fe mesh;
+  read_text_mesh("*PART, NAME=P\n" NODES ELEMENT
+                 "*NSET, NSET=foot\n1,2,3,5,6,7\n"
+                 "*SURFACE, NAME=contact_right\nE, S2\n*END PART\n*ASSEMBLY, NAME=all\n"
+                 "*INSTANCE, NAME=A, PART=P\n*END INSTANCE\n"
+                 "*INSTANCE, NAME=B, PART=P\n1, 2, 3\n1, 0, 0, 1, 0, 2, 90\n"
+                 "*NSET, NSET=own\n1,3,4,7,10,8\n*END INSTANCE\n"
+                 "*NSET, NSET=root, INSTANCE=B\nfoot\n*NSET, NSET=load\nA.foot, B.own\n"
+                 "*END ASSEMBLY\n",
+                 &mesh);
+  assert_int_equal(mesh.n_nodes, 20);
+  assert_int_equal(mesh.n_elements, 2);
+  assert_point(node_of(&mesh, 2), 1, 0, 0);
+  assert_point(node_of(&mesh, 11), -1, 0, 3); /* (1, 2, 3) about the line x = 1, y = 0 */
+  assert_point(node_of(&mesh, 12), -1, 1, 3);
+  assert_point(node_of(&mesh, 14), -1, 0, 4);
+  assert_int_equal(mesh.set[MESH_ROOT].n, 1);
+  for (int i = 0; i < 6; i++) assert_true(mesh.node_tag[mesh.set[MESH_ROOT].nodes[i]] > 10);
+  assert_int_equal(mesh.set[MESH_LOAD].n, 2);
+  assert_int_equal(mesh.set[MESH_CONTACT_RIGHT].n, 2); /* of both instances */
+  mesh_fe_free(&mesh);
+}
+
+static void systems_turn_and_move_nodes(void **state) {
+  (void)state;
+  mesh_fe mesh;
+  read_text_mesh(
+      "*SYSTEM\n0, 0, 1, 0, 1, 1\n-1, 0, 1\n*NODE, SYSTEM=C\n"
+      "1, 0, 0, -1\n2, 1, -90, -1\n3, 1, 0, -1\n*SYSTEM\n*NODE\n4,0,0,1\n5,.5,0,0\n"
+      "6,.5,.5,0\n7,0,.5,0\n8,0,0,.5\n9,.5,0,.5\n*SYSTEM\n0, .5\n*NODE\n10,0,0,.5\n"
+      "*NODE, SYSTEM=S\n11, 1, 0, 90\n" ELEMENT
+      "*NSET, NSET=all, ELSET=E\n*SURFACE, NAME=a\nE, S1\n*SURFACE, NAME=b\n1, S2\n"
+      "*SURFACE, NAME=root, COMBINE=UNION\na\nb\n"
+      "*NSET, NSET=load, GENERATE\n1, 4\n5, 100\n",
+      &mesh);
+  assert_point(node_of(&mesh, 1), 0, 0, 0);
+  assert_point(node_of(&mesh, 2), 1, 0, 0);
+  assert_point(node_of(&mesh, 3), 0, 1, 0);
+  assert_point(node_of(&mesh, 10), 0, .5, .5);
+  assert_int_equal(mesh.n_nodes, 10);
+  assert_int_equal(mesh.set[MESH_ROOT].n, 2);
+  assert_int_equal(mesh.set[MESH_LOAD].n, 4); /* a range skips numbers that are not there */
+  mesh_fe_free(&mesh);
+}
+
+static void second_order_types_are_read_whatever_their_suffix(void **state) {
+  (void)state;
+  static const char *const types[] = {"C3D10MH", "c3d10hs", "C3D10T", "C3D10I"};
+  for (int i = 0; i < 4; i++) {
+    mesh_fe mesh;
+    char    text[512];
+    snprintf(text, sizeof text,
+             NODES
+             "*ELEMENT, TYPE=%s, ELSET=E\n1,1,2,3,4,5,6,7,8,9,10\n*SURFACE, NAME=root\nE, "
+             "S1\n",
+             types[i]);
+    read_text_mesh(text, &mesh);
+    mesh_fe_free(&mesh);
   }
 }
 
@@ -418,6 +549,10 @@ int main(void) {
       cmocka_unit_test(every_face_label_is_right),
       cmocka_unit_test(every_label_of_a_hexahedron_is_right),
       cmocka_unit_test(faults_are_named_with_their_line),
+      cmocka_unit_test(included_text_stands_in_its_place),
+      cmocka_unit_test(instances_are_moved_and_then_turned),
+      cmocka_unit_test(systems_turn_and_move_nodes),
+      cmocka_unit_test(second_order_types_are_read_whatever_their_suffix),
       cmocka_unit_test(face_inside_is_refused),
       cmocka_unit_test(cut_files_are_refused),
       cmocka_unit_test(other_bytes_are_refused),

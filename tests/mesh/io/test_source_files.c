@@ -82,6 +82,7 @@ static void what_a_deck_includes_counts(void **state) {
              "*INCLUDE, INPUT=\"faces.inc\"\n** *INCLUDE, INPUT=comment.inc\n");
   write_text("nodes.nam", "1, 0, 0, 0\n*INCLUDE,INPUT=rest.nam\n");
   write_text("rest.nam", "2, 1, 0, 0\n");
+  write_text("faces.inc", "1, S1\n");
   assert_true(watches("deck.inp", "nodes.nam", "1, 0, 0, 0\n*INCLUDE,INPUT=rest.nam\n",
                       "1, 0, 0, 1\n*INCLUDE,INPUT=rest.nam\n"));
   assert_true(watches("deck.inp", "rest.nam", "2, 1, 0, 0\n", "2, 1, 0, 5\n"));

@@ -119,6 +119,8 @@ static void faults_are_told_with_their_place(void **state) {
   refuses("1,\n2,,3\n", ":2:3: '' is not a number; expected a length");
   refuses("nan\n", ":1:1: 'nan' is not a number; expected a length");
   refuses("-inf\n", ":1:1: '-inf' is not a number; expected a length");
+  refuses("#N/A\n", ":1:1: '#N/A' is not a number; expected a length");
+  refuses("a;b\n#DIV/0!;3\n", ":2:1: '#DIV/0!' is not a number; expected a length");
   refuses("0x10\n", ":1:1: '0x10' is not a number; expected a length");
   refuses("1.234.5\n", ":1:1: '1.234.5' is not a number; expected a length");
   refuses("1e999\n", ":1:1: '1e999' is too large");

@@ -30,7 +30,7 @@ static void make(problem *g, double n0) {
   g->settings.ring = g->ring;
   assert_ok(mhb_balance_create(&g->ring->whole, &g->settings, &g->balance));
   mhb_balance_set_preload(g->balance, n0);
-  assert_ok(mhb_newton_create(LOW, &g->newton));
+  g->newton = mhb_newton_create(LOW);
   assert_ok(mhb_truncation_create(g->balance, &g->truncation));
 }
 
@@ -58,7 +58,7 @@ static int solve_doubled(problem *g, double omega, const double *wide, const dou
                          double *away) {
   mhb_newton *newton;
   int         iterations;
-  assert_ok(mhb_newton_create(HIGH, &newton));
+  newton = mhb_newton_create(HIGH);
   for (int i = 0; i < HIGH; i++) away[i] = wide[i] + step[i];
   const mhb_reason reason =
       mhb_newton_solve(newton, g->truncation->doubled, omega, 1e-11, away, &iterations);

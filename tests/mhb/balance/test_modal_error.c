@@ -36,7 +36,7 @@ typedef struct {
 static void balance_create(const modal_model *model, const mhb_settings *s, balance *b) {
   assert_int_equal(mhb_balance_create(model, s, &b->residual), SHB_OK);
   mhb_balance_set_preload(b->residual, s->n0[0]);
-  assert_int_equal(mhb_newton_create(b->residual->n, &b->newton), SHB_OK);
+  b->newton = mhb_newton_create(b->residual->n);
   assert_int_equal(mhb_truncation_create(b->residual, &b->truncation), SHB_OK);
   b->x = calloc((size_t)b->residual->n, sizeof *b->x);
 }

@@ -15,7 +15,7 @@ static void create(problem *p, double n0) {
   random_model(2, WITH_LEFT | WITH_RESIDUAL, 5, &p->model);
   p->settings = random_settings(5);
   assert_ok(mhb_balance_create(&p->model, &p->settings, &p->balance));
-  assert_ok(mhb_newton_create(p->balance->n, &p->newton));
+  p->newton = mhb_newton_create(p->balance->n);
   mhb_balance_set_preload(p->balance, n0);
 }
 
@@ -81,11 +81,11 @@ static void binds(void **state) {
   problem p, q;
   create(&p, 0.4);
   create(&q, 0.4);
-  assert_ok(mhb_newton_bind(p.newton, p.balance));
+  mhb_newton_bind(p.newton, p.balance);
   const mhb_condensation *first = p.newton->system;
-  assert_ok(mhb_newton_bind(p.newton, p.balance));
+  mhb_newton_bind(p.newton, p.balance);
   assert_ptr_equal(p.newton->system, first);
-  assert_ok(mhb_newton_bind(p.newton, q.balance));
+  mhb_newton_bind(p.newton, q.balance);
   assert_ptr_equal(p.newton->system->balance, q.balance);
   destroy(&q);
   destroy(&p);

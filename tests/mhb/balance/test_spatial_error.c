@@ -35,8 +35,8 @@ static void solve(solved *s) {
   if (mhb_balance_create(&s->model, &s->settings, &s->balance) != SHB_OK)
     fail_msg("%s", shb_message());
   mhb_balance_set_preload(s->balance, s->settings.n0[0]);
-  assert_int_equal(mhb_newton_create(s->balance->n, &s->newton), SHB_OK);
-  s->x = calloc((size_t)s->balance->n, sizeof *s->x);
+  s->newton = mhb_newton_create(s->balance->n);
+  s->x      = calloc((size_t)s->balance->n, sizeof *s->x);
   assert_int_equal(mhb_first_solution(s->newton, s->balance, s->omega, 1e-12, s->x, &iterations),
                    MHB_CONVERGED);
 }
@@ -49,7 +49,7 @@ static void open_face(solved *s) {
 static void open_patches(const modal_model *all, int patches, solved *s) {
   *s = (solved){.settings = shroud_face_settings(HARMONICS), .omega = SHB_TWO_PI * HERTZ};
   assert_int_equal(modal_joining_create(all, patches, &s->joining), SHB_OK);
-  assert_int_equal(modal_join(all, &s->joining, &s->model), SHB_OK);
+  modal_join(all, &s->joining, &s->model);
   s->pairs                = (mhb_other_pairs){.model = all, .joining = &s->joining, .finer = true};
   s->settings.other_pairs = &s->pairs;
 }

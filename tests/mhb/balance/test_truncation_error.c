@@ -37,7 +37,7 @@ typedef struct {
 static void workspace_create(const modal_model *model, const mhb_settings *s, workspace *out) {
   assert_int_equal(mhb_balance_create(model, s, &out->residual), SHB_OK);
   mhb_balance_set_preload(out->residual, s->n0[0]);
-  assert_int_equal(mhb_newton_create(out->residual->n, &out->newton), SHB_OK);
+  out->newton = mhb_newton_create(out->residual->n);
   assert_int_equal(mhb_truncation_create(out->residual, &out->truncation), SHB_OK);
 }
 

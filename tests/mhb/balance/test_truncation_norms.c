@@ -51,7 +51,7 @@ static void solution_create(const modal_model *model, const mhb_settings *s, dou
   *out                    = (solution){.settings = *s, .omega = omega};
   out->settings.harmonics = m;
   assert_ok(mhb_balance_create(model, &out->settings, &out->b));
-  assert_ok(mhb_newton_create(out->b->n, &out->newton));
+  out->newton = mhb_newton_create(out->b->n);
   assert_ok(mhb_truncation_create(out->b, &out->truncation));
   out->x = calloc((size_t)out->b->n, sizeof(double));
   assert_non_null(out->x);
@@ -171,9 +171,36 @@ static void separation(void **state) {
   check(SEPARATING);
 }
 
+/* At a resonance without damping the step to the solution may be any number of times as long as the
+ * vibration. What is told is a number, as a file needs it, and rises with that ratio. */
+static void an_error_without_a_bound_is_a_number(void **state) {
+  (void)state;
+  enum { M = 3 };
+  modal_model  model;
+  mhb_settings s    = ground_settings(0, 0.8, 0.5, 0, 1);
+  double       last = 0;
+  three_degree_model(&model);
+  memset(model.damping_ratio, 0, sizeof(double) * (size_t)model.n_modes);
+  for (int power = 0; power <= 150; power += 15) {
+    const double omega = SHB_TWO_PI * model.frequency[0] / (M + 1), size = pow(10, -power);
+    solution     at;
+    solution_create(&model, &s, omega, M, &at);
+    at.x[1] = size; /* a contact without preload opens for half of the period */
+    mhb_balance_linearise(at.b, at.x, omega, at.newton->r, NULL);
+    const double told = mhb_truncation_error(at.truncation, at.x), most = at.truncation->largest;
+    print_message("vibration %.0e: %.1e, largest %.1e\n", size, told, most);
+    assert_true(isfinite(told) && isfinite(most) && told <= 1e30 && most <= 1e30);
+    assert_true(told >= last);
+    last = told;
+    solution_destroy(&at);
+  }
+  assert_true(last == 1e30);
+  modal_model_free(&model);
+}
+
 int main(void) {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(soft_friction),
-                                     cmocka_unit_test(nearly_rigid_friction),
-                                     cmocka_unit_test(separation)};
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(soft_friction), cmocka_unit_test(nearly_rigid_friction),
+      cmocka_unit_test(separation), cmocka_unit_test(an_error_without_a_bound_is_a_number)};
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -93,7 +93,7 @@ static run_up on_disc(const mesh_fe *mesh, const modal_settings *settings) {
         (modal_model){0};
   assert_ok(mhb_disc_table_create(&taken, "disc", ORDER, r.settings.frequency, &r.disc));
   assert_ok(mhb_disc_table_check(r.disc, "disc"));
-  assert_ok(mhb_disc_speeds_create(r.disc, &r.top));
+  r.top = mhb_disc_speeds_create(r.disc);
   mhb_disc_speeds_set_all(r.top);
   r.settings.run_up          = r.disc->table[0];
   r.settings.disc_run_up     = r.disc;

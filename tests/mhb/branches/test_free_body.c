@@ -167,8 +167,8 @@ static void it_is_integrated_by_the_fast_ring(void **state) {
     s.blades       = N;
     s.frequency[0] = s.frequency[1] = 1.3 / SHB_TWO_PI;
     assert_ok(mhb_ring_model_create(&model, &s, 0.3, 1.3, &m));
-    assert_ok(mhb_ring_model_set(m, 1.3, 256));
-    assert_ok(mhb_ring_create(m, &ring));
+    mhb_ring_model_set(m, 1.3, 256);
+    mhb_ring_create(m, &ring);
     n = m->modes * m->lanes;
     assert_true(n <= MOST);
     mhb_ring_start(&ring, 0, none);

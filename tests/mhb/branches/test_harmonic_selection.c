@@ -86,7 +86,7 @@ static truth compare(const modal_model *model, mhb_settings s, const mhb_respons
   s.harmonics           = m;
   assert_int_equal(mhb_balance_create(model, &s, &residual), SHB_OK);
   mhb_balance_set_preload(residual, s.n0[0]);
-  assert_int_equal(mhb_newton_create(residual->n, &newton), SHB_OK);
+  newton = mhb_newton_create(residual->n);
   for (int p = 0; p < b->n_points; p++) {
     memset(x, 0, sizeof x);
     for (int c = 0; c < 3; c++)
@@ -317,6 +317,29 @@ static void more_than_31_harmonics_are_taken_where_they_suffice(void **state) {
   modal_model_free(&model);
 }
 
+/* Another attempt at a curve has no more than the usual harmonics, whatever a point asked for. */
+static void another_attempt_has_usual_harmonics(void **state) {
+  (void)state;
+  modal_model          model;
+  mhb_balance         *b;
+  mhb_harmonic_levels *levels;
+  three_degree_model(&model);
+  mhb_settings s     = ground_settings(0.4, 0.8, 0.5, 0.1, 1);
+  s.motion_tolerance = 1e-3;
+  assert_ok(mhb_balance_create(&model, &s, &b));
+  assert_ok(mhb_harmonic_levels_create(b, &levels));
+  assert_true(levels->m[levels->n - 1] > MHB_USUAL_HARMONICS);
+  for (levels->wanted = 0; levels->wanted < levels->n; levels->wanted++) {
+    const int m      = levels->m[levels->wanted];
+    const int needed = levels->m[mhb_harmonic_levels_needed(levels)];
+    assert_int_equal(needed, m < MHB_USUAL_HARMONICS ? m : MHB_USUAL_HARMONICS);
+  }
+  levels->wanted = 0;
+  mhb_harmonic_levels_destroy(levels);
+  mhb_balance_destroy(b);
+  modal_model_free(&model);
+}
+
 static void ladders(void **state) {
   (void)state;
   static const struct {
@@ -349,6 +372,7 @@ static void ladders(void **state) {
 
 int main(int argc, char **argv) {
   const struct CMUnitTest tests[] = {
+      cmocka_unit_test(another_attempt_has_usual_harmonics),
       cmocka_unit_test(ladders),
       cmocka_unit_test(more_than_31_harmonics_are_taken_where_they_suffice),
       cmocka_unit_test(what_no_level_keeps_is_marked),

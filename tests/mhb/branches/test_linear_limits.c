@@ -24,7 +24,7 @@ static void limit(const modal_model *model, mhb_settings *s, bool stuck, double 
   assert_ok(mhb_balance_create(model, s, &balance));
   *out = mhb_response_create(model->n_pairs, model->n_probes, s->harmonics);
   assert_non_null(*out);
-  assert_ok(mhb_response_branch(*out, stuck ? MHB_BRANCH_STUCK : MHB_BRANCH_OPEN, &index));
+  index = mhb_response_branch(*out, stuck ? MHB_BRANCH_STUCK : MHB_BRANCH_OPEN);
   assert_ok(mhb_linear_limits(balance, *out, index));
   mhb_balance_destroy(balance);
 }

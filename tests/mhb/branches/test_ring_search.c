@@ -138,7 +138,7 @@ static void a_localised_motion_lasts(const problem *g, const mhb_response *r) {
       mhb_integration_sweep(&g->dense, &g->of_dense, &asked, r, NULL, NULL, NULL, &integrated));
   assert_ok(mhb_balance_create(&g->ring->whole, &fine, &b));
   mhb_balance_set_preload(b, fine.n0[0]);
-  assert_ok(mhb_newton_create(b->n, &newton));
+  newton                       = mhb_newton_create(b->n);
   const mhb_branch *end_states = &integrated->branch[0];
   for (int p = 0; p < end_states->n_points; p++) {
     int iterations;
@@ -208,7 +208,7 @@ static void a_turned_motion_counts_once(void **state) {
   mhb_response *r            = sweep(&g);
   assert_ok(mhb_balance_create(&g.ring->whole, &g.settings, &b));
   mhb_balance_set_preload(b, g.settings.n0[0]);
-  assert_ok(mhb_newton_create(b->n, &newton));
+  newton    = mhb_newton_create(b->n);
   int found = 0;
   for (int i = 2; i < r->n_branches; i++) {
     const mhb_branch *c = &r->branch[i];
@@ -226,7 +226,7 @@ static void a_turned_motion_counts_once(void **state) {
     const double omega = SHB_TWO_PI * c->frequency[p];
     assert_int_equal(mhb_newton_solve(newton, b, omega, 1e-10, x, &iterations), MHB_CONVERGED);
     set.n_solutions = 0;
-    assert_ok(mhb_solution_set_add_copies(&set, b, x));
+    mhb_solution_set_add_copies(&set, b, x);
     assert_true(set.n_solutions > 1 && N % set.n_solutions == 0); /* 3: it repeats half way round */
     for (int j = 0; j < set.n_solutions; j++) { /* each of its copies is a solution */
       double r_of[b->n];

@@ -41,7 +41,7 @@ static void on_line(step *s, int n_tests, mhb_event_test *test) {
   s->curve->current.x[0] = 2;
   scalar_step(s->curve, 2, 0, 2.3, 0.3);
   mhb_events_begin(s->curve, n_tests, test);
-  assert_ok(mhb_events_locate(s->curve, n_tests, test, &s->events, &s->end));
+  mhb_events_locate(s->curve, n_tests, test, &s->events, &s->end);
 }
 
 static void finish(step *s) {
@@ -142,7 +142,7 @@ static void a_fold_wins_among_coincident_events(void **state) {
     curve->current.x[0] = 3;
     scalar_step(curve, 3 + sin(0.2), cos(0.2), 3 - sin(0.1), cos(0.1));
     mhb_events_begin(curve, 2, test);
-    assert_ok(mhb_events_locate(curve, 2, test, &events, &end));
+    mhb_events_locate(curve, 2, test, &events, &end);
     assert_int_equal(events.n, 1);
     assert_near(events.event[0].point->value, 1, 1e-10);
     mhb_events_destroy(&events);
@@ -194,11 +194,11 @@ static void a_fold_that_cannot_be_located_is_told(void **state) {
   scalar_step(curve, 3 + sin(0.2), cos(0.2), 3 - sin(0.1), cos(0.1));
   mhb_events_begin(curve, 1, test);
   solve_nothing = true;
-  assert_ok(mhb_events_locate(curve, 1, test, &events, &end));
+  mhb_events_locate(curve, 1, test, &events, &end);
   solve_nothing = false;
   assert_int_equal(events.n, 0);
   assert_true(events.fold_not_located);
-  assert_ok(mhb_events_locate(curve, 1, test, &events, &end));
+  mhb_events_locate(curve, 1, test, &events, &end);
   assert_int_equal(events.n, 1);
   assert_false(events.fold_not_located);
   mhb_events_destroy(&events);
@@ -245,27 +245,6 @@ static void values_move_on_with_the_step(void **state) {
   finish(&s);
 }
 
-static shb_status no_evaluation(mhb_curve_system *system, mhb_evaluation **evaluation) {
-  (void)system;
-  (void)evaluation;
-  SHB_FAIL(SHB_ERR_IO, "no room for an evaluation");
-}
-
-static void without_memory_the_location_fails(void **state) {
-  (void)state;
-  mhb_event_test test[] = {{.g = rising, .context = &at_1}};
-  mhb_events     events = {0};
-  mhb_end        end;
-  mhb_arclength *curve = scalar_curve(scalar_line, -1, 1);
-  curve->current.x[0]  = 2;
-  scalar_step(curve, 2, 0, 2.3, 0.3);
-  mhb_events_begin(curve, 1, test);
-  curve->system->evaluation_create = no_evaluation;
-  assert_refused(mhb_events_locate(curve, 1, test, &events, &end), SHB_ERR_IO, "no room");
-  mhb_events_destroy(&events);
-  mhb_arclength_destroy(curve);
-}
-
 static void every_end_has_a_text_of_its_own(void **state) {
   (void)state;
   for (int i = 0; i < MHB_N_ENDS; i++) {
@@ -286,7 +265,6 @@ int main(void) {
                                      cmocka_unit_test(a_fold_that_cannot_be_located_is_told),
                                      cmocka_unit_test(a_missed_pair_of_folds_is_seen),
                                      cmocka_unit_test(values_move_on_with_the_step),
-                                     cmocka_unit_test(without_memory_the_location_fails),
                                      cmocka_unit_test(every_end_has_a_text_of_its_own)};
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

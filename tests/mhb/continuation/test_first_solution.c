@@ -14,6 +14,10 @@ static double relative_residual(mhb_balance *b, const double *x, double value) {
   return mhb_norm(r, b->n) / mhb_norm(x, b->n);
 }
 
+static void assert_solves(mhb_balance *b, const double *x, double value) {
+  assert_below(relative_residual(b, x, value), 1e-9);
+}
+
 /* From open to stuck, through the resonances. */
 static void there_is_one_at_every_preload(void **state) {
   (void)state;
@@ -26,7 +30,7 @@ static void there_is_one_at_every_preload(void **state) {
   double              worst = 0;
   three_degree_model(&model);
   assert_ok(mhb_balance_create(&model, &s, &b));
-  assert_ok(mhb_newton_create(b->n, &newton));
+  newton = mhb_newton_create(b->n);
   double x[b->n];
   for (int i = 0; i < 6; i++)
     for (int w = 0; w < 5; w++) {
@@ -59,7 +63,7 @@ static void the_parameter_stands(void **state) {
     mhb_newton  *newton;
     int          iterations;
     assert_ok(mhb_balance_create(&model, &s, &b));
-    assert_ok(mhb_newton_create(b->n, &newton));
+    newton = mhb_newton_create(b->n);
     double x[b->n];
     mhb_balance_set_value(b, 1.3);
     mhb_balance_set_parameter(b, row[i].parameter);
@@ -86,7 +90,7 @@ static void a_failure_leaves_the_balance_as_it_was(void **state) {
   int          iterations;
   one_degree_model(0.02, 1, 0.1, &model);
   assert_ok(mhb_balance_create(&model, &s, &b));
-  assert_ok(mhb_newton_create(b->n, &newton));
+  newton = mhb_newton_create(b->n);
   double x[b->n];
   mhb_balance_set_preload(b, 0.05);
   mhb_balance_set_value(b, 1.2);
@@ -120,20 +124,19 @@ static bool count(void *context) {
 /* Friction 400 to 40,000 times as stiff as the blade. From the limits Newton's method fails at some
  * frequencies, and fewer harmonics or a softer contact lead on. A search takes no more than its
  * share of work, and is told of all along. */
-static void nearly_rigid_friction_has_one_or_an_end(void **state) {
+static void nearly_rigid_friction_has_one(void **state) {
   (void)state;
   static const double ku[] = {400, 4000, 40000};
-  enum { FREQUENCIES = 6, MOST = 2400 };
+  enum { FREQUENCIES = 6, MOST = 700 };
   modal_model model;
   long        dearest = 0;
-  int         found = 0, given_up = 0;
   one_degree_model(0.01, 1, 0.05, &model);
   for (int i = 0; i < 3; i++) {
     mhb_settings s = ground_settings(0.3, 1, ku[i], 0.1, 31);
     mhb_balance *b;
     mhb_newton  *newton;
     assert_ok(mhb_balance_create(&model, &s, &b));
-    assert_ok(mhb_newton_create(b->n, &newton));
+    newton = mhb_newton_create(b->n);
     double x[b->n];
     for (int w = 0; w < FREQUENCIES; w++) {
       counter    told   = {0};
@@ -145,16 +148,13 @@ static void nearly_rigid_friction_has_one_or_an_end(void **state) {
           mhb_first_solution_watched(newton, b, omega, 1e-10, &watch, x, &iterations);
       dearest = b->n_linearised - before > dearest ? b->n_linearised - before : dearest;
       assert_true(told.calls > 0);
-      assert_true(reason == MHB_CONVERGED || b->n_linearised - before <= MOST);
-      if (reason == MHB_CONVERGED) assert_below(relative_residual(b, x, omega), 1e-9);
-      *(reason == MHB_CONVERGED ? &found : &given_up) += 1;
+      assert_int_equal(reason, MHB_CONVERGED);
+      assert_solves(b, x, omega);
     }
     mhb_newton_destroy(newton);
     mhb_balance_destroy(b);
   }
-  print_message("%d of %d found, the dearest search took %ld linearisations\n", found,
-                found + given_up, dearest);
-  assert_true(found >= 17);
+  print_message("the dearest search took %ld linearisations\n", dearest);
   assert_below((double)dearest, MOST);
   modal_model_free(&model);
 }
@@ -171,7 +171,7 @@ static void a_watch_stops_it(void **state) {
   int          iterations;
   one_degree_model(0.02, 1, 0.1, &model);
   assert_ok(mhb_balance_create(&model, &s, &b));
-  assert_ok(mhb_newton_create(b->n, &newton));
+  newton = mhb_newton_create(b->n);
   double x[b->n];
   assert_int_equal(mhb_first_solution_watched(newton, b, 1.2, -1, &watch, x, &iterations),
                    MHB_GIVEN_UP);
@@ -193,7 +193,7 @@ static void a_search_is_told_of_all_along(void **state) {
   int          iterations;
   one_degree_model(0.01, 1, 0.05, &model);
   assert_ok(mhb_balance_create(&model, &s, &b));
-  assert_ok(mhb_newton_create(b->n, &newton));
+  newton = mhb_newton_create(b->n);
   double    x[b->n];
   counter   told    = {.balance = b, .seen = b->n_linearised};
   mhb_watch watch   = {.go_on = count, .context = &told, .share = 0.5};
@@ -221,30 +221,26 @@ static void many_harmonics_have_one_from_fewer(void **state) {
   enum { FREQUENCIES = 4 };
   modal_model model;
   long        dearest = 0;
-  int         found = 0, all = 0;
   one_degree_model(0.01, 1, 0.05, &model);
   for (int i = 0; i < 3; i++) {
     mhb_settings s = ground_settings(0.3, 0, 40000, 0.15, harmonics[i]);
     mhb_balance *b;
     mhb_newton  *newton;
     assert_ok(mhb_balance_create(&model, &s, &b));
-    assert_ok(mhb_newton_create(b->n, &newton));
+    newton = mhb_newton_create(b->n);
     double x[b->n];
-    for (int w = 0; w < FREQUENCIES; w++, all++) {
+    for (int w = 0; w < FREQUENCIES; w++) {
       const long   before = b->n_linearised;
       const double omega  = omegas[w];
       int          iterations;
-      if (mhb_first_solution(newton, b, omega, 1e-10, x, &iterations) == MHB_CONVERGED) {
-        assert_below(relative_residual(b, x, omega), 1e-9);
-        found++;
-      }
+      assert_int_equal(mhb_first_solution(newton, b, omega, 1e-10, x, &iterations), MHB_CONVERGED);
+      assert_solves(b, x, omega);
       dearest = b->n_linearised - before > dearest ? b->n_linearised - before : dearest;
     }
     mhb_newton_destroy(newton);
     mhb_balance_destroy(b);
   }
-  print_message("%d of %d found, the dearest took %ld linearisations\n", found, all, dearest);
-  assert_true(found >= all - 1);
+  print_message("the dearest took %ld linearisations\n", dearest);
   assert_true(dearest > 150); /* Newton's method alone does not do */
   assert_below((double)dearest, 1000);
   modal_model_free(&model);
@@ -277,7 +273,7 @@ static void the_curve_passes_the_kinks_of_many_pairs(void **state) {
   s.n0[0] = 20;
   shroud_face_model(20, 150, &model);
   assert_ok(mhb_balance_create(&model, &s, &b));
-  assert_ok(mhb_newton_create(b->n, &newton));
+  newton = mhb_newton_create(b->n);
   double x[b->n];
   mhb_balance_set_preload(b, s.n0[0]);
   n_started = 0;
@@ -294,7 +290,7 @@ int main(void) {
   const struct CMUnitTest tests[] = {cmocka_unit_test(there_is_one_at_every_preload),
                                      cmocka_unit_test(the_curve_passes_the_kinks_of_many_pairs),
                                      cmocka_unit_test(the_parameter_stands),
-                                     cmocka_unit_test(nearly_rigid_friction_has_one_or_an_end),
+                                     cmocka_unit_test(nearly_rigid_friction_has_one),
                                      cmocka_unit_test(many_harmonics_have_one_from_fewer),
                                      cmocka_unit_test(a_search_is_told_of_all_along),
                                      cmocka_unit_test(a_watch_stops_it),

@@ -126,7 +126,7 @@ static void places_are_those_of_both_limits(void **state) {
   double         b = 0.7, z2 = 0.003, p = 2, q = SECOND * SECOND + b * b;
   two_mode_model(SECOND, z2, b, 1, 0.02, &model);
   assert_int_equal(mhb_balance_create(&model, &s, &residual), SHB_OK);
-  assert_int_equal(mhb_resonances_create(residual, 0.25, 2, &all), SHB_OK);
+  mhb_resonances_create(residual, 0.25, 2, &all);
   for (int i = 0; i < 2; i++) {
     double square = 0.5 * (p + q) + (i ? 0.5 : -0.5) * sqrt((p - q) * (p - q) + 4 * b * b);
     double part   = b * b / (b * b + (square - p) * (square - p)); /* of the first mode */
@@ -139,7 +139,7 @@ static void places_are_those_of_both_limits(void **state) {
   for (int i = 1; i < all.n; i++) assert_true(all.at[i].value >= all.at[i - 1].value);
   mhb_resonances_destroy(&all);
   mhb_balance_set_parameter(residual, MHB_IN_N0);
-  assert_int_equal(mhb_resonances_create(residual, 0.25, 2, &all), SHB_OK);
+  mhb_resonances_create(residual, 0.25, 2, &all);
   assert_int_equal(all.n, 0);
   mhb_resonances_destroy(&all);
   mhb_balance_destroy(residual);
@@ -162,7 +162,7 @@ static void near_limits_leave_no_gap(void **state) {
     mhb_resonances all;
     two_mode_model(SECOND, 1e-3, contact, 1, 0.02, &model);
     assert_int_equal(mhb_balance_create(&model, &s, &residual), SHB_OK);
-    assert_int_equal(mhb_resonances_create(residual, 0.8, 2, &all), SHB_OK);
+    mhb_resonances_create(residual, 0.8, 2, &all);
     double half = 1e-3 * SECOND, last = SECOND,
            gap = upper(2, SECOND * SECOND + contact * contact, contact) - SECOND;
     for (int i = 0; i < all.n && gap < 31 * half; i++) {
@@ -294,7 +294,7 @@ static void jumps_are_located(void **state) {
   one_degree_model(0.01, 1, 0.05, &model);
   assert_int_equal(mhb_balance_create(&model, &s, &residual), SHB_OK);
   mhb_balance_set_preload(residual, 0.1);
-  assert_int_equal(mhb_balance_curve_create(residual, 0.8, 2, &path), SHB_OK);
+  path = mhb_balance_curve_create(residual, 0.8, 2);
   cold_solution(&model, &s, 1.6, 1e-10, x);
   assert_int_equal(mhb_arclength_start(path, x, 1.6, 1), MHB_CONVERGED);
   for (int i = 0; i < 6; i++) {

@@ -59,7 +59,7 @@ static fixture begin(void) {
 static void make(fixture *f) {
   assert_int_equal(mhb_balance_create(&f->model, &f->settings, &f->residual), SHB_OK);
   mhb_balance_set_preload(f->residual, 0.3);
-  assert_int_equal(mhb_newton_create(N, &f->newton), SHB_OK);
+  f->newton = mhb_newton_create(N);
 }
 
 static void end(fixture *f) {

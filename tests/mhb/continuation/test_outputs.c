@@ -24,7 +24,7 @@ static void set_up(fixture *f, mhb_parameter parameter, double n0) {
   mhb_balance_set_preload(f->balance, n0);
   mhb_balance_set_value(f->balance, 1.2);
   mhb_balance_set_parameter(f->balance, parameter);
-  assert_ok(mhb_balance_curve_create(f->balance, 0.1, 2, &f->curve));
+  f->curve = mhb_balance_curve_create(f->balance, 0.1, 2);
 }
 
 static void tear_down(fixture *f) {

@@ -28,7 +28,7 @@ static void set_up(fixture *f, double contact, double probe, double force, doubl
   f->resonances = (mhb_resonances){.at = &f->second, .n = 1, .capacity = 1};
   assert_ok(mhb_balance_create(&f->model, &f->settings, &f->balance));
   mhb_balance_set_preload(f->balance, 0.05);
-  assert_ok(mhb_balance_curve_create(f->balance, 0.3, 3, &f->curve));
+  f->curve = mhb_balance_curve_create(f->balance, 0.3, 3);
   double x[f->curve->n];
   assert_true(f->curve->system->start_of_newton(f->curve->system, to, 1, x));
   assert_int_equal(mhb_arclength_start(f->curve, x, to, 1), MHB_CONVERGED);

@@ -46,7 +46,8 @@ static shb_status started(mhb_segment_host *host, const mhb_seed *seed, mhb_end 
   (void)seed;
   (void)end;
   t->back = (mhb_curve_return){&t->start, 0};
-  return mhb_curve_place_note(&t->start, host->curve->system, &host->curve->current, 1e-6);
+  mhb_curve_place_note(&t->start, host->curve->system, &host->curve->current, 1e-6);
+  return SHB_OK;
 }
 
 static shb_status record(mhb_segment_host *host, mhb_curve_point *point, int special, bool *go_on) {

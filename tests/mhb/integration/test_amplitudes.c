@@ -147,7 +147,7 @@ static comparison compare(const modal_model *model, const mhb_settings *s, doubl
   double complex *force = calloc((size_t)(n * (m + 1)), sizeof *force);
   for (int k = 0; k <= m; k++) mhb_balance_contact_force(p.residual, k, force + k * n);
   assert_ok(mhb_integrator_create(model, s, m, &g));
-  assert_ok(mhb_steady_state_create(g, &orbit));
+  orbit = mhb_steady_state_create(g);
   mhb_integrator_set(g, omega, s->n0[0], steps);
   mhb_integrator_balance(g, m, force);
   const mhb_steady_state_result *r = mhb_steady_state_run(orbit, &settings, NULL, NULL);

@@ -104,6 +104,7 @@ static void on_the_balance(void **state) {
         assert_true(b->multiple[p] == 1 && b->stable[p] == 1 && b->periods[p] > 1);
         assert_true(b->error_sampling[p] >= 0 && b->error_sampling[p] < 1e-6);
         assert_true(b->distance[p] < 1e-6);
+        assert_int_equal(b->mark[p], 0); /* a pair that sticks alone loads no other */
         worst = fmax(worst, off_balance(&model, &s, b, p));
       }
     }

@@ -72,7 +72,7 @@ static void ends_on_the_balance(void **state) {
   assert_ok(mhb_integration_sweep(&dense, &of_dense, &asked, NULL, NULL, NULL, NULL, &response));
   assert_ok(mhb_balance_create(&ring->whole, &s, &b));
   mhb_balance_set_preload(b, s.n0[0]);
-  assert_ok(mhb_newton_create(b->n, &newton));
+  newton                   = mhb_newton_create(b->n);
   const mhb_branch *branch = &response->branch[0];
   assert_int_equal(branch->n_points, 2);
   for (int p = 0; p < branch->n_points; p++) {

@@ -19,7 +19,7 @@ static void tones_on_bins(void **state) {
   add_tone(40 / DURATION, 0.3, x);
   add_tone(101 / DURATION, 1.7, x);
   add_tone(210 / DURATION, 0.9, x); /* above the highest bin */
-  assert_int_equal(mhb_spectrum_lines(N, x, DURATION, 200, hz, amplitude), 1);
+  mhb_spectrum_lines(N, x, DURATION, 200, hz, amplitude);
   assert_near(hz[0], 101 / DURATION, 1e-9);
   assert_near(amplitude[0], 1.7, 1e-12);
   assert_near(hz[1], 40 / DURATION, 1e-9);
@@ -34,7 +34,7 @@ static void tone_between_bins(void **state) {
     double x[N] = {0}, hz[MHB_SPECTRUM_LINES], amplitude[MHB_SPECTRUM_LINES];
     double bin  = 57 + 0.1 * k;
     add_tone(bin / DURATION, 0.8, x);
-    assert_int_equal(mhb_spectrum_lines(N, x, DURATION, 200, hz, amplitude), 1);
+    mhb_spectrum_lines(N, x, DURATION, 200, hz, amplitude);
     assert_near(hz[0] * DURATION, bin, 0.01);
     assert_true(amplitude[0] > 0.84 * 0.8 && amplitude[0] <= 0.8 * (1 + 1e-6));
   }
@@ -45,7 +45,7 @@ static void largest_are_kept(void **state) {
   (void)state;
   double x[N] = {0}, hz[MHB_SPECTRUM_LINES], amplitude[MHB_SPECTRUM_LINES];
   for (int k = 0; k < 12; k++) add_tone((30 + 20 * k) / DURATION, 1 + 0.1 * ((5 * k) % 12), x);
-  assert_int_equal(mhb_spectrum_lines(N, x, DURATION, N / 2 - 1, hz, amplitude), 1);
+  mhb_spectrum_lines(N, x, DURATION, N / 2 - 1, hz, amplitude);
   for (int i = 0; i < MHB_SPECTRUM_LINES; i++) assert_near(amplitude[i], 2.1 - 0.1 * i, 1e-11);
 }
 

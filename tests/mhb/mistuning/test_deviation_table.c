@@ -66,13 +66,41 @@ static void frequencies_are_over_their_mean(void **state) {
         true, 0);
 }
 
-/* Two blades, three modes. */
-static void refuses(const char *text, bool hz, const char *says) {
-  const mhb_deviation_table table = {written(text), hz, 0, 2, 3};
+/* Numbers of blades count from 0 or 1, whatever their column is called. */
+static void a_column_that_counts_numbers_the_blades(void **state) {
+  (void)state;
+  static const double d[] = {0.01, -0.02, 0.03};
+  gives(&(form){"Schaufel;d\n1;0.01\n2;-0.02\n3;0.03\n", 3, 0, 1, {d[0], d[1], d[2]}}, false, 0);
+  gives(&(form){"0,0.01\n1,-0.02\n2,0.03\n", 3, 0, 1, {d[0], d[1], d[2]}}, false, 0);
+}
+
+/* Two blades, three modes; or three blades, modes not known. */
+static void refuses_of(const char *text, bool hz, int blades, int modes, const char *says) {
+  const mhb_deviation_table table = {written(text), hz, 0, blades, modes};
   double                   *x;
   int                       columns;
   assert_int_equal(mhb_deviation_table_read(&table, &columns, &x), SHB_ERR_INPUT);
   assert_string_equal(strstr(shb_message(), "d.csv") + 5, says);
+}
+
+static void refuses(const char *text, bool hz, const char *says) {
+  refuses_of(text, hz, 2, 3, says);
+}
+
+/* Decimal commas make whole numbers, two by two. An error of a spreadsheet is no comment, and nan
+ * no name of a column. */
+static void what_a_spreadsheet_leaves_is_told(void **state) {
+  (void)state;
+  refuses_of("0,1\n-0,1\n0,5\n", false, 3, 0,
+             ":3:3: a deviation of 5 (500 %) must be above -50 % and at most 100 %; decimals have "
+             "a point");
+  refuses_of("115,83\n117,4\n116,51\n", true, 3, 0,
+             ":2:5: a deviation of -0.913043 (-91.3043 %) must be above -50 % and at most 100 %; "
+             "decimals have a point");
+  refuses_of("#N/A\n0.01\n0.02\n", false, 3, 0,
+             ":1:1: '#N/A' is not a number; expected a deviation such as 0.01 or 1 %");
+  refuses_of("nan\n0.01\n0.02\n", false, 3, 0,
+             ":1:1: 'nan' is not a number; expected a deviation such as 0.01 or 1 %");
 }
 
 static void faults_have_their_place(void **state) {
@@ -132,6 +160,8 @@ static void faults_have_their_place(void **state) {
 int main(void) {
   const struct CMUnitTest tests[] = {cmocka_unit_test(usual_forms_are_read),
                                      cmocka_unit_test(frequencies_are_over_their_mean),
-                                     cmocka_unit_test(faults_have_their_place)};
+                                     cmocka_unit_test(a_column_that_counts_numbers_the_blades),
+                                     cmocka_unit_test(faults_have_their_place),
+                                     cmocka_unit_test(what_a_spreadsheet_leaves_is_told)};
   return cmocka_run_group_tests(tests, scratch_make, scratch_remove);
 }

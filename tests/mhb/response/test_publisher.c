@@ -8,6 +8,10 @@ static void due(void **state) {
   mhb_publisher_start(&p, "never_written.h5", NULL);
   assert_false(mhb_publisher_is_due(&p, 1000));
   assert_true(mhb_publisher_is_due(&p, -1));
+  assert_near(mhb_publisher_pause(&p, 10), 10, 1e-15);
+  p.cost = 5; /* a large file is written less often */
+  assert_near(mhb_publisher_pause(&p, 10), 100, 1e-15);
+  assert_false(mhb_publisher_is_due(&p, -1));
   mhb_publisher_stop(&p);
   mhb_publisher_start(&p, NULL, NULL);
   assert_false(mhb_publisher_is_due(&p, -1));

@@ -63,9 +63,9 @@ static double side_waves(const modal_model *model, const mhb_settings *s, double
   double          sum = 0;
   memset(square, 0, sizeof *square * BLADES);
   assert_ok(mhb_ring_model_create(model, s, s->n0[0], omega, &m));
-  assert_ok(mhb_ring_model_set(m, omega, STEPS));
-  assert_ok(mhb_ring_create(m, &ring));
-  assert_ok(mhb_ring_output_create(&ring, &out));
+  mhb_ring_model_set(m, omega, STEPS);
+  mhb_ring_create(m, &ring);
+  mhb_ring_output_create(&ring, &out);
   mhb_ring_start(&ring, 0, none);
   mhb_ring_disturb(&ring, &out, 1e-3, &noise);
   for (int i = 0; i < BEFORE; i++) mhb_ring_period(&ring);

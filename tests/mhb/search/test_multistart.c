@@ -18,7 +18,7 @@ static void a_set_has_what_was_added(void **state) {
   for (int i = 0; i < COUNT; i++) {
     for (int k = 0; k < N; k++) x[i][k] = random_unit(&seed);
     assert_false(i > 0 && mhb_solution_set_has(&set, x[i]));
-    assert_ok(mhb_solution_set_add(&set, N, x[i]));
+    mhb_solution_set_add(&set, N, x[i]);
     for (int k = 0; k <= i; k++) assert_true(mhb_solution_set_has(&set, x[k]));
   }
   assert_int_equal(set.n_solutions, COUNT);
@@ -34,7 +34,7 @@ static void near_solutions_are_the_same(void **state) {
   mhb_solution_set set = {0};
   double           x[] = {3, 4}, zero[] = {0, 0};
   double           size[] = {0.9e-5, 1.1e-5};
-  assert_ok(mhb_solution_set_add(&set, 2, x));
+  mhb_solution_set_add(&set, 2, x);
   for (int i = 0; i < 2; i++) {
     double y[] = {3 * (1 + size[i]), 4 * (1 + size[i])};
     assert_true(mhb_solution_set_has(&set, y) == (i == 0));
@@ -59,16 +59,16 @@ static void a_motion_is_added_with_its_copies(void **state) {
   double x[b->n], later[b->n];
   for (int i = 0; i < b->n; i++) x[i] = random_unit(&seed);
   for (int again = 0; again < 2; again++) {
-    assert_ok(mhb_solution_set_add_copies(&set, b, x));
+    mhb_solution_set_add_copies(&set, b, x);
     assert_int_equal(set.n_solutions, 3);
   }
   mhb_subharmonic_shift(b, x, 2, later);
   assert_true(mhb_solution_set_has(&set, later));
-  assert_ok(mhb_solution_set_add_copies(&set, b, later));
+  mhb_solution_set_add_copies(&set, b, later);
   assert_int_equal(set.n_solutions, 3);
   for (int i = 0; i < b->n; i++)
     if (i % b->nb == 1 || i % b->nb == 2 || i % b->nb == 3 || i % b->nb == 4) x[i] = 0;
-  assert_ok(mhb_solution_set_add_copies(&set, b, x)); /* harmonics 0 and 3 alone */
+  mhb_solution_set_add_copies(&set, b, x); /* harmonics 0 and 3 alone */
   assert_int_equal(set.n_solutions, 4);
   mhb_solution_set_free(&set);
   mhb_balance_destroy(b);
@@ -88,7 +88,7 @@ static void set_up(fixture *f, double n0) {
   one_degree_model(0.02, 0, 0.1, &f->model);
   f->settings = ground_settings(0.3, 5, 1, n0, 3);
   assert_ok(mhb_balance_create(&f->model, &f->settings, &f->balance));
-  assert_ok(mhb_newton_create(f->balance->n, &f->newton));
+  f->newton = mhb_newton_create(f->balance->n);
   mhb_balance_set_preload(f->balance, n0);
 }
 
@@ -113,8 +113,7 @@ static void starts_lead_to_different_solutions(void **state) {
     for (int i = 0; i < 60; i++) {
       bool               is_new;
       unsigned long long before = seed;
-      assert_ok(mhb_multistart_once(f.newton, f.balance, 1.15, 0.5 * (1 + i % 4), &seed, &set, x,
-                                    &is_new));
+      mhb_multistart_once(f.newton, f.balance, 1.15, 0.5 * (1 + i % 4), &seed, &set, x, &is_new);
       assert_true(seed != before);
       if (!is_new) continue;
       n_new++;
@@ -142,7 +141,7 @@ static void a_linear_problem_has_one_solution(void **state) {
   unsigned long long seed = 1;
   for (int i = 0; i < 5; i++) {
     bool is_new;
-    assert_ok(mhb_multistart_once(f.newton, f.balance, 1.15, 1, &seed, &set, x, &is_new));
+    mhb_multistart_once(f.newton, f.balance, 1.15, 1, &seed, &set, x, &is_new);
     assert_true(is_new == (i == 0));
   }
   assert_int_equal(set.n_solutions, 1);
@@ -159,7 +158,7 @@ static void a_start_may_lead_nowhere(void **state) {
   double             x[f.balance->n];
   unsigned long long seed = 1;
   bool               is_new;
-  assert_ok(mhb_multistart_once(f.newton, f.balance, 1.15, INFINITY, &seed, &set, x, &is_new));
+  mhb_multistart_once(f.newton, f.balance, 1.15, INFINITY, &seed, &set, x, &is_new);
   assert_false(is_new);
   assert_int_equal(set.n_solutions, 0);
   mhb_solution_set_free(&set);

@@ -121,9 +121,9 @@ static void a_wave_is_its_own_copy(void **state) {
   mhb_ring_beside_wave(b, part, again);
   for (int i = 0; i < b->n; i++) again[i] -= part[i];
   assert_below(mhb_norm(again, b->n), 1e-14 * mhb_norm(x, b->n));
-  assert_ok(mhb_solution_set_add_copies(&set, b, wave));
+  mhb_solution_set_add_copies(&set, b, wave);
   assert_int_equal(set.n_solutions, 1);
-  assert_ok(mhb_solution_set_add_copies(&set, b, x));
+  mhb_solution_set_add_copies(&set, b, x);
   assert_int_equal(set.n_solutions, 1 + N);
   for (int j = 0; j < N; j++) {
     mhb_ring_rotate(b, x, j, again);

@@ -282,7 +282,7 @@ static void released_matrices_are_lent(void **state) {
     assert_ok(mhb_receptance_create(&model, &s, 4, &before));
     assert_ok(mhb_modal_structure_create(before, &s, 4, MHB_STRUCTURE_LEAN, &one));
     mhb_receptance_at(before, 1.07, 4);
-    assert_ok(modal_model_release_terms(&model, 0));
+    modal_model_release_terms(&model, 0);
     assert_null(model.residual_flexibility);
     assert_refused(mhb_receptance_create(&model, &s, 4, &after), SHB_ERR_INPUT, "released");
     s.alike = lender;

@@ -124,7 +124,7 @@ static mhb_disc_table *make_disc_run_up(int n, int terms, mhb_settings *s, mhb_d
       mhb_disc_table_create(&speeds, "disc.modal.h5", s->engine_order, s->frequency, &run_up));
   assert_ok(mhb_disc_table_check(run_up, "disc.modal.h5"));
   modal_sector_speeds_free(&speeds);
-  assert_ok(mhb_disc_speeds_create(run_up, top));
+  *top = mhb_disc_speeds_create(run_up);
   mhb_disc_speeds_set_all(*top);
   s->run_up          = run_up->table[0];
   s->disc_run_up     = run_up;

@@ -39,7 +39,7 @@ static void set_up(fixture *f) {
   assert_ok(mhb_balance_create(&f->model, &f->settings, &f->balance));
   f->response            = mhb_response_create(1, f->model.n_probes, H);
   f->response->parameter = MHB_IN_N0;
-  assert_ok(mhb_response_branch(f->response, MHB_BRANCH_TRACKED, &f->branch));
+  f->branch              = mhb_response_branch(f->response, MHB_BRANCH_TRACKED);
 }
 
 static void tear_down(fixture *f) {

@@ -67,7 +67,7 @@ static void set_up(fixture *f, double n0, mhb_parameter parameter, double omega)
   assert_ok(mhb_balance_create(&f->model, &f->settings, &f->balance));
   assert_int_equal(f->balance->n, N);
   mhb_balance_set_preload(f->balance, n0);
-  assert_ok(mhb_corner_create(f->balance, &f->tracking, &f->corner));
+  f->corner = mhb_corner_create(f->balance, &f->tracking);
   assert_ok(mhb_balance_linear_limit(f->balance, omega, 1, f->x));
 }
 

@@ -31,7 +31,7 @@ static void set_up(fixture *f, mhb_parameter parameter, double value) {
                                             .frequency  = {0.9, 1.8},
                                             .max_points = 200};
   assert_ok(mhb_balance_create(&f->model, &f->settings, &f->balance));
-  assert_ok(mhb_kink_create(f->balance, &f->tracking, &f->kink));
+  f->kink = mhb_kink_create(f->balance, &f->tracking);
 }
 
 static void tear_down(fixture *f) {
@@ -108,7 +108,7 @@ static void a_smooth_seed_starts_no_curve(void **state) {
     if (fold) f.tracking.kind = MHB_TRACK_FOLD;
     r            = mhb_response_create(1, f.model.n_probes, H);
     r->parameter = MHB_IN_N0;
-    assert_ok(mhb_response_branch(r, MHB_BRANCH_TRACKED, &branch));
+    branch       = mhb_response_branch(r, MHB_BRANCH_TRACKED);
     assert_ok(mhb_balance_linear_limit(f.balance, sqrt(1.5), 1, f.x));
     const mhb_tracking_seed seed = {.x = f.x, .omega = sqrt(1.5), .value = 50};
     assert_ok(mhb_trace_kink(f.balance, &f.tracking, &seed, r, branch, &found, &end));

@@ -68,7 +68,7 @@ static void follow(fixture *f, int mode) {
   mhb_balance_go_to(balance, MHB_IN_KU, middle);
   assert_ok(mhb_balance_linear_limit(balance, omega, 1, x));
   const mhb_tracking_seed seed = {.x = x, .omega = omega, .value = middle};
-  assert_ok(mhb_response_branch(f->response, MHB_BRANCH_TRACKED, &branch));
+  branch                       = mhb_response_branch(f->response, MHB_BRANCH_TRACKED);
   assert_ok(mhb_trace_corner(balance, &f->tracking, &seed, f->response, branch, &found, &end));
   assert_true(found);
   assert_int_equal(end.low, MHB_END_LOW);

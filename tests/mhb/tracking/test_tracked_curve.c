@@ -66,7 +66,7 @@ static void each_tracked_peak_is_that_of_a_sweep(void **state) {
   mhb_tracking_end  end;
   r            = mhb_response_create(1, model.n_probes, H);
   r->parameter = MHB_IN_N0;
-  assert_ok(mhb_response_branch(r, MHB_BRANCH_TRACKED, &branch));
+  branch       = mhb_response_branch(r, MHB_BRANCH_TRACKED);
   assert_ok(mhb_trace_tracked(b, &tracking, &seed, r, branch, &found, &end));
   const mhb_branch *t          = &r->branch[branch];
   int               iterations = 0;

@@ -198,7 +198,7 @@ static double off_closed_form(const modal_model *model, double w0, double g, dou
   mhb_integrator                 *integrator;
   mhb_steady_state               *steady;
   assert_ok(mhb_integrator_create(model, &settings, 1, &integrator));
-  assert_ok(mhb_steady_state_create(integrator, &steady));
+  steady = mhb_steady_state_create(integrator);
   mhb_integrator_set(integrator, omega, settings.n0[0], 64);
   mhb_integrator_rest(integrator);
   const mhb_steady_state_result *r = mhb_steady_state_run(steady, &until, NULL, NULL);

@@ -82,6 +82,23 @@ static void a_file_with_its_own_content_is_read(void **state) {
   assert_ok(h5_close(file));
 }
 
+/* HDF5 reads its fill value where nothing was written and where a view has no source. */
+static void fill_values_are_no_content(void **state) {
+  (void)state;
+  hid_t    file    = plain("never.h5");
+  h5_shape four_of = H5_SHAPE(4);
+  double  *x;
+  put(file, "deep/er", H5Pcreate(H5P_DATASET_CREATE));
+  assert_int_equal(h5_read_double(file, "/deep/er", &four_of, &x), SHB_ERR_INPUT);
+  assert_has(shb_message(), "/deep/er holds no values: it was never written");
+  H5Fclose(file);
+  virtual("view.h5", ".");
+  assert_ok(h5_open(scratch("view.h5"), &file));
+  assert_int_equal(h5_read_double(file, "/deep/er", &four_of, &x), SHB_ERR_INPUT);
+  assert_has(shb_message(), "/deep/er is a view of other datasets");
+  assert_ok(h5_close(file));
+}
+
 static void content_of_another_file_is_refused(void **state) {
   (void)state;
   spill(scratch("secret"), "what nobody else may read, 32 b", 32);
@@ -141,6 +158,7 @@ static void a_checksum_that_fits_does_not_help(void **state) {
 
 int main(void) {
   const struct CMUnitTest tests[] = {cmocka_unit_test(a_file_with_its_own_content_is_read),
+                                     cmocka_unit_test(fill_values_are_no_content),
                                      cmocka_unit_test(content_of_another_file_is_refused),
                                      cmocka_unit_test(a_pipe_behind_the_file_is_not_opened),
                                      cmocka_unit_test(a_checksum_that_fits_does_not_help)};

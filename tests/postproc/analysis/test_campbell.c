@@ -14,7 +14,7 @@ static double _Complex force[4 * MODES];
 /* Modes 2 and 3 cross: the file orders them by frequency, the tracks identify them. The load has
  * harmonics 1 and 3. */
 static void make(modal_speeds *s) {
-  assert_ok(modal_speeds_create(SPEEDS, MODES, s));
+  modal_speeds_create(SPEEDS, MODES, s);
   for (int t = 0; t < MODES; t++) force[MODES + t] = force[3 * MODES + t] = 1;
   for (int i = 0; i < SPEEDS; i++) {
     s->speed[i] = speeds[i];

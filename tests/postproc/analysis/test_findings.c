@@ -86,7 +86,7 @@ static void motions_not_followed_are_told(void **state) {
   assert_non_null(r);
   for (int i = 0; i < 2; i++) {
     mhb_search made = {.value = 1, .order = 1, .starts = 10, .found = 1 + i, .untraced = 2 * i};
-    assert_ok(mhb_response_note_search(&r->branch[2], &made));
+    mhb_response_note_search(&r->branch[2], &made);
   }
   r->branch[2].flips_untraced = 5;
   assert_ok(post_analysis_create(r, &analysis));
@@ -252,7 +252,7 @@ static void a_bound_that_samples_lack_is_said(void **state) {
   post_buffer     out = {0};
   post_analysis  *a;
   assert_ok(post_analysis_create(r, &a));
-  assert_ok(mhb_samples_create(20, 1, 3, &r->samples));
+  r->samples = mhb_samples_create(20, 1, 3);
   for (int i = 0; i < 20; i++) r->samples->factor[i] = 1.1 + 0.01 * i;
   r->samples->mark[19]              = 1; /* the largest is no result */
   r->samples->n0[0]                 = 100;

@@ -84,7 +84,7 @@ static mhb_response *make_response(const fixture_options *o) {
     mhb_branch *branch = &r->branch[b];
     int         n = branch->n_points / 40, K = branch->n_harmonics + 1;
     if (branch->kind != MHB_BRANCH_NONLINEAR || n < 1) continue;
-    assert_ok(mhb_response_modal(r, branch, n, FORCES));
+    mhb_response_modal(r, branch, n, FORCES);
     for (int i = 0; i < n; i++) {
       branch->modal.point[i] = 40 * i;
       branch->modal.scale[i] = 1;

@@ -9,8 +9,7 @@ enum { N = 4 };
 
 static mhb_samples *samples(void) {
   static const double factor[2][N] = {{1.3, 1.1, 0, 1.7}, {0, 0, 0, 0}};
-  mhb_samples        *s;
-  assert_ok(mhb_samples_create(N, 2, 3, &s));
+  mhb_samples        *s            = mhb_samples_create(N, 2, 3);
   memcpy(s->factor, factor, sizeof factor);
   s->n0[0] = 12.5;
   s->n0[1] = 30;
