@@ -1,33 +1,23 @@
-/* shroudhb-integrate: points of a case by direct time integration. Starts no MPI. */
+/* shroudhb integrate: points of a case by direct time integration. */
 #include <cblas.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <unistd.h>
 
-#include "cases/commands/command.h"
 #include "cases/commands/load_model.h"
 #include "cases/commands/stage.h"
+#include "cases/commands/stages.h"
 #include "cases/commands/up_to_date.h"
 #include "cases/schema/case.h"
 #include "cases/schema/case_paths.h"
+#include "mesh/base/memory.h"
 #include "mesh/base/progress.h"
 #include "mesh/base/publish.h"
 #include "mhb/integration/integration_memory.h"
 #include "mhb/integration/integration_sweep.h"
 #include "mhb/mistuning/dense_ring.h"
 #include "mhb/structure/dense_disc.h"
-
-static const char usage[] =
-    "usage: shroudhb-integrate [--quiet] [--verbose] [--force] [--set KEY=VALUE]... [--into "
-    "FOLDER] CASE.yaml\n"
-    "\n"
-    "Integrates CASE.yaml in time, at the frequencies of its block integrate and every preload, "
-    "until\n"
-    "the motion repeats itself, and writes NAME.integration.h5, whose points shroudhb post draws "
-    "as\n"
-    "dots on the curves of NAME.response.h5. Does nothing if that file is up to date (unless "
-    "--force).\n";
 
 /* The keys of the stage and the file of its initial states, as text; malloc'ed. */
 static shb_status settings_of(const case_file *file, const char *modal, const char *balance,
@@ -36,17 +26,10 @@ static shb_status settings_of(const case_file *file, const char *modal, const ch
   SHB_TRY(up_to_date_settings(file, (case_stage)(CASE_MHB | CASE_INTEGRATE), modal, &keys));
   *text = keys;
   if (!balance) return SHB_OK;
-  size_t     size   = strlen(keys) + 64;
-  char      *longer = malloc(size);
-  shb_status status = shb_fingerprint(balance, fingerprint);
-  if (status == SHB_OK && longer) {
-    snprintf(longer, size, "%sresponse.fingerprint = %s\n", keys, fingerprint);
-    *text  = longer;
-    longer = keys;
-  }
-  free(longer);
-  if (status == SHB_OK && *text == keys) SHB_FAIL(SHB_ERR_IO, "out of memory");
-  return status;
+  SHB_TRY(shb_fingerprint(balance, fingerprint));
+  *text = shb_text_of("%sresponse.fingerprint = %s\n", keys, fingerprint);
+  free(keys);
+  return SHB_OK;
 }
 
 /* Does the file at path hold the complete result of these settings? */
@@ -176,9 +159,7 @@ static shb_status run(const case_file *file, const command_options *options) {
   char         *start = case_output(file, ".response.h5"), *settings = NULL;
   mhb_response *balance = NULL;
   bool          needed  = file->integrate.start == MHB_START_FROM_BALANCE;
-  shb_status    status =
-      modal && output && start ? SHB_OK : shb_fail(SHB_ERR_IO, __FILE__, __LINE__, "out of memory");
-  if (status == SHB_OK) status = stage_renew_modes(file, options);
+  shb_status    status  = stage_renew_modes(file, options);
   if (status == SHB_OK && needed) status = read_balance(file, start, modal, &balance);
   if (status == SHB_OK) status = settings_of(file, modal, needed ? start : NULL, &settings);
   if (status == SHB_OK) {
@@ -197,16 +178,13 @@ static shb_status run(const case_file *file, const command_options *options) {
   return status;
 }
 
-int main(int argc, char **argv) {
-  command_options options;
-  int             code = command_parse(argc, argv, usage, &options);
-  if (code >= 0) return code;
+int integrate_command(const command_options *options) {
   case_file  file;
-  shb_status status = command_read(&options, CASE_MHB | CASE_INTEGRATE, &file);
+  shb_status status = command_read(options, CASE_MHB | CASE_INTEGRATE, &file);
   if (status != SHB_OK) return command_finish(status);
   shb_interrupt_catch();
   openblas_set_num_threads(1); /* the points run in parallel, so BLAS uses one thread */
-  status = run(&file, &options);
+  status = run(&file, options);
   case_free(&file);
   return command_finish(status);
 }

@@ -1,9 +1,9 @@
-/* shroudhb-mesh: meshes the parametric blade of a case, or checks its mesh file. */
+/* shroudhb mesh: meshes the parametric blade of a case, or checks its mesh file. */
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
-#include "cases/commands/command.h"
+#include "cases/commands/stages.h"
 #include "cases/commands/up_to_date.h"
 #include "cases/schema/case.h"
 #include "cases/schema/case_paths.h"
@@ -19,18 +19,6 @@
 #include "mesh/io/msh_write.h"
 #include "mesh/io/read.h"
 #include "mesh/io/source.h"
-
-static const char usage[] =
-    "usage: shroudhb-mesh [--quiet] [--verbose] [--force] [--inp] [--set KEY=VALUE]... [--into "
-    "FOLDER] CASE.yaml\n"
-    "\n"
-    "Meshes the blade of mesh.blade (tetrahedra or hexahedra) and writes NAME.msh with the\n"
-    "groups root, contact_right, contact_left and load; does nothing if that file is up to date\n"
-    "(unless --force). With mesh.file instead: checks that mesh's elements, groups and contact "
-    "faces;\n"
-    "a solid is meshed, groups by rule and other units are put into NAME.msh.\n"
-    "--inp writes the mesh for CalculiX and Abaqus too, NAME.inp: groups as surfaces and node "
-    "sets, m.\n";
 
 /* Checks both faces of an interface, or the right one if it meets the ground. pairing: zero
  * before. */
@@ -172,8 +160,7 @@ static shb_status make_at(const case_file *file, const command_options *options,
 static shb_status make(const case_file *file, const command_options *options,
                        shb_progress *progress) {
   char      *settings = NULL, *output = case_output(file, ".msh");
-  shb_status status = output ? up_to_date_mesh_settings(file, &settings)
-                             : shb_fail(SHB_ERR_IO, __FILE__, __LINE__, "out of memory");
+  shb_status status = up_to_date_mesh_settings(file, &settings);
   if (status == SHB_OK) status = make_at(file, options, output, settings, progress);
   free(output);
   free(settings);
@@ -185,14 +172,10 @@ static shb_status write_inp(const case_file *file, shb_progress *progress) {
   char      *source = case_mesh_path(file), *output = case_output(file, ".inp");
   mesh_fe    mesh   = {0};
   shb_status status = SHB_OK;
-  if (!source || !output) {
-    status = shb_fail(SHB_ERR_IO, __FILE__, __LINE__, "out of memory");
-  } else if (strcmp(source, output) == 0) {
+  if (strcmp(source, output) == 0)
     status =
         shb_fail(SHB_ERR_INPUT, __FILE__, __LINE__, "%s is the mesh of the case itself", source);
-  } else {
-    status = read_mesh(file, source, &mesh);
-  }
+  if (status == SHB_OK) status = read_mesh(file, source, &mesh);
   if (status == SHB_OK) status = mesh_inp_write(&mesh, output);
   if (status == SHB_OK) shb_progress_note(progress, "wrote %s", output);
   mesh_fe_free(&mesh);
@@ -209,21 +192,18 @@ static shb_status run(const case_file *file, const command_options *options) {
   }
   shb_status status = file->mesh_file && !case_mesh_is_made(file) ? check_file(file, &progress)
                                                                   : make(file, options, &progress);
-  if (status == SHB_OK && options->mode) status = write_inp(file, &progress);
+  if (status == SHB_OK && options->inp) status = write_inp(file, &progress);
   shb_progress_note(&progress, "%.2f s in all", shb_seconds() - progress.started);
   return status;
 }
 
-int main(int argc, char **argv) {
-  command_options options;
-  case_file       file;
-  int             code = command_parse(argc, argv, usage, &options);
-  if (code >= 0) return code;
-  shb_status status = command_read(&options, CASE_MESH, &file);
+int mesh_command(const command_options *options) {
+  case_file  file;
+  shb_status status = command_read(options, CASE_MESH, &file);
   if (status != SHB_OK) return command_finish(status);
   shb_interrupt_catch();
   shb_interrupt_grace(2);
-  status = run(&file, &options);
+  status = run(&file, options);
   case_free(&file);
   return command_finish(status);
 }

@@ -9,9 +9,11 @@
 #include "cases/commands/modal_changes.h"
 #include "cases/commands/stage.h"
 #include "cases/commands/up_to_date.h"
+#include "cases/options/help.h"
 #include "cases/schema/case.h"
 #include "cases/schema/case_paths.h"
 #include "cases/schema/nodal_diameters.h"
+#include "mesh/base/memory.h"
 #include "mesh/base/publish.h"
 #include "modal/common/session.h"
 #include "modal/hdf5/h5.h"
@@ -19,38 +21,16 @@
 #include "modal/model/revision.h"
 #include "modal/stage/stage.h"
 
-static const char usage[] =
-    "usage: shroudhb-modal [--quiet] [--verbose] [--force] [--set KEY=VALUE]... [--into FOLDER] "
-    "CASE.yaml [PETSC OPTIONS]\n"
-    "       mpiexec -n N shroudhb-modal CASE.yaml\n"
-    "\n"
-    "Assembles mass and stiffness on the mesh of CASE.yaml, finds the lowest modes, condenses them "
-    "to the\n"
-    "contact, load and probe points and writes NAME.modal.h5; does nothing if that file is up to "
-    "date\n"
-    "(unless --force), and keeps its modes if only damping or the amplitude of the load changed. "
-    "Needs mesh, material and clamp only: without contact, load and damping the "
-    "file\n"
-    "holds the modes alone. Meshes first if the mesh is missing or out of date. Options after the "
-    "case go to "
-    "PETSc and SLEPc, such as -eps_view,\n"
-    "-eps_block_size 8, -eps_type krylovschur, -st_pc_factor_mat_solver_type mumps,\n"
-    "-st_mat_mumps_icntl_14 50.\n";
-
 /* Words of the command line: own ones up to the case file and any --long option, else PETSc's. */
 typedef struct {
   int    n_own, n_petsc;
   char **own, **petsc; /* each begins with the program's name and ends with NULL */
 } words;
 
-static bool split_words(int argc, char **argv, words *out) {
+static void split_words(int argc, char **argv, words *out) {
   bool found = false, ended = false;
-  *out = (words){1, 1, calloc((size_t)argc + 1, sizeof(char *)),
-                 calloc((size_t)argc + 1, sizeof(char *))};
-  if (!out->own || !out->petsc) {
-    fputs("shroudhb: error: out of memory\n", stderr);
-    return false;
-  }
+  *out        = (words){1, 1, shb_alloc_zeroed((size_t)argc + 1, sizeof(char *)),
+                        shb_alloc_zeroed((size_t)argc + 1, sizeof(char *))};
   out->own[0] = out->petsc[0] = argv[0];
   for (int i = 1; i < argc; i++) {
     bool is_long = strncmp(argv[i], "--", 2) == 0;
@@ -68,7 +48,6 @@ static bool split_words(int argc, char **argv, words *out) {
     found = found || ended || argv[i][0] != '-';
     ended = ended || strcmp(argv[i], "--") == 0;
   }
-  return true;
 }
 
 /* Rank under mpiexec before MPI is initialised; 0 if the launcher does not tell. */
@@ -86,7 +65,7 @@ static int parse(const words *line, command_options *options, case_file *file) {
     dup2(null, STDERR_FILENO);
     close(null);
   }
-  int code = command_parse(line->n_own, line->own, usage, options);
+  int code = options_read(command_row_of(COMMAND_MODAL), line->n_own, line->own, options);
   if (code < 0) {
     shb_status status = command_read(options, CASE_MODAL, file);
     if (status != SHB_OK) code = command_finish(status);
@@ -214,11 +193,8 @@ static shb_status run(const case_file *file, const command_options *options, int
   char          *mesh = case_mesh_path(file), *output = case_output(file, ".modal.h5");
   char          *settings = NULL;
   modal_revision revision;
-  task           what = NOTHING;
-  shb_status     status =
-      mesh && output ? SHB_OK : shb_fail(SHB_ERR_IO, __FILE__, __LINE__, "out of memory");
-  if (status == SHB_OK)
-    status = decide(file, options->force, mesh, output, &settings, &revision, &what);
+  task           what   = NOTHING;
+  shb_status     status = decide(file, options->force, mesh, output, &settings, &revision, &what);
   if (status == SHB_OK && what == NOTHING) shb_progress_note(&progress, "%s is up to date", output);
   if (status == SHB_OK && what == REVISE)
     status = revise(file, settings, output, rank, &revision, &progress);
@@ -246,18 +222,17 @@ static void warn(const case_file *file) {
   }
 }
 
-/* Makes the mesh of the case with shroudhb-mesh if there is none or it is out of date, on rank 0
- * before MPI starts. The others wait in MPI_Init. Returns the exit code. */
+/* Makes a mesh of the case that is missing or out of date, on rank 0 before MPI starts. The others
+ * wait in MPI_Init. Returns the exit code. */
 static int make_mesh(const case_file *file, const command_options *options) {
   if (launch_rank() != 0 || (file->mesh_file && !case_mesh_is_made(file))) return SHB_OK;
-  command_options   plain  = *options;
-  subprocess_result result = {.code = SHB_OK};
-  char             *mesh = case_mesh_path(file), *settings = NULL;
-  shb_status        status = mesh ? up_to_date_mesh_settings(file, &settings)
-                                  : shb_fail(SHB_ERR_IO, __FILE__, __LINE__, "out of memory");
-  plain.force              = false; /* the modes are made again, not what they come from */
+  command_options plain  = *options;
+  shb_child_end   result = {.code = SHB_OK};
+  char           *mesh = case_mesh_path(file), *settings = NULL;
+  shb_status      status = up_to_date_mesh_settings(file, &settings);
+  plain.force            = false; /* the modes are made again, not what they come from */
   if (status == SHB_OK && !up_to_date_mesh(mesh, settings))
-    status = stage_run("mesh", &plain, &result);
+    status = stage_run(COMMAND_MESH, &plain, &result);
   free(mesh);
   free(settings);
   return status == SHB_OK ? result.code : command_finish(status);
@@ -286,13 +261,13 @@ int main(int argc, char **argv) {
   words           line;
   command_options options;
   case_file       file;
-  int             code = SHB_ERR_IO;
-  if (split_words(argc, argv, &line)) {
-    code = parse(&line, &options, &file);
-    if (code < 0) {
-      code = work(&line, &file, &options);
-      case_free(&file);
-    }
+  int             code = help_answer(command_row_of(COMMAND_MODAL), argc, argv);
+  if (code >= 0) return code;
+  split_words(argc, argv, &line);
+  code = parse(&line, &options, &file);
+  if (code < 0) {
+    code = work(&line, &file, &options);
+    case_free(&file);
   }
   free(line.own);
   free(line.petsc);

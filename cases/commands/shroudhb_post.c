@@ -1,5 +1,4 @@
-/* shroudhb-post: the report of a case from its response file, or the contents of an HDF5 file. No
- * MPI. */
+/* shroudhb post, shroudhb inspect: the report of a case, the contents of an HDF5 file. */
 #include <cblas.h>
 #include <math.h>
 #include <stdio.h>
@@ -7,13 +6,15 @@
 #include <string.h>
 #include <unistd.h>
 
-#include "cases/commands/command.h"
 #include "cases/commands/fatigue_lines.h"
+#include "cases/commands/stages.h"
 #include "cases/commands/up_to_date.h"
 #include "cases/schema/case.h"
 #include "cases/schema/case_paths.h"
 #include "cases/schema/converge_settings.h"
+#include "mesh/base/memory.h"
 #include "mesh/base/progress.h"
+#include "mesh/process/report.h"
 #include "postproc/comparison/comparison_page.h"
 #include "postproc/comparison/comparison_text.h"
 #include "postproc/field/contact_section.h"
@@ -29,36 +30,6 @@
 #include "postproc/summary/mode_summary.h"
 #include "postproc/summary/summary.h"
 #include "postproc/summary/table_json.h"
-
-static const char usage[] =
-    "usage: shroudhb-post [--quiet] [--verbose] [--json] [--no-report] [--set KEY=VALUE]...\n"
-    "                     [--into FOLDER] CASE.yaml\n"
-    "       shroudhb-post --summary | --modes | --check | --facts CASE.yaml\n"
-    "       shroudhb-post [--quiet] [--json] CASE.yaml OTHER.yaml\n"
-    "       shroudhb-post [--quiet] [--verbose] NAME.study.h5\n"
-    "       shroudhb-post --inspect [--verbose] FILE.h5 [OTHER.h5]\n"
-    "       shroudhb-post --inspect [--csv | --json] FILE.h5 PATH[SELECTION]\n"
-    "\n"
-    "Makes NAME.html (report), NAME.csv (every point) and NAME.svg (picture) from "
-    "NAME.response.h5;\n"
-    "points of NAME.integration.h5 are drawn as dots;\n"
-    "NAME.stress.csv has the worst places at every peak if material.fatigue is given;\n"
-    "NAME.gauge.csv has the strain at the gauges of the case;\n"
-    "the report has the section Speed against error if NAME.converge.h5 belongs to the case.\n"
-    "NAME.summary.json has the results for scripts; --json prints it, and prints it too with "
-    "--summary\n"
-    "(nothing is written), --modes (of the modal file alone) and --check (name and parts of the "
-    "case).\n"
-    "--facts prints mass, lowest mode and static stress of the modal file.\n"
-    "--no-report leaves out page and picture.\n"
-    "Of two cases, or two response files: NAME.vs.OTHER.html beside the first, and their peaks on\n"
-    "standard output, with --json for scripts.\n"
-    "Of a study file: NAME.study.html, NAME.study.csv and NAME.study.svg.\n"
-    "With --inspect: what an HDF5 file holds; --verbose unfolds everything, case text and settings "
-    "too.\n"
-    "Of two modal files: frequencies side by side, and which mode shapes are alike (MAC).\n"
-    "With a PATH in the file: its values; 'branch_2/motion[peak,0,:,1]' selects; a branch gives a\n"
-    "table of its points; --csv prints all digits.\n";
 
 static shb_status print(const post_buffer *text) {
   bool written = !text->text || fwrite(text->text, 1, text->length, stdout) == text->length;
@@ -98,7 +69,7 @@ static shb_status inspect(const command_options *options) {
 /* NAME.converge.h5 if it belongs to the present case; malloc'ed, else NULL. */
 static char *current_convergence(const case_file *file) {
   char *path = case_output(file, ".converge.h5"), *settings = NULL;
-  bool  fresh = path && access(path, R_OK) == 0 && converge_settings(file, &settings) == SHB_OK &&
+  bool  fresh = access(path, R_OK) == 0 && converge_settings(file, &settings) == SHB_OK &&
                up_to_date_with(path, settings);
   free(settings);
   if (fresh) return path;
@@ -123,7 +94,7 @@ static bool has_points(const case_file *file, const char *path, const char *resp
 /* The modal file if it belongs to the present case; malloc'ed, else NULL. */
 static char *current_modal(const case_file *file) {
   char *path  = case_modal_path(file);
-  bool  there = path && access(path, R_OK) == 0;
+  bool  there = access(path, R_OK) == 0;
   if (there && (file->modal_file || up_to_date_keys(file, CASE_MODAL, path))) return path;
   free(path);
   return NULL;
@@ -132,7 +103,7 @@ static char *current_modal(const case_file *file) {
 /* A modal file that is there is the one of the response, whatever the case says now. */
 static shb_status check_modal(const case_file *file, const char *response) {
   char      *path   = case_modal_path(file);
-  shb_status status = path && access(path, R_OK) == 0 && access(response, R_OK) == 0
+  shb_status status = access(path, R_OK) == 0 && access(response, R_OK) == 0
                           ? up_to_date_check_modal(response, path)
                           : SHB_OK;
   free(path);
@@ -180,12 +151,10 @@ static shb_status stress_read(const case_file *file, const char *modal, const ch
  * hundredths of a second. */
 static shb_status stress_publish(const case_file *file, const stress_work *s,
                                  shb_progress *progress) {
-  post_buffer table  = {0};
-  char       *path   = case_output(file, ".stress.csv");
-  shb_status  status = path ? SHB_OK : shb_fail(SHB_ERR_IO, __FILE__, __LINE__, "no memory");
+  post_buffer table = {0};
+  char       *path  = case_output(file, ".stress.csv");
   shb_progress_show(progress, 90, "stress");
-  if (status == SHB_OK)
-    status = post_stress_table(&s->field, s->response, &s->lines.fatigue, &table);
+  shb_status status = post_stress_table(&s->field, s->response, &s->lines.fatigue, &table);
   if (status == SHB_OK) status = post_buffer_publish(&table, path);
   post_buffer_free(&table);
   free(path);
@@ -211,11 +180,10 @@ static shb_status gauge_rows(const case_file *file, const post_blade_field *fiel
 /* Write NAME.gauge.csv: the strain at the gauges of the case. */
 static shb_status gauge_publish(const case_file *file, const char *modal,
                                 const mhb_response *response) {
-  post_blade_field field = {0};
-  post_buffer      table = {0};
-  char            *path  = case_output(file, ".gauge.csv");
-  shb_status status = path ? SHB_OK : shb_fail(SHB_ERR_IO, __FILE__, __LINE__, "out of memory");
-  if (status == SHB_OK) status = post_blade_field_read_motion(modal, &field);
+  post_blade_field field  = {0};
+  post_buffer      table  = {0};
+  char            *path   = case_output(file, ".gauge.csv");
+  shb_status       status = post_blade_field_read_motion(modal, &field);
   if (status == SHB_OK) status = post_blade_field_match(&field, response, modal);
   if (status == SHB_OK) status = gauge_rows(file, &field, response, &table);
   if (status == SHB_OK) status = post_buffer_publish(&table, path);
@@ -242,8 +210,7 @@ static shb_status publish_summary(const case_file *file, const char *response, c
                                   const stress_work *stress, bool shown) {
   post_buffer text   = {0};
   char       *path   = case_output(file, ".summary.json");
-  shb_status  status = path ? summarise(file, response, modal, stress, &text)
-                            : shb_fail(SHB_ERR_IO, __FILE__, __LINE__, "out of memory");
+  shb_status  status = summarise(file, response, modal, stress, &text);
   if (status == SHB_OK) status = post_buffer_publish(&text, path);
   if (status == SHB_OK && shown) status = print(&text);
   post_buffer_free(&text);
@@ -287,7 +254,7 @@ static shb_status print_facts(const case_file *file) {
 }
 
 /* --check: what a case in order is called. */
-static shb_status print_check(const case_file *file) {
+shb_status check_print_json(const case_file *file) {
   post_buffer text = {0};
   post_json   json = {.out = &text};
   post_json_object(&json, NULL);
@@ -310,33 +277,28 @@ static shb_status publish(const case_file *file, const command_options *options)
   char        *diagram     = case_output(file, ".campbell.svg");
   char        *modal       = current_modal(file);
   stress_work  stress      = {0};
-  shb_status   status;
-  if (response && html && csv && svg && points && diagram) {
-    up_to_date_warn(file, response);
-    status = check_modal(file, response);
-    if (status == SHB_OK) status = stress_read(file, modal, response, !options->no_report, &stress);
-    const post_job job = {file->name,
-                          response,
-                          options->no_report ? NULL : html,
-                          csv,
-                          svg,
-                          convergence,
-                          has_points(file, points, response) ? points : NULL,
-                          modal,
-                          diagram,
-                          up_to_date_keys(file, CASE_MHB, response) ? &file->mhb : NULL,
-                          stress.section.text,
-                          file->axis,
-                          file->n_speeds == 1 ? file->speed[0] : 0};
-    if (status == SHB_OK) status = post_publish(&job, &progress, &summary);
-    if (status == SHB_OK && stress.response && case_has_fatigue(file))
-      status = stress_publish(file, &stress, &progress);
-    if (status == SHB_OK && stress.response && file->n_gauges > 0)
-      status = gauge_publish(file, modal, stress.response);
-    if (status == SHB_OK) status = publish_summary(file, response, modal, &stress, options->json);
-  } else {
-    status = shb_fail(SHB_ERR_IO, __FILE__, __LINE__, "out of memory");
-  }
+  up_to_date_warn(file, response);
+  shb_status status = check_modal(file, response);
+  if (status == SHB_OK) status = stress_read(file, modal, response, !options->no_report, &stress);
+  const post_job job = {file->name,
+                        response,
+                        options->no_report ? NULL : html,
+                        csv,
+                        svg,
+                        convergence,
+                        has_points(file, points, response) ? points : NULL,
+                        modal,
+                        diagram,
+                        up_to_date_keys(file, CASE_MHB, response) ? &file->mhb : NULL,
+                        stress.section.text,
+                        file->axis,
+                        file->n_speeds == 1 ? file->speed[0] : 0};
+  if (status == SHB_OK) status = post_publish(&job, &progress, &summary);
+  if (status == SHB_OK && stress.response && case_has_fatigue(file))
+    status = stress_publish(file, &stress, &progress);
+  if (status == SHB_OK && stress.response && file->n_gauges > 0)
+    status = gauge_publish(file, modal, stress.response);
+  if (status == SHB_OK) status = publish_summary(file, response, modal, &stress, options->json);
   if (status == SHB_OK && !options->quiet && !options->json)
     printf("%s%s%s\n", options->no_report ? csv : html, summary ? ": " : "",
            summary ? summary : "");
@@ -389,31 +351,27 @@ static shb_status find_run(const command_options *options, const char *path, run
   if (ends_with(path, ".h5")) {
     const char *slash = strrchr(path, '/'), *base = slash ? slash + 1 : path;
     size_t      cut = ends_with(path, suffix) ? sizeof suffix - 1 : strlen(".h5");
-    out->response   = strdup(path);
-    out->name       = strndup(base, strlen(base) - cut);
-    out->page       = strndup(path, strlen(path) - cut);
+    out->response   = shb_text(path);
+    out->name       = shb_text_start(base, strlen(base) - cut);
+    out->page       = shb_text_start(path, strlen(path) - cut);
   } else {
     case_file       file;
     command_options one = *options;
     one.path            = path;
     SHB_TRY(command_read(&one, CASE_POST, &file));
     out->response = case_output(&file, ".response.h5");
-    out->name     = strdup(file.name);
+    out->name     = shb_text(file.name);
     out->page     = case_output(&file, "");
     up_to_date_warn(&file, out->response);
     case_free(&file);
   }
-  SHB_CHECK(out->response && out->name && out->page, SHB_ERR_IO, "out of memory");
   return SHB_OK;
 }
 
 static shb_status show_comparison(const post_comparison *c, const run_files run[POST_RUNS],
                                   const command_options *options) {
-  size_t      size = strlen(run[0].page) + strlen(run[1].name) + 16;
-  char       *path = malloc(size);
+  char       *path = shb_text_of("%s.vs.%s.html", run[0].page, run[1].name);
   post_buffer page = {0}, text = {0};
-  SHB_CHECK(path, SHB_ERR_IO, "out of memory");
-  snprintf(path, size, "%s.vs.%s.html", run[0].page, run[1].name);
   post_comparison_page(c, &page);
   if (options->json)
     post_comparison_json(c, &text);
@@ -449,31 +407,29 @@ static shb_status work(const case_file *file, const command_options *options) {
   const char *mode = options->mode ? options->mode : "";
   if (strcmp(mode, "summary") == 0) return print_summary(file, true);
   if (strcmp(mode, "modes") == 0) return print_summary(file, false);
-  if (strcmp(mode, "check") == 0) return print_check(file);
+  if (strcmp(mode, "check") == 0) return check_print_json(file);
   if (strcmp(mode, "facts") == 0) return print_facts(file);
   return publish(file, options);
 }
 
-int main(int argc, char **argv) {
-  command_options options;
-  int             code = command_parse(argc, argv, usage, &options);
-  if (code >= 0) return code;
-  if (options.mode && strcmp(options.mode, "inspect") == 0)
-    return command_finish(inspect(&options));
-  if (options.other && options.mode) {
-    fprintf(stderr, "shroudhb: error: --%s takes one case; unexpected '%s'; see --help\n",
-            options.mode, options.other);
+int inspect_command(const command_options *options) {
+  return command_finish(inspect(options));
+}
+
+int post_command(const command_options *options) {
+  if (options->other && options->mode) {
+    shb_error("--%s takes one case; unexpected '%s'; see --help", options->mode, options->other);
     return SHB_ERR_INPUT;
   }
-  if (options.other) return command_finish(compare_runs(&options));
-  if (study_publish_takes(options.path)) return command_finish(publish_study(&options));
+  if (options->other) return command_finish(compare_runs(options));
+  if (study_publish_takes(options->path)) return command_finish(publish_study(options));
   case_file  file;
-  shb_status status = command_read(&options, CASE_POST, &file);
+  shb_status status = command_read(options, CASE_POST, &file);
   if (status != SHB_OK) return command_finish(status);
   openblas_set_num_threads(1); /* small products: threads would only wait for each other */
   /* the stage takes a fraction of a second: it finishes and leaves no temporary file */
   shb_interrupt_catch();
-  status = work(&file, &options);
+  status = work(&file, options);
   case_free(&file);
   return command_finish(status);
 }

@@ -9,18 +9,25 @@
 #include "cases/schema/case_paths.h"
 #include "modal/hdf5/stamp.h"
 
-shb_status stage_run(const char *stage, const command_options *options, subprocess_result *result) {
-  char        name[32];
+int stage_program(command_id command, const char **words) {
+  int n      = 0;
+  words[n++] = shb_child_program(command == COMMAND_MODAL ? "shroudhb-modal" : "shroudhb-pool");
+  if (command != COMMAND_MODAL) words[n++] = command_row_of(command)->name;
+  return n;
+}
+
+shb_status stage_run(command_id command, const command_options *options, shb_child_end *end) {
   const char *words[COMMAND_WORDS];
-  snprintf(name, sizeof name, "shroudhb-%s", stage);
-  char *program = subprocess_program(name);
-  SHB_CHECK(program, SHB_ERR_IO, "out of memory");
-  words[0] = program;
-  int n    = 1;
-  if (options->no_report && strcmp(stage, "post") == 0) words[n++] = "--no-report";
-  command_forward(options, words, n);
-  shb_status status = subprocess_run((char *const *)words, result);
-  free(program);
+  char        name[32];
+  const int   n     = stage_program(command, words);
+  shb_child   child = shb_child_of((char *const *)words);
+  snprintf(name, sizeof name, "shroudhb-%s", command_row_of(command)->name);
+  child.name           = name;
+  command_options said = *options;
+  said.json            = false; /* the document is that of the command that the user gave */
+  options_words(command_row_of(command), &said, words, n);
+  const shb_status status = shb_child_run(&child, end);
+  free((void *)words[0]);
   return status;
 }
 
@@ -41,11 +48,11 @@ static bool may_be_made(const case_file *file) {
 }
 
 shb_status stage_renew_modes(const case_file *file, const command_options *options) {
-  command_options   plain = *options;
-  subprocess_result result;
+  command_options plain = *options;
+  shb_child_end   result;
   if (file->modal_file || up_to_date_modes(file) || !may_be_made(file)) return SHB_OK;
   plain.force = false;
-  SHB_TRY(stage_run("modal", &plain, &result));
+  SHB_TRY(stage_run(COMMAND_MODAL, &plain, &result));
   return result.code == SHB_OK ? SHB_OK
                                : shb_fail((shb_status)result.code, __FILE__, __LINE__, "%s", "");
 }

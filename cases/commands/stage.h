@@ -3,13 +3,17 @@
 #define CASES_COMMANDS_STAGE_H
 
 #include "cases/commands/command.h"
-#include "cases/commands/subprocess.h"
+#include "cases/options/command_table.h"
 
-/* Run shroudhb-STAGE ("mesh", "modal", ...) with the options it shares with the front command. It
- * prints its own messages. Errors: as subprocess_run; its exit code is in the result. */
-shb_status stage_run(const char *stage, const command_options *options, subprocess_result *result);
+/* The program of a command and its first words: shroudhb-modal, or shroudhb-pool and the name.
+ * Returns how many words there are; words[0] is malloc'ed. */
+int stage_program(command_id command, const char **words);
 
-/* Run shroudhb-modal, which makes the mesh too, where the modes of the case are out of date: what
+/* Run a command with what the options say that it knows. It prints its own messages. Errors: as
+ * shb_child_run; its exit code is in *end. */
+shb_status stage_run(command_id command, const command_options *options, shb_child_end *end);
+
+/* Run the modal stage, which makes the mesh too, where the modes of the case are out of date: what
  * `shroudhb run` does. Nothing is done with modal.file, and with a file that is damaged or of
  * another program. Errors: that of the stage, which has told it. */
 shb_status stage_renew_modes(const case_file *file, const command_options *options);

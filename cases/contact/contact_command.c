@@ -122,8 +122,8 @@ static bool same_file(const char *a, const char *b) {
   return stat(a, &x) == 0 && stat(b, &y) == 0 && x.st_dev == y.st_dev && x.st_ino == y.st_ino;
 }
 
-shb_status contact_command(const char *path, const case_overrides *overrides, const char *svg,
-                           FILE *out) {
+shb_status contact_run(const char *path, const case_overrides *overrides, const char *svg,
+                       FILE *out) {
   SHB_CHECK(!svg || !same_file(path, svg), SHB_ERR_INPUT,
             "--svg %s would overwrite the motion file; name another file", svg);
   case_motion given;

@@ -19,7 +19,7 @@
  *
  * Errors: as case_motion_read. SHB_ERR_INPUT also if svg is the file that is read.
  * SHB_NOT_CONVERGED if the slider did not become periodic; everything is printed and drawn. */
-shb_status contact_command(const char *path, const case_overrides *overrides, const char *svg,
-                           FILE *out);
+shb_status contact_run(const char *path, const case_overrides *overrides, const char *svg,
+                       FILE *out);
 
 #endif

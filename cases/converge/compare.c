@@ -34,8 +34,7 @@ typedef struct {
 } comparison;
 
 static shb_status load_curves(const char *stem, side *s) {
-  char *path = rung_response(stem);
-  SHB_CHECK(path, SHB_ERR_IO, "out of memory");
+  char      *path   = rung_response(stem);
   shb_status status = mhb_response_read(path, &s->response);
   free(path);
   return status;

@@ -13,4 +13,8 @@
  * Returns SHB_OK, SHB_NOT_CONVERGED (see the usage text), SHB_INTERRUPTED or an error. */
 shb_status converge_case(case_file *file, const command_options *options);
 
+/* The commands converge and rung. Each returns the exit code. */
+int converge_command(const command_options *options);
+int rung_command(const command_options *options);
+
 #endif

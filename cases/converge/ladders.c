@@ -4,7 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "cases/commands/subprocess.h"
+#include "cases/commands/stage.h"
 #include "mhb/branches/harmonic_selection.h"
 
 enum { MAX_TOGETHER = 6 };
@@ -67,38 +67,29 @@ static const char *points_for(const convergence_study *s, const post_rung *row) 
   return whole ? s->points : NULL;
 }
 
-/* Starts the program of a rung. Its last words are the stem of the reference or "-", and the points
- * of time integration. */
+/* Runs a rung as a child. Its last files are the stem of the reference or "-", and the points of
+ * time integration. */
 static shb_status start_rung(convergence_study *s, const study_row *p, const char *reference,
-                             const char *points, subprocess_result *result) {
-  char  setting[RUNG_SETTING_WORDS][RUNG_WORD], none[] = "-";
-  char  set[] = "--set", into[] = "--into", text[] = "--text";
-  char *words[RUNG_SETTING_WORDS + 7 + 2 * COMMAND_SETS + 4] = {
-      subprocess_program("shroudhb-rung"), s->file->path, s->variant[p->variant].modal, p->stem};
-  int n = 4;
+                             const char *points, shb_child_end *end) {
+  char               setting[RUNG_SETTING_WORDS][RUNG_WORD];
+  const char        *words[COMMAND_WORDS];
+  const command_row *row  = command_row_of(COMMAND_RUNG);
+  command_options    said = {.path = s->file->path, .into = s->options->into};
+  said.text               = s->options->text;
+  said.n_set              = s->options->n_set;
+  memcpy(said.set, s->options->set, sizeof said.set);
+  int n      = options_words(row, &said, words, stage_program(COMMAND_RUNG, words));
+  words[n++] = s->variant[p->variant].modal;
+  words[n++] = p->stem;
   rung_words(&p->setting, setting);
   for (int i = 0; i < RUNG_SETTING_WORDS; i++) words[n++] = setting[i];
-  char *stem = reference ? strdup(reference) : NULL, *path = points ? strdup(points) : NULL;
-  bool  made = words[0] && (stem || !reference) && (path || !points);
-  words[n++] = stem ? stem : none;
-  words[n++] = path ? path : none;
-  for (int i = 0; i < s->options->n_set; i++) {
-    words[n++] = set;
-    words[n++] = (char *)s->options->set[i];
-  }
-  if (s->options->into) {
-    words[n++] = into;
-    words[n++] = (char *)s->options->into;
-  }
-  if (s->options->text) {
-    words[n++] = text;
-    words[n++] = (char *)s->options->text;
-  }
-  shb_status status = made ? subprocess_run(words, result)
-                           : shb_fail(SHB_ERR_IO, __FILE__, __LINE__, "out of memory");
-  free(words[0]);
-  free(stem);
-  free(path);
+  words[n++]        = reference ? reference : "-";
+  words[n++]        = points ? points : "-";
+  words[n]          = NULL;
+  shb_child child   = shb_child_of((char *const *)words);
+  child.name        = "shroudhb-rung";
+  shb_status status = shb_child_run(&child, end);
+  free((void *)words[0]);
   return status;
 }
 
@@ -125,9 +116,9 @@ static void take_errors(convergence_study *s, int i, int reference) {
 /* Runs row i and compares it with row reference (-1: none). A rung that does not converge, or that
  * is killed, affects only its row. What is refused or cannot be written would fail in every row. */
 static shb_status run(convergence_study *s, int i, int reference) {
-  study_row        *p   = &s->row[i];
-  post_rung        *row = &s->result.rung[i];
-  subprocess_result result;
+  study_row    *p   = &s->row[i];
+  post_rung    *row = &s->result.rung[i];
+  shb_child_end result;
   shb_progress_show(&s->progress, -1, "%s %s", post_ladder_name(row->ladder), row->name);
   const char *other  = reference >= 0 ? s->row[reference].stem : NULL;
   shb_status  status = start_rung(s, p, other, points_for(s, row), &result);

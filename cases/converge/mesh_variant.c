@@ -11,6 +11,7 @@
 #include "cases/converge/resized_case.h"
 #include "cases/schema/case.h"
 #include "cases/schema/case_paths.h"
+#include "mesh/base/memory.h"
 #include "mesh/base/publish.h"
 #include "modal/hdf5/h5.h"
 #include "postproc/draw/text_buffer.h"
@@ -22,15 +23,12 @@ shb_status mesh_variant_folder(const char *path) {
 }
 
 static char *join(const char *folder, const char *leaf) {
-  size_t size = strlen(folder) + strlen(leaf) + 2;
-  char  *path = malloc(size);
-  if (path) snprintf(path, size, "%s/%s", folder, leaf);
-  return path;
+  return shb_text_of("%s/%s", folder, leaf);
 }
 
 /* Runs a stage. Its exit code is the status; its own message is the only one. */
-static shb_status run_stage(const char *stage, const command_options *options,
-                            subprocess_result *result) {
+static shb_status run_stage(command_id stage, const command_options *options,
+                            shb_child_end *result) {
   SHB_TRY(stage_run(stage, options, result));
   return result->code == 0 ? SHB_OK
                            : shb_fail((shb_status)result->code, __FILE__, __LINE__, "%s", "");
@@ -53,7 +51,7 @@ static double unknowns_of(const char *path) {
 static void remember(mesh_variant *v, bool made) {
   char  print[17] = "", found[17] = "", *path = join(v->folder, "modes.cost");
   FILE *in;
-  if (!path || shb_fingerprint(v->modal, print) != SHB_OK) {
+  if (shb_fingerprint(v->modal, print) != SHB_OK) {
     free(path);
     return;
   }
@@ -82,10 +80,10 @@ static struct timespec changed(const char *path) {
 /* Makes mesh and modes of a case, and measures their cost if both had to be made.
  *   options  in  of the stages, with the path of the case */
 static shb_status run_stages(const command_options *options, mesh_variant *v) {
-  subprocess_result mesh, modal;
-  struct timespec   before = changed(v->modal), after;
-  SHB_TRY(run_stage("mesh", options, &mesh));
-  SHB_TRY(run_stage("modal", options, &modal));
+  shb_child_end   mesh, modal;
+  struct timespec before = changed(v->modal), after;
+  SHB_TRY(run_stage(COMMAND_MESH, options, &mesh));
+  SHB_TRY(run_stage(COMMAND_MODAL, options, &modal));
   after       = changed(v->modal);
   bool made   = after.tv_sec != before.tv_sec || after.tv_nsec != before.tv_nsec;
   v->unknowns = unknowns_of(v->modal);
@@ -99,9 +97,8 @@ static shb_status run_stages(const command_options *options, mesh_variant *v) {
 
 shb_status mesh_variant_own(const case_file *file, const command_options *options,
                             mesh_variant *out) {
-  *out       = (mesh_variant){.factor = 1, .seconds = NAN, .memory = NAN, .unknowns = NAN};
-  out->modal = case_modal_path(file);
-  SHB_CHECK(out->modal, SHB_ERR_IO, "out of memory");
+  *out                = (mesh_variant){.factor = 1, .seconds = NAN, .memory = NAN, .unknowns = NAN};
+  out->modal          = case_modal_path(file);
   command_options own = *options;
   own.quiet           = true;
   own.verbose         = false;
@@ -132,7 +129,6 @@ static shb_status derive(const case_file *file, const command_options *options, 
   char leaf[CASE_NAME * 4];
   snprintf(leaf, sizeof leaf, "%s.yaml", file->name);
   d->path = join(v->folder, leaf);
-  SHB_CHECK(d->path, SHB_ERR_IO, "out of memory");
   SHB_TRY(case_resize_mesh(file, v->factor, d->path));
   d->options         = *options;
   d->options.into    = NULL;
@@ -144,7 +140,6 @@ static shb_status derive(const case_file *file, const command_options *options, 
   SHB_TRY(command_read(&d->options, CASE_MESH | CASE_MODAL, &derived));
   v->modal = case_modal_path(&derived);
   case_free(&derived);
-  SHB_CHECK(v->modal, SHB_ERR_IO, "out of memory");
   return SHB_OK;
 }
 
@@ -155,7 +150,6 @@ shb_status mesh_variant_make(const case_file *file, const command_options *optio
   *out           = (mesh_variant){.factor = factor, .seconds = NAN, .memory = NAN, .unknowns = NAN};
   snprintf(leaf, sizeof leaf, "mesh_%.4g", factor);
   out->folder = join(parent, leaf);
-  SHB_CHECK(out->folder, SHB_ERR_IO, "out of memory");
   SHB_TRY(mesh_variant_folder(out->folder));
   shb_status status = derive(file, options, out, &d);
   if (status == SHB_OK) status = run_stages(&d.options, out);

@@ -5,6 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "mesh/base/memory.h"
 #include "mesh/base/publish.h"
 #include "postproc/draw/text_buffer.h"
 
@@ -17,7 +18,7 @@ void rung_words(const rung_setting *s, char words[RUNG_SETTING_WORDS][RUNG_WORD]
   snprintf(words[5], RUNG_WORD, "%d", s->patches);
 }
 
-bool rung_from_words(char *const words[RUNG_SETTING_WORDS], rung_setting *s) {
+bool rung_from_words(const char *const words[RUNG_SETTING_WORDS], rung_setting *s) {
   double value[RUNG_SETTING_WORDS];
   for (int i = 0; i < RUNG_SETTING_WORDS; i++) {
     char *end;
@@ -89,10 +90,7 @@ shb_status rung_output(const case_file *file, int n_probes, char *const *names,
 }
 
 static char *join(const char *stem, const char *ending) {
-  size_t size = strlen(stem) + strlen(ending) + 1;
-  char  *path = malloc(size);
-  if (path) snprintf(path, size, "%s%s", stem, ending);
-  return path;
+  return shb_text_of("%s%s", stem, ending);
 }
 
 char *rung_response(const char *stem) {
@@ -101,9 +99,9 @@ char *rung_response(const char *stem) {
 
 /* ---------------------------------------------------------------- the small files */
 
+/* No path: a file could not be read, which has been recorded. */
 static shb_status publish(post_buffer *text, char *path) {
-  shb_status status = path ? post_buffer_publish(text, path)
-                           : shb_fail(SHB_ERR_IO, __FILE__, __LINE__, "out of memory");
+  shb_status status = path ? post_buffer_publish(text, path) : SHB_ERR_IO;
   post_buffer_free(text);
   free(path);
   return status;
@@ -137,7 +135,7 @@ static bool scan_cost(FILE *in, rung_cost *c) {
 
 shb_status rung_cost_read(const char *stem, rung_cost *cost) {
   char *path = join(stem, ".cost");
-  FILE *in   = path ? fopen(path, "r") : NULL;
+  FILE *in   = fopen(path, "r");
   *cost      = (rung_cost){0};
   bool good  = in && scan_cost(in, cost);
   if (in) fclose(in);

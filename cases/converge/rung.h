@@ -1,6 +1,6 @@
 /* A rung of a convergence study: a setting of the balance, its cost, its distance from a finer one.
  *
- * The program shroudhb-rung computes one rung, so its memory is measured alone and a crash affects
+ * A process of its own computes one rung, so its memory is measured alone and a crash affects
  * only its row. It writes
  *   STEM.response.h5        the curves; again only if settings, modal file or program have changed
  *   STEM.cost               seconds, memory, peaks
@@ -54,7 +54,7 @@ enum { RUNG_WORDS = 16, RUNG_WORD = 64 };
 /* Convert a setting to words for a command line and back. True if the words are a setting. */
 enum { RUNG_SETTING_WORDS = 6 };
 void rung_words(const rung_setting *setting, char words[RUNG_SETTING_WORDS][RUNG_WORD]);
-bool rung_from_words(char *const words[RUNG_SETTING_WORDS], rung_setting *setting);
+bool rung_from_words(const char *const words[RUNG_SETTING_WORDS], rung_setting *setting);
 
 /* Name of a setting in file names, e.g. "h7_a1e-08_m20" or "h7_a1e-08_m20_p4". */
 void rung_name(const rung_setting *setting, char name[RUNG_WORD]);

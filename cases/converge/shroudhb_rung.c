@@ -1,4 +1,4 @@
-/* shroudhb-rung: one rung of a convergence study, for `shroudhb converge`. */
+/* shroudhb-pool rung: one rung of a convergence study, for `shroudhb converge`. */
 #include <cblas.h>
 #include <math.h>
 #include <omp.h>
@@ -13,24 +13,17 @@
 #include "cases/commands/load_model.h"
 #include "cases/commands/up_to_date.h"
 #include "cases/converge/compare.h"
+#include "cases/converge/converge.h"
 #include "cases/converge/matched_point.h"
 #include "cases/converge/rung.h"
 #include "cases/schema/case.h"
 #include "mesh/base/progress.h"
 #include "mesh/base/publish.h"
+#include "mesh/process/report.h"
 #include "mhb/branches/forced_response.h"
 #include "postproc/analysis/curves.h"
 
-static const char usage[] =
-    "usage: shroudhb-rung CASE.yaml MODAL.h5 STEM HARMONICS TOLERANCE ACCURACY MODES RESIDUALS "
-    "PATCHES [REFERENCE|- [POINTS.h5]]\n"
-    "\n"
-    "One sweep with other settings than the case has, and its distance from another one: works "
-    "for\n"
-    "`shroudhb converge`, which see. Writes STEM.response.h5 and STEM.cost, "
-    "STEM.REFERENCE.error.\n";
-
-enum { MAX_RUNS = 5, FIRST_WORD = 4, LEAST_WORDS = 10 };
+enum { MAX_RUNS = 5 };
 static const double ENOUGH = .3; /* s; after this total no further run is made */
 
 typedef struct {
@@ -234,39 +227,18 @@ static shb_status prepare(job *j) {
   return rung_output(&j->file, j->source.model.n_probes, j->source.model.probe_name, &j->output);
 }
 
-/* The words behind reference and points: pairs "--set" KEY=VALUE, "--into" FOLDER, "--text" COPY.
- * False if they are not. */
-static bool take_options(int n, char **words, command_options *out) {
-  for (int i = 2; i < n; i += 2) {
-    const bool into = strcmp(words[i], "--into") == 0, text = strcmp(words[i], "--text") == 0;
-    if (i + 1 == n || (!into && !text && strcmp(words[i], "--set") != 0) ||
-        out->n_set == COMMAND_SETS)
-      return false;
-    *(into ? &out->into : text ? &out->text : &out->set[out->n_set++]) = words[i + 1];
-  }
-  return true;
-}
-
-int main(int argc, char **argv) {
-  job j = {0};
-  if (argc == 2 && strcmp(argv[1], "--help") == 0) {
-    fputs(usage, stdout);
-    return SHB_OK;
-  }
-  command_options options = {.path = argc > 1 ? argv[1] : NULL};
-  if (argc < LEAST_WORDS || !take_options(argc - LEAST_WORDS, argv + LEAST_WORDS, &options) ||
-      !rung_from_words(argv + FIRST_WORD, &j.setting)) {
-    fputs("shroudhb: error: shroudhb-rung is started by shroudhb converge; see --help\n", stderr);
+int rung_command(const command_options *options) {
+  enum { MODAL = 1, STEM, SETTING, REFERENCE = SETTING + RUNG_SETTING_WORDS, POINTS };
+  const char *const *file = options->file;
+  job                j    = {.modal = file[MODAL], .stem = file[STEM]};
+  if (!rung_from_words(file + SETTING, &j.setting)) {
+    shb_error("rung is started by shroudhb converge; see --help");
     return SHB_ERR_INPUT;
   }
-  j.modal = argv[2];
-  j.stem  = argv[3];
-  j.reference =
-      argc > LEAST_WORDS && strcmp(argv[LEAST_WORDS], "-") != 0 ? argv[LEAST_WORDS] : NULL;
-  j.points          = argc > LEAST_WORDS + 1 && strcmp(argv[LEAST_WORDS + 1], "-") != 0
-                          ? argv[LEAST_WORDS + 1]
-                          : NULL;
-  shb_status status = command_read(&options, CASE_MHB | CASE_CONVERGE, &j.file);
+  const char *reference = file[REFERENCE], *points = file[POINTS];
+  if (reference && strcmp(reference, "-") != 0) j.reference = reference;
+  if (points && strcmp(points, "-") != 0) j.points = points;
+  shb_status status = command_read(options, CASE_MHB | CASE_CONVERGE, &j.file);
   if (status != SHB_OK) return command_finish(status);
   shb_interrupt_catch();
   openblas_set_num_threads(1);

@@ -2,6 +2,7 @@
 
 #include <stdlib.h>
 
+#include "cases/field/field_command.h"
 #include "postproc/analysis/file_origin.h"
 #include "postproc/field/contact_grid.h"
 
@@ -20,7 +21,7 @@ static int falling(const void *a, const void *b) {
 }
 
 /* Peaks with maps of the chosen curve, or of all; *list is malloc'ed. */
-static shb_status list_peaks(const field_options *o, hid_t file, const mhb_response *response,
+static shb_status list_peaks(const command_options *o, hid_t file, const mhb_response *response,
                              const post_contact_face *face, candidate **list, int *n) {
   *n    = 0;
   *list = NULL;
@@ -42,9 +43,10 @@ static shb_status list_peaks(const field_options *o, hid_t file, const mhb_respo
   return SHB_OK;
 }
 
-static shb_status choose(const field_options *o, const candidate *list, int n, candidate *chosen) {
+static shb_status choose(const command_options *o, const candidate *list, int n,
+                         candidate *chosen) {
   const int rank = o->peak > 0 ? o->peak : 1;
-  SHB_CHECK(n > 0, SHB_ERR_INPUT, "%s: no peak%s has maps of the contact face", o->response,
+  SHB_CHECK(n > 0, SHB_ERR_INPUT, "%s: no peak%s has maps of the contact face", o->path,
             o->branch >= 0 ? " of this branch" : "");
   SHB_CHECK(o->point >= 0 || rank <= n, SHB_ERR_INPUT, "--peak %d: there are %d", rank, n);
   *chosen = list[o->point < 0 ? rank - 1 : 0];
@@ -56,7 +58,7 @@ static shb_status choose(const field_options *o, const candidate *list, int n, c
   return SHB_OK;
 }
 
-static shb_status publish(const field_options *o, hid_t file, const mhb_response *response,
+static shb_status publish(const command_options *o, hid_t file, const mhb_response *response,
                           const post_contact_face *face, const candidate *chosen, FILE *out) {
   char              path[PATH], point[40] = "", settings[64];
   const double      frequency = response->branch[chosen->branch].frequency[chosen->point];
@@ -64,10 +66,10 @@ static shb_status publish(const field_options *o, hid_t file, const mhb_response
   post_origin       origin    = {0};
   if (o->point >= 0 || o->peak > 0 || o->branch >= 0)
     snprintf(point, sizeof point, "_%d_%d", chosen->branch, chosen->point);
-  snprintf(path, sizeof path, "%.*s.face%s.vtkhdf", field_stem(o->response), o->response, point);
+  snprintf(path, sizeof path, "%.*s.face%s.vtkhdf", field_stem(o->path), o->path, point);
   snprintf(settings, sizeof settings, "branch = %d\npoint = %d\n", chosen->branch, chosen->point);
   shb_status status = post_contact_maps_read(file, face, chosen->branch, &maps);
-  if (status == SHB_OK) status = post_origin_open(o->response, &origin);
+  if (status == SHB_OK) status = post_origin_open(o->path, &origin);
   if (status == SHB_OK) {
     const shb_provenance from = {origin.case_path, origin.case_text, settings, "shroudhb-field"};
     status = post_contact_grid(face, &maps, chosen->row, chosen->branch, frequency, &from, path);
@@ -80,13 +82,13 @@ static shb_status publish(const field_options *o, hid_t file, const mhb_response
   return status;
 }
 
-static shb_status work(const field_options *o, hid_t file, const mhb_response *response,
+static shb_status work(const command_options *o, hid_t file, const mhb_response *response,
                        const post_contact_face *face, FILE *out) {
   candidate *list = NULL, chosen;
   int        n    = 0;
   SHB_CHECK(face->n_nodes > 0, SHB_ERR_INPUT,
             "%s: has no maps of the contact face; they need a mesh and one contact interface",
-            o->response);
+            o->path);
   SHB_CHECK(o->branch < response->n_branches, SHB_ERR_INPUT,
             "--branch %d: the response has the branches 0 to %d", o->branch,
             response->n_branches - 1);
@@ -97,12 +99,12 @@ static shb_status work(const field_options *o, hid_t file, const mhb_response *r
   return status;
 }
 
-shb_status face_command(const field_options *options, FILE *out) {
+shb_status face_write(const command_options *options, FILE *out) {
   hid_t             file     = H5I_INVALID_HID;
   mhb_response     *response = NULL;
   post_contact_face face     = {0};
-  shb_status        status   = mhb_response_read(options->response, &response);
-  if (status == SHB_OK) status = h5_open(options->response, &file);
+  shb_status        status   = mhb_response_read(options->path, &response);
+  if (status == SHB_OK) status = h5_open(options->path, &file);
   if (status == SHB_OK) status = post_contact_face_read(file, &face);
   if (status == SHB_OK) status = work(options, file, response, &face, out);
   post_contact_face_free(&face);

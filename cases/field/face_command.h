@@ -4,12 +4,12 @@
 
 #include <stdio.h>
 
-#include "cases/field/field_options.h"
+#include "cases/commands/command.h"
 #include "mesh/base/status.h"
 
 /* Write NAME.face.vtkhdf, or NAME.face_BRANCH_POINT.vtkhdf of a chosen point, beside the response.
  *   out  in  for a line on what was written; NULL: quiet
  * Errors: SHB_ERR_INPUT the response has no maps, or not of that point; SHB_ERR_IO. */
-shb_status face_command(const field_options *options, FILE *out);
+shb_status face_write(const command_options *options, FILE *out);
 
 #endif

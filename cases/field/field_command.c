@@ -30,7 +30,7 @@ static bool is_open_or_stuck(const mhb_branch *b) {
 }
 
 /* Kept peaks, and the highest kept point of each curve, highest first. */
-static int list_peaks(const mhb_response *response, const field_options *o, bool limits,
+static int list_peaks(const mhb_response *response, const command_options *o, bool limits,
                       candidate *list) {
   int n = 0;
   for (int i = 0; i < response->n_branches; i++) {
@@ -47,7 +47,7 @@ static int list_peaks(const mhb_response *response, const field_options *o, bool
   return n;
 }
 
-static shb_status choose_peak(const mhb_response *response, const field_options *o,
+static shb_status choose_peak(const mhb_response *response, const command_options *o,
                               candidate *chosen) {
   size_t total = 1;
   for (int i = 0; i < response->n_branches; i++) total += (size_t)response->branch[i].modal.n;
@@ -60,12 +60,12 @@ static shb_status choose_peak(const mhb_response *response, const field_options 
   free(list);
   SHB_CHECK(n > 0, SHB_ERR_INPUT,
             "%s: no motion of the blade was kept%s; see mhb.save, and run shroudhb mhb again",
-            o->response, o->branch >= 0 ? " on this branch" : "");
+            o->path, o->branch >= 0 ? " on this branch" : "");
   SHB_CHECK(rank <= n, SHB_ERR_INPUT, "--peak %d: there are %d", rank, n);
   return SHB_OK;
 }
 
-static shb_status choose_point(const mhb_branch *b, const field_options *o, candidate *chosen) {
+static shb_status choose_point(const mhb_branch *b, const command_options *o, candidate *chosen) {
   int nearest = -1;
   for (int a = 0; a < b->modal.n; a++) {
     const int distance = abs(b->modal.point[a] - o->point);
@@ -83,7 +83,8 @@ static shb_status choose_point(const mhb_branch *b, const field_options *o, cand
   return SHB_OK;
 }
 
-static shb_status choose(const mhb_response *response, const field_options *o, candidate *chosen) {
+static shb_status choose(const mhb_response *response, const command_options *o,
+                         candidate *chosen) {
   SHB_CHECK(o->branch < response->n_branches, SHB_ERR_INPUT,
             "--branch %d: the response has the branches 0 to %d", o->branch,
             response->n_branches - 1);
@@ -122,17 +123,17 @@ static void release(material *m) {
   post_origin_free(&m->origin);
 }
 
-static shb_status gather(const field_options *o, const char *modal, material *m) {
+static shb_status gather(const command_options *o, const char *modal, material *m) {
   candidate chosen = {0};
-  SHB_TRY(mhb_response_read(o->response, &m->response));
+  SHB_TRY(mhb_response_read(o->path, &m->response));
   SHB_TRY(choose(m->response, o, &chosen));
   SHB_TRY(post_blade_field_read_motion(modal, &m->field));
   SHB_CHECK(m->field.n_nodes > 0, SHB_ERR_INPUT,
             "%s has no /mesh or no modes/stress; make it with shroudhb modal", modal);
   SHB_TRY(post_blade_field_match(&m->field, m->response, modal));
-  SHB_TRY(up_to_date_check_modal(o->response, modal));
+  SHB_TRY(up_to_date_check_modal(o->path, modal));
   SHB_TRY(post_origin_open(modal, &m->modal));
-  SHB_TRY(post_origin_open(o->response, &m->origin));
+  SHB_TRY(post_origin_open(o->path, &m->origin));
   SHB_TRY(post_period_create(&m->field, m->response, chosen.branch, chosen.kept,
                              axis_of(m->modal.settings), &m->period));
   SHB_CHECK(!o->ring || m->period.closes, SHB_ERR_INPUT,
@@ -164,42 +165,53 @@ static shb_status mode_frequency(const char *path, const post_blade_field *f, in
 }
 
 /* The nodal diameter asked for, 0 by default; -1 without a disc. */
-static shb_status find_diameter(const field_options *o, const post_blade_field *f, int *diameter) {
+static shb_status find_diameter(const command_options *o, const post_blade_field *f,
+                                int *diameter) {
   *diameter = f->n_waves > 0 && o->diameter < 0 ? 0 : o->diameter;
   SHB_CHECK(f->n_waves > 0 || o->diameter < 0, SHB_ERR_INPUT,
-            "--nodal-diameter: %s holds a clamped blade; leave it out", o->response);
+            "--nodal-diameter: %s holds a clamped blade; leave it out", o->path);
   SHB_CHECK(f->n_waves > 0 || !o->ring, SHB_ERR_INPUT,
-            "--ring: %s holds the modes of one clamped blade", o->response);
+            "--ring: %s holds the modes of one clamped blade", o->path);
   for (int i = 0; i < f->n_waves; i++)
     if (f->diameter[i] == *diameter) return SHB_OK;
   SHB_CHECK(f->n_waves == 0, SHB_ERR_INPUT,
             "--nodal-diameter %d: %s does not hold it; modal.nodal_diameters: all computes all",
-            *diameter, o->response);
+            *diameter, o->path);
   return SHB_OK;
 }
 
-static shb_status gather_mode(const field_options *o, material *m) {
+static shb_status gather_mode(const command_options *o, material *m) {
   int    diameter;
   double frequency = 0;
-  SHB_TRY(post_blade_field_read_motion(o->response, &m->field));
+  SHB_TRY(post_blade_field_read_motion(o->path, &m->field));
   SHB_CHECK(m->field.n_nodes > 0, SHB_ERR_INPUT,
-            "%s has no /mesh or no modes/stress; make it with shroudhb modal", o->response);
-  SHB_CHECK(o->mode <= m->field.n_modes, SHB_ERR_INPUT, "--mode %d: %s has the modes 1 to %d",
-            o->mode, o->response, m->field.n_modes);
+            "%s has no /mesh or no modes/stress; make it with shroudhb modal", o->path);
+  SHB_CHECK(o->rank <= m->field.n_modes, SHB_ERR_INPUT, "--mode %d: %s has the modes 1 to %d",
+            o->rank, o->path, m->field.n_modes);
   SHB_TRY(find_diameter(o, &m->field, &diameter));
-  SHB_TRY(post_blade_field_read_wave(&m->field, o->response, diameter));
-  SHB_TRY(mode_frequency(o->response, &m->field, o->mode, diameter, &frequency));
-  SHB_TRY(post_origin_open(o->response, &m->modal));
-  SHB_TRY(post_origin_open(o->response, &m->origin));
-  return post_period_of_mode(&m->field, o->mode, diameter, frequency, MODE_SIZE,
+  SHB_TRY(post_blade_field_read_wave(&m->field, o->path, diameter));
+  SHB_TRY(mode_frequency(o->path, &m->field, o->rank, diameter, &frequency));
+  SHB_TRY(post_origin_open(o->path, &m->modal));
+  SHB_TRY(post_origin_open(o->path, &m->origin));
+  return post_period_of_mode(&m->field, o->rank, diameter, frequency, MODE_SIZE,
                              axis_of(m->modal.settings), &m->period);
 }
 
 /* ---------------------------------------------------------------- files */
 
-static void output_path(const field_options *o, const post_period *p, const char *ending,
+int field_stem(const char *path) {
+  static const char *const ending[] = {".response.h5", ".modal.h5", ".h5"};
+  const size_t             n        = strlen(path);
+  for (size_t i = 0; i < sizeof ending / sizeof *ending; i++) {
+    const size_t m = strlen(ending[i]);
+    if (n > m && strcmp(path + n - m, ending[i]) == 0) return (int)(n - m);
+  }
+  return (int)n;
+}
+
+static void output_path(const command_options *o, const post_period *p, const char *ending,
                         char out[PATH]) {
-  const int stem      = field_stem(o->response);
+  const int stem      = field_stem(o->path);
   char      point[40] = "";
   if (p->mode > 0 && p->diameter >= 0)
     snprintf(point, sizeof point, "_mode_%d_%d", p->diameter, p->mode);
@@ -207,7 +219,7 @@ static void output_path(const field_options *o, const post_period *p, const char
     snprintf(point, sizeof point, "_mode_%d", p->mode);
   else if (o->point >= 0 || o->peak > 0 || o->branch >= 0)
     snprintf(point, sizeof point, "_%d_%d", p->branch, p->point);
-  snprintf(out, PATH, "%.*s.%s%s.%s", stem, o->response, o->ring ? "ring" : "field", point, ending);
+  snprintf(out, PATH, "%.*s.%s%s.%s", stem, o->path, o->ring ? "ring" : "field", point, ending);
 }
 
 static void print_note(const post_period *p, const post_scene_note *note, FILE *out) {
@@ -224,7 +236,7 @@ static void print_note(const post_period *p, const post_scene_note *note, FILE *
     fputs("the static part at speed is in arrays of its own, not in these numbers\n", out);
 }
 
-static shb_status publish(const field_options *o, const material *m, FILE *out) {
+static shb_status publish(const command_options *o, const material *m, FILE *out) {
   char               grid[PATH], picture[PATH], settings[128];
   const int          steps = o->steps > 0 ? o->steps : STEPS;
   post_buffer        glb   = {0};
@@ -253,12 +265,11 @@ static shb_status publish(const field_options *o, const material *m, FILE *out) 
   return SHB_OK;
 }
 
-shb_status field_command(const field_options *options, FILE *out) {
+shb_status field_write(const command_options *options, FILE *out) {
   char     beside[PATH];
   material m = {0};
-  snprintf(beside, sizeof beside, "%.*s.modal.h5", field_stem(options->response),
-           options->response);
-  shb_status status = options->mode > 0
+  snprintf(beside, sizeof beside, "%.*s.modal.h5", field_stem(options->path), options->path);
+  shb_status status = options->rank > 0
                           ? gather_mode(options, &m)
                           : gather(options, options->modal ? options->modal : beside, &m);
   if (status == SHB_OK) status = publish(options, &m, out);

@@ -4,7 +4,7 @@
 
 #include <stdio.h>
 
-#include "cases/field/field_options.h"
+#include "cases/commands/command.h"
 #include "mesh/base/status.h"
 
 /* Write NAME.field.vtkhdf and NAME.field.glb. With a point or a peak chosen the names are
@@ -12,6 +12,9 @@
  * a branch the linear limits count only if nothing else was kept. Errors: SHB_ERR_INPUT the point
  * is not kept, or the modal file lacks shapes; as mhb_response_read, post_field_grid,
  * post_field_scene. */
-shb_status field_command(const field_options *options, FILE *out);
+shb_status field_write(const command_options *options, FILE *out);
+
+/* Length of NAME in NAME.response.h5, NAME.modal.h5 or NAME.h5. */
+int field_stem(const char *path);
 
 #endif

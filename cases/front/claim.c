@@ -32,8 +32,7 @@ shb_status claim_results(const case_file *file, int *claim) {
   struct sockaddr_un address;
   char              *path = case_output(file, "");
   *claim                  = -1;
-  SHB_CHECK(path, SHB_ERR_IO, "out of memory");
-  const socklen_t length = address_of(path, &address);
+  const socklen_t length  = address_of(path, &address);
   free(path);
   *claim = socket(AF_UNIX, SOCK_DGRAM | SOCK_CLOEXEC, 0);
   if (*claim < 0 || bind(*claim, (struct sockaddr *)&address, length) == 0) return SHB_OK;

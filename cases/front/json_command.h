@@ -2,13 +2,15 @@
 #ifndef CASES_FRONT_JSON_COMMAND_H
 #define CASES_FRONT_JSON_COMMAND_H
 
-/* Run the program words[0], words ended by NULL. Its standard error is passed on when it ends.
- * If it succeeds, or has not converged everywhere, the document is what it printed, or what the
- * program then[0] prints (NULL: none). Else it is
+#include "cases/options/command_row.h"
+
+/* Run the program words[0] of a command, words ended by NULL. If it succeeds, or has not converged
+ * everywhere, the document is what it printed, or what the stage post prints of its results
+ * (command_json). Else it holds the errors that the child reported:
  *
  *   {"error": {"code": 2, "kind": "bad input", "messages": ["...", ...]}}
  *
  * Returns the exit code of the command. */
-int json_command(char *const words[], char *const then[]);
+int json_command(const command_row *row, char **words);
 
 #endif

@@ -14,7 +14,8 @@
 
 enum { MESH, MODAL, MHB, POST, N_STAGES };
 
-static const char *const stage_name[N_STAGES] = {"mesh", "modal", "mhb", "post"};
+static const command_id command[N_STAGES] = {COMMAND_MESH, COMMAND_MODAL, COMMAND_MHB,
+                                             COMMAND_POST};
 
 /* A case of modes alone ends with them. */
 static int last_stage(const case_file *file) {
@@ -22,13 +23,13 @@ static int last_stage(const case_file *file) {
 }
 
 /* --verbose: prints the time of each stage. */
-static void print_times(const subprocess_result result[N_STAGES]) {
+static void print_times(const shb_child_end result[N_STAGES]) {
   double seconds = 0, cpu = 0, peak = 0;
   fprintf(stderr, "%-8s %10s %10s %10s\n", "stage", "seconds", "cpu s", "peak MB");
   for (int i = 0; i < N_STAGES; i++) {
     if (result[i].seconds == 0) continue;
-    fprintf(stderr, "%-8s %10.2f %10.2f %10.0f\n", stage_name[i], result[i].seconds, result[i].cpu,
-            result[i].peak / 1e6);
+    fprintf(stderr, "%-8s %10.2f %10.2f %10.0f\n", command_row_of(command[i])->name,
+            result[i].seconds, result[i].cpu, result[i].peak / 1e6);
     seconds += result[i].seconds;
     cpu += result[i].cpu;
     peak = fmax(peak, result[i].peak);
@@ -38,7 +39,7 @@ static void print_times(const subprocess_result result[N_STAGES]) {
 
 static void print_result(const case_file *file, const char *what, const char *suffix) {
   char *path = case_output(file, suffix);
-  if (path && access(path, R_OK) == 0) printf("%-9s %s\n", what, path);
+  if (access(path, R_OK) == 0) printf("%-9s %s\n", what, path);
   free(path);
 }
 
@@ -56,7 +57,7 @@ static void print_results(const case_file *file, bool no_report, int code) {
 /* A response that has not converged everywhere is still reported. Modes that have not converged
  * stop the run. */
 static bool goes_on(int stage, int code) {
-  return code == SHB_OK || (code == SHB_NOT_CONVERGED && strcmp(stage_name[stage], "mhb") == 0);
+  return code == SHB_OK || (code == SHB_NOT_CONVERGED && stage == MHB);
 }
 
 /* What killed runs left, of stages that may have nothing to do now. */
@@ -76,11 +77,11 @@ static shb_status check_outputs(const case_file *file, bool no_report) {
  *   *code  out  exit code of the stage that ended the run; else 3 if the response has not converged
  *               everywhere; else 0 */
 static shb_status run_stages(const case_file *file, const command_options *options, int *code,
-                             subprocess_result result[N_STAGES]) {
+                             shb_child_end result[N_STAGES]) {
   *code           = SHB_OK;
   const int first = file->modal_file ? MHB : 0, last = last_stage(file);
   for (int i = first; i <= last; i++) {
-    SHB_TRY(stage_run(stage_name[i], options, &result[i]));
+    SHB_TRY(stage_run(command[i], options, &result[i]));
     if (result[i].code == SHB_OK) continue;
     *code = result[i].code;
     if (!goes_on(i, *code)) return SHB_OK;
@@ -91,9 +92,9 @@ static shb_status run_stages(const case_file *file, const command_options *optio
 shb_status run_case(const command_options *options) {
   case_file file;
   SHB_TRY(command_read(options, RUN_ALL | CASE_OR_MODES, &file));
-  int               claim, code = SHB_OK;
-  subprocess_result result[N_STAGES] = {{0}};
-  shb_status        status           = claim_results(&file, &claim);
+  int           claim, code = SHB_OK;
+  shb_child_end result[N_STAGES] = {{0}};
+  shb_status    status           = claim_results(&file, &claim);
   if (status == SHB_OK) clear_temporaries(&file);
   if (status == SHB_OK && !file.only_modes) status = check_outputs(&file, options->no_report);
   if (status == SHB_OK) status = run_stages(&file, options, &code, result);
@@ -201,6 +202,6 @@ void run_describe(const case_file *file, FILE *out) {
     fprintf(out, "%d harmonic%s\n", mhb->harmonics, mhb->harmonics == 1 ? "" : "s");
   }
   char *path = case_output(file, ".html");
-  fprintf(out, "  report    %s\n", path ? path : file->name);
+  fprintf(out, "  report    %s\n", path);
   free(path);
 }

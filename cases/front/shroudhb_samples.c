@@ -1,26 +1,19 @@
-/* shroudhb-samples: the balance of a case whose samples of random rings are shared over MPI. */
 #include <cblas.h>
 #include <mpi.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
+#include "cases/front/shroudhb_samples.h"
+
 #include "cases/commands/balance_run.h"
 #include "cases/commands/load_model.h"
 #include "cases/schema/case.h"
 #include "cases/schema/case_paths.h"
 #include "cases/study/crew.h"
+#include "mesh/base/memory.h"
 #include "mesh/base/progress.h"
-
-static const char usage[] =
-    "usage: mpiexec -n N shroudhb-samples [--quiet] [--verbose] [--force] [--set KEY=VALUE]... "
-    "[--into FOLDER] CASE.yaml\n"
-    "\n"
-    "Does what shroudhb-mhb does, for a case with rotor.mistuning: {deviation, seed, samples}. Of "
-    "N\n"
-    "processes one traces the curves and manages, the others compute samples, one at a time.\n"
-    "Alone it computes samples by its threads. The numbers are the same for any N. What was\n"
-    "stopped goes on where it was.\n";
+#include "mesh/process/report.h"
 
 enum { REQUEST = 2 }; /* sample, preload */
 
@@ -40,8 +33,7 @@ typedef struct {
 
 static shb_status compute(void *context, const double *value, char **bytes, size_t *size) {
   const worker *w  = context;
-  answer       *to = calloc(1, sizeof *to);
-  SHB_CHECK(to, SHB_ERR_IO, "out of memory");
+  answer       *to = shb_alloc_zeroed(1, sizeof *to);
   to->status = mhb_ring_sample(&w->model->tuned, &w->model->settings, &w->sampling, (int)value[0],
                                (int)value[1], &to->peak);
   if (to->status != SHB_OK) snprintf(to->text, sizeof to->text, "%s", shb_message());
@@ -56,12 +48,11 @@ static shb_status serve(const command_options *options) {
   case_model model;
   SHB_TRY(command_read(options, CASE_MHB, &file));
   char               *modal    = case_modal_path(&file);
-  shb_status          status   = modal ? case_model_read(&file, modal, 0, true, &model)
-                                       : shb_fail(SHB_ERR_IO, __FILE__, __LINE__, "out of memory");
+  shb_status          status   = case_model_read(&file, modal, 0, true, &model);
   worker              w        = {&model, balance_sampling(&file)};
   const crew_computer computer = {&w, REQUEST, compute};
   if (status == SHB_OK) status = crew_serve(&computer);
-  if (modal) case_model_free(&model);
+  case_model_free(&model);
   free(modal);
   case_free(&file);
   return status;
@@ -148,17 +139,14 @@ static int work(const command_options *options) {
   return SHB_OK;
 }
 
-int main(int argc, char **argv) {
-  command_options options;
-  int             code = command_parse(argc, argv, usage, &options);
-  if (code >= 0) return code;
-  if (MPI_Init(&argc, &argv) != MPI_SUCCESS) {
-    fputs("shroudhb: error: MPI cannot be started\n", stderr);
+int samples_command(const command_options *options) {
+  if (MPI_Init(NULL, NULL) != MPI_SUCCESS) {
+    shb_error("MPI cannot be started");
     return SHB_ERR_IO;
   }
   shb_interrupt_catch(); /* after MPI_Init, because the launcher sets handlers of its own */
   openblas_set_num_threads(1);
-  code = work(&options);
+  const int code = work(options);
   MPI_Finalize();
   return code;
 }

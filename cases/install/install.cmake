@@ -1,5 +1,5 @@
 # What `cmake --install` copies, and the Debian package that CPack makes of it.
-#   bin                   the programs
+#   bin                   the programs, former ones as links
 #   share/shroudhb        examples and pages, in the folders of the sources: their links hold
 #   share/man             pages made from --help and the key table
 #   share/bash-completion, share/zsh
@@ -7,7 +7,11 @@ include(GNUInstallDirs)
 set(SHARED ${CMAKE_INSTALL_DATADIR}/shroudhb)
 
 get_target_property(PROGRAMS programs MANUALLY_ADDED_DEPENDENCIES)
+get_target_property(FORMER_PROGRAMS programs FORMER)
 install(TARGETS ${PROGRAMS} RUNTIME)
+foreach(command ${FORMER_PROGRAMS})
+  install(FILES $<TARGET_FILE_DIR:shroudhb>/shroudhb-${command} TYPE BIN)
+endforeach()
 
 # ---------------------------------------------------------------- pages made by the programs
 set(PAGES)
@@ -26,8 +30,10 @@ function(manual_page page program argument brief)
   set(PAGES ${PAGES} ${out} PARENT_SCOPE)
 endfunction()
 
-foreach(program ${PROGRAMS})
-  manual_page(${program}.1 ${program} --help "forced response of blades with shroud contact")
+manual_page(shroudhb.1 shroudhb --help "forced response of blades with shroud contact")
+manual_page(shroudhb-pool.1 shroudhb "help samples" "a study or random rings on several machines")
+foreach(command modal ${FORMER_PROGRAMS} check inspect contact)
+  manual_page(shroudhb-${command}.1 shroudhb "help ${command}" "a command of shroudhb")
 endforeach()
 manual_page(shroudhb-case.5 shroudhb keys "the keys of a case file")
 foreach(file study motion)

@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "mesh/base/memory.h"
+#include "mesh/process/report.h"
 
 enum { WIDTH = 120 }; /* columns of a source line */
 
@@ -104,6 +105,24 @@ static void print_override(const char *text, FILE *out) {
   free(plain);
 }
 
+static void print_issue(const case_issues *issues, const case_issue *issue, FILE *out) {
+  fprintf(out, "%s:", issues->path);
+  if (issue->line < 0) print_override(issues->override[-1 - issue->line], out);
+  if (issue->line > 0) fprintf(out, "%d:%d:", issue->line, issue->column);
+  fprintf(out, " error: %s\n", issue->text);
+}
+
+/* For the program that started this one: the line alone. */
+static void report_issue(const case_issues *issues, const case_issue *issue) {
+  char  *line = NULL;
+  size_t size = 0;
+  FILE  *out  = open_memstream(&line, &size);
+  if (!out) return;
+  print_issue(issues, issue, out);
+  if (fclose(out) == 0) shb_report(line);
+  free(line);
+}
+
 void case_issues_print(case_issues *issues, FILE *out) {
   if (issues->no_memory) return;
   int kept = issues->n < issues->capacity ? issues->n : issues->capacity;
@@ -111,11 +130,9 @@ void case_issues_print(case_issues *issues, FILE *out) {
   if (kept > 0) qsort(issues->issue, (size_t)kept, sizeof *issues->issue, by_place);
   for (int i = 0; i < kept && i < CASE_ISSUES_SHOWN; i++) {
     const case_issue *issue = &issues->issue[i];
-    fprintf(out, "%s:", issues->path);
-    if (issue->line < 0) print_override(issues->override[-1 - issue->line], out);
-    if (issue->line > 0) fprintf(out, "%d:%d:", issue->line, issue->column);
-    fprintf(out, " error: %s\n", issue->text);
+    print_issue(issues, issue, out);
     print_source(issues, issue, out);
+    if (out == stderr) report_issue(issues, issue);
   }
   if (issues->n > CASE_ISSUES_SHOWN)
     fprintf(out, "... and %d more\n", issues->n - CASE_ISSUES_SHOWN);

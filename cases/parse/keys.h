@@ -7,6 +7,7 @@
 #include <stddef.h>
 #include <stdio.h>
 
+#include "cases/options/spelling.h"
 #include "cases/parse/conditions.h"
 
 /* Type of a key: the value in the file, and after the colon the type of its slot. A row of
@@ -119,8 +120,6 @@ bool case_key_is_block(case_keys keys, const char *path);
  * not in the block. */
 const char *case_key_below(const char *path, const char *block);
 
-enum { CASE_LONGEST_WORD = 64 };
-
 /* First part of path below a block, e.g. "sections" of "mesh.blade.sections[].radius" in
  * "mesh.blade". False if path is not in the block. */
 bool case_key_part(const char *path, const char *block, char part[CASE_LONGEST_WORD]);
@@ -135,9 +134,6 @@ bool case_key_nearest(case_keys keys, const char *block, const char *word, char 
 /* Message about an unknown word in a block ("" for the top). It names the key that was probably
  * meant, the block to which the word belongs, or the keys of the block. */
 void case_key_suggest(case_keys keys, const char *block, const char *word, char *text, size_t size);
-
-/* Number of edits that turn a into b: insert, delete, replace, swap neighbours. Case is ignored. */
-int case_edit_distance(const char *a, const char *b);
 
 /* Append text to a buffer that holds a string. Text that does not fit is cut. */
 void case_append(char *buffer, size_t size, const char *format, ...)

@@ -6,7 +6,7 @@
 #include <string.h>
 #include <unistd.h>
 
-#include "cases/commands/subprocess.h"
+#include "cases/commands/stage.h"
 #include "mhb/response/response.h"
 #include "postproc/analysis/outputs.h"
 #include "postproc/study/study_file.h"
@@ -83,16 +83,14 @@ static bool reaches(const study_spec *spec, const summit *own, const summit *kno
 
 /* `shroudhb run` of a design, with a search at a frequency; NAN: as the case says. */
 static shb_status run(const study_spec *spec, const double *value, int design, bool quiet,
-                      double search_at, subprocess_result *result) {
+                      double search_at, shb_child_end *result) {
   char *words[2 * STUDY_MAX_KEYS + MORE] = {NULL};
   char  name[STUDY_NAME + WORD], starts[WORD], places[WORD], orders[] = "mhb.search.orders=[1]";
-  char  run_word[] = "run", set[] = "--set", into[] = "--into", silent[] = "--quiet";
-  int   n = 0;
+  char  set[] = "--set", into[] = "--into", silent[] = "--quiet";
+  int   n = stage_program(COMMAND_RUN, (const char **)words);
   snprintf(name, sizeof name, "name=%s_%d", spec->name, design);
   snprintf(starts, sizeof starts, "mhb.search.starts=%d", STARTS);
   snprintf(places, sizeof places, "mhb.search.at=[%.12g Hz]", search_at);
-  words[n++] = subprocess_program("shroudhb");
-  words[n++] = run_word;
   if (quiet) words[n++] = silent;
   char *const own[] = {name, starts, places, orders};
   for (int i = 0; i < (isnan(search_at) ? 1 : 4); i++) {
@@ -104,7 +102,8 @@ static shb_status run(const study_spec *spec, const double *value, int design, b
   const int sets = study_spec_words(spec, value, words + n);
   SHB_CHECK(sets >= 0 && words[0], SHB_ERR_IO, "out of memory");
   words[n + sets]   = spec->case_path;
-  shb_status status = subprocess_run(words, result);
+  shb_child  child  = shb_child_of(words);
+  shb_status status = shb_child_run(&child, result);
   for (int i = 0; i < sets; i++) free(words[n + i]);
   free(words[0]);
   return status;
@@ -112,7 +111,7 @@ static shb_status run(const study_spec *spec, const double *value, int design, b
 
 /* Compare with the study, and search where the curves are lower. */
 static shb_status compare(const study_spec *spec, const double *value, int design, bool quiet,
-                          const summit *known, subprocess_result *result) {
+                          const summit *known, shb_child_end *result) {
   summit own = peak_of_run(spec, design);
   if (!isfinite(known->amplitude) || isnan(own.amplitude)) return SHB_OK;
   if (!reaches(spec, &own, known)) {
@@ -132,8 +131,8 @@ static shb_status compare(const study_spec *spec, const double *value, int desig
 }
 
 shb_status own_run(const study_spec *spec, int design, bool quiet) {
-  design_study      study;
-  subprocess_result result = {0};
+  design_study  study;
+  shb_child_end result = {0};
   read_study(spec, &study);
   const bool wanted = spec->optimise.wanted; /* its designs are in its file only */
   const int  n      = wanted ? study.n : spec->n_designs;

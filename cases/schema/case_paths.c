@@ -1,20 +1,15 @@
 #include "cases/schema/case_paths.h"
 
-#include <stdio.h>
-#include <stdlib.h>
 #include <string.h>
 
+#include "mesh/base/memory.h"
 #include "mesh/base/publish.h"
 #include "mesh/core/file_format.h"
 
 char *case_output(const case_file *file, const char *suffix) {
   const char *folder = file->output ? file->output : file->folder;
-  bool        here   = strcmp(folder, ".") == 0;
-  size_t      size   = strlen(folder) + strlen(file->name) + strlen(suffix) + 2;
-  char       *path   = malloc(size);
-  if (path)
-    snprintf(path, size, "%s%s%s%s", here ? "" : folder, here ? "" : "/", file->name, suffix);
-  return path;
+  const bool  here   = strcmp(folder, ".") == 0;
+  return shb_text_of("%s%s%s%s", here ? "" : folder, here ? "" : "/", file->name, suffix);
 }
 
 shb_status case_output_check(const case_file *file, int n, const char *const *suffix) {
@@ -35,10 +30,10 @@ bool case_mesh_is_made(const case_file *file) {
 }
 
 char *case_mesh_path(const case_file *file) {
-  return file->mesh_file && !case_mesh_is_made(file) ? strdup(file->mesh_file)
+  return file->mesh_file && !case_mesh_is_made(file) ? shb_text(file->mesh_file)
                                                      : case_output(file, ".msh");
 }
 
 char *case_modal_path(const case_file *file) {
-  return file->modal_file ? strdup(file->modal_file) : case_output(file, ".modal.h5");
+  return file->modal_file ? shb_text(file->modal_file) : case_output(file, ".modal.h5");
 }

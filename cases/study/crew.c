@@ -6,6 +6,8 @@
 #include <stdlib.h>
 #include <time.h>
 
+#include "mesh/base/memory.h"
+
 enum { TAG_WORK, TAG_STOP, TAG_DONE };
 
 /* Between two looks for a message. A job takes 100 ms and more. */
@@ -60,12 +62,8 @@ static int take_result(const crew_work *w, const int *at_work, shb_status *statu
   MPI_Iprobe(MPI_ANY_SOURCE, TAG_DONE, MPI_COMM_WORLD, &there, &message);
   if (!there) return 0;
   MPI_Get_count(&message, MPI_CHAR, &size);
-  char *bytes = malloc((size_t)size + 1);
-  if (!bytes) {
-    *status = shb_fail(SHB_ERR_IO, __FILE__, __LINE__, "out of memory");
-    return 0;
-  }
-  int rank = message.MPI_SOURCE;
+  char *bytes = shb_alloc((size_t)size + 1, 1);
+  int   rank  = message.MPI_SOURCE;
   MPI_Recv(bytes, size, MPI_CHAR, rank, TAG_DONE, MPI_COMM_WORLD, MPI_STATUS_IGNORE);
   *status = w->done(w->context, at_work[rank], bytes, (size_t)size);
   free(bytes);
@@ -103,9 +101,8 @@ static shb_status manage(const crew_work *w, int n_request, int *at_work) {
 
 shb_status crew_manage(const crew_work *w, const crew_computer *computer) {
   if (n_ranks() == 1) return work_alone(w, computer);
-  int       *at_work = calloc((size_t)n_ranks(), sizeof *at_work);
-  shb_status status  = at_work ? manage(w, computer->n_request, at_work)
-                               : shb_fail(SHB_ERR_IO, __FILE__, __LINE__, "out of memory");
+  int             *at_work = shb_alloc((size_t)n_ranks(), sizeof *at_work);
+  const shb_status status  = manage(w, computer->n_request, at_work);
   free(at_work);
   crew_dismiss();
   return status;
@@ -122,9 +119,9 @@ static int await(void) {
 }
 
 shb_status crew_serve(const crew_computer *computer) {
-  double    *value  = calloc((size_t)computer->n_request + 1, sizeof *value);
+  double    *value  = shb_alloc((size_t)computer->n_request + 1, sizeof *value);
   shb_status status = SHB_OK;
-  while (value && await() == TAG_WORK) {
+  while (await() == TAG_WORK) {
     char  *bytes = NULL;
     size_t size  = 0;
     MPI_Recv(value, computer->n_request, MPI_DOUBLE, 0, TAG_WORK, MPI_COMM_WORLD,

@@ -4,6 +4,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "mesh/base/memory.h"
+
 typedef struct {
   int32_t state, n_outputs, n_derivatives, reason,
       curve; /* length of the reason, points of the curve */
@@ -46,8 +48,7 @@ shb_status design_message_pack(const study_design *d, int n_outputs, int n_deriv
               n_derivatives,     d->reason ? (int32_t)strlen(d->reason) : 0,
               d->curve.n,        d->seconds};
   *size    = size_of(&h);
-  *bytes   = malloc(*size);
-  SHB_CHECK(*bytes, SHB_ERR_IO, "out of memory");
+  *bytes   = shb_alloc(*size, 1);
   memcpy(*bytes, &h, sizeof h);
   study_design copy = *d; /* packing only reads it */
   move_body(true, *bytes + sizeof h, &h, &copy);
@@ -64,8 +65,7 @@ shb_status design_message_unpack(const char *bytes, size_t size, int n_outputs, 
   SHB_CHECK(good && size == size_of(&h), SHB_ERR_IO, "the message of a design is damaged");
   SHB_TRY(study_curve_take(&d->curve, h.curve));
   free(d->reason);
-  d->reason = h.reason ? calloc((size_t)h.reason + 1, 1) : NULL;
-  SHB_CHECK(d->reason || !h.reason, SHB_ERR_IO, "out of memory");
+  d->reason  = h.reason ? shb_alloc_zeroed((size_t)h.reason + 1, 1) : NULL;
   d->state   = (study_state)h.state;
   d->seconds = h.seconds;
   move_body(false, (char *)bytes + sizeof h, &h, d);

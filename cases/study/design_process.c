@@ -4,7 +4,6 @@
 #include <fcntl.h>
 #include <poll.h>
 #include <signal.h>
-#include <spawn.h>
 #include <stdbool.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -12,11 +11,11 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
-#include "cases/commands/subprocess.h"
+#include "cases/commands/stage.h"
 #include "cases/study/design_message.h"
+#include "mesh/base/memory.h"
 #include "mesh/base/progress.h"
-
-extern char **environ;
+#include "mesh/process/child.h"
 
 static const size_t MOST_BYTES = 1 << 24;
 
@@ -44,39 +43,23 @@ static bool get_all(int fd, void *data, size_t size) {
   return true;
 }
 
-/* Is this a variable of the launcher? With it a program on MPI would take itself for a rank. */
-static bool of_launcher(const char *variable) {
-  return strncmp(variable, "OMPI_", 5) == 0 || strncmp(variable, "PMIX_", 5) == 0 ||
-         strncmp(variable, "PMI_", 4) == 0 || strncmp(variable, "PRTE_", 5) == 0;
-}
-
-/* The environment without those variables; the texts are not copied. */
-static char **own_environment(void) {
-  int n = 0, kept = 0;
-  while (environ[n]) n++;
-  char **out = calloc((size_t)n + 1, sizeof *out);
-  for (int i = 0; out && i < n; i++)
-    if (!of_launcher(environ[i]) || strncmp(environ[i], "OMPI_ALLOW", 10) == 0)
-      out[kept++] = environ[i];
-  return out;
-}
-
-static int spawn(design_process *p, int in, int out) {
-  char                      *program = subprocess_program("shroudhb-design");
-  char                      *study = strdup(p->job->study), **own = own_environment(), sharing[16];
-  char                      *words[] = {program, study, sharing, NULL};
-  posix_spawn_file_actions_t actions;
+/* The design's messages are its reason, so it reports none. */
+static shb_status spawn(design_process *p, int in, int out) {
+  const char *words[COMMAND_WORDS];
+  char        sharing[16];
   snprintf(sharing, sizeof sharing, "%d", p->job->sharing);
-  posix_spawn_file_actions_init(&actions);
-  posix_spawn_file_actions_adddup2(&actions, in, STDIN_FILENO);
-  posix_spawn_file_actions_adddup2(&actions, out, STDOUT_FILENO);
-  int why = program && study && own ? posix_spawnp(&p->child, program, &actions, NULL, words, own)
-                                    : ENOMEM;
-  posix_spawn_file_actions_destroy(&actions);
-  free(program);
-  free(study);
-  free(own);
-  return why;
+  int n                   = stage_program(COMMAND_DESIGN, words);
+  words[n++]              = p->job->study;
+  words[n++]              = sharing;
+  words[n]                = NULL;
+  shb_child child         = shb_child_of((char *const *)words);
+  child.name              = "a process for designs";
+  child.in                = in;
+  child.out               = out;
+  child.apart             = true;
+  const shb_status status = shb_child_start(&child, &p->child);
+  free((void *)words[0]);
+  return status;
 }
 
 /* A pipe whose ends no other child inherits. */
@@ -90,13 +73,16 @@ static bool open_pipe(int ends[2]) {
 static shb_status start(design_process *p) {
   int in[2] = {-1, -1}, out[2] = {-1, -1};
   signal(SIGPIPE, SIG_IGN);
-  bool good = open_pipe(in) && open_pipe(out);
-  int  why  = good ? spawn(p, in[0], out[1]) : errno;
+  shb_status status = open_pipe(in) && open_pipe(out)
+                          ? spawn(p, in[0], out[1])
+                          : shb_fail(SHB_ERR_IO, __FILE__, __LINE__,
+                                     "a process for designs: cannot be started: %s%s",
+                                     strerror(errno), errno == EMFILE ? "; raise ulimit -n" : "");
   if (in[0] >= 0) close(in[0]);
   if (out[1] >= 0) close(out[1]);
   p->to   = in[1];
   p->from = out[0];
-  if (!why) { /* a child that is gone already is noticed at the first request */
+  if (status == SHB_OK) { /* a child that is gone already is noticed at the first request */
     (void)(put_all(p->to, &p->job->size, sizeof p->job->size) &&
            put_all(p->to, p->job->texts, p->job->size));
     return SHB_OK;
@@ -104,8 +90,7 @@ static shb_status start(design_process *p) {
   p->child = 0;
   if (p->to >= 0) close(p->to);
   if (p->from >= 0) close(p->from);
-  SHB_FAIL(SHB_ERR_IO, "a process for designs cannot be started: %s%s", strerror(why),
-           why == EMFILE ? "; raise ulimit -n" : "");
+  return status;
 }
 
 /* Wait for the end of the child; its status. */
@@ -121,18 +106,11 @@ static int reap(design_process *p) {
 
 /* A failed design that says how the process ended. */
 static shb_status pack_death(const design_process *p, int status, char **bytes, size_t *size) {
-  char          reason[160];
+  char          how[SHB_CHILD_HOW], reason[160];
   design_study  one;
   shb_status    packed = design_study_create(0, p->job->n_outputs, p->job->n_derivatives, &one);
   study_design *d      = packed == SHB_OK ? design_study_add(&one, NULL) : NULL;
-  if (WIFSIGNALED(status)) {
-    int number = WTERMSIG(status);
-    snprintf(reason, sizeof reason, "the process was killed by signal %d (%s)%s", number,
-             strsignal(number), number == SIGKILL ? "; out of memory?" : "");
-  } else {
-    snprintf(reason, sizeof reason, "the process ended with code %d",
-             WIFEXITED(status) ? WEXITSTATUS(status) : -1);
-  }
+  snprintf(reason, sizeof reason, "the process %s", shb_child_how(status, how));
   if (d) {
     d->state = STUDY_FAILED;
     study_design_set_reason(d, reason);
@@ -181,9 +159,8 @@ void design_process_stop(design_process *p) {
 /* ---------------------------------------------------------------- the pool */
 
 shb_status design_pool_create(const design_job *job, int n, design_pool *pool) {
-  *pool = (design_pool){n, calloc((size_t)n, sizeof *pool->process),
-                        calloc((size_t)n, sizeof *pool->design)};
-  SHB_CHECK(pool->process && pool->design, SHB_ERR_IO, "out of memory");
+  *pool = (design_pool){n, shb_alloc_zeroed((size_t)n, sizeof *pool->process),
+                        shb_alloc((size_t)n, sizeof *pool->design)};
   for (int i = 0; i < n; i++) pool->process[i].job = job;
   for (int i = 0; i < n; i++) pool->design[i] = -1;
   return SHB_OK;
@@ -255,10 +232,9 @@ static void stop_all(const design_pool *pool) {
 
 shb_status design_pool_manage(void *context, const crew_work *w) {
   design_pool   *pool    = context;
-  struct pollfd *watched = calloc((size_t)pool->n, sizeof *watched);
+  struct pollfd *watched = shb_alloc((size_t)pool->n, sizeof *watched);
   shb_status     status  = SHB_OK;
   bool           stopped = false;
-  SHB_CHECK(watched, SHB_ERR_IO, "out of memory");
   for (int busy = 1; status == SHB_OK && busy > 0;) {
     status = hand_out(pool, w, &busy);
     if (shb_interrupted() && !stopped) stop_all(pool);
@@ -295,9 +271,8 @@ shb_status design_process_texts(char **texts, study_texts *out) {
 }
 
 shb_status design_process_serve(int n_request, design_compute *compute, void *context) {
-  double *value = calloc((size_t)n_request + 1, sizeof *value);
-  SHB_CHECK(value, SHB_ERR_IO, "out of memory");
-  int answers = dup(STDOUT_FILENO); /* what a library prints must not mix with answers */
+  double *value   = shb_alloc((size_t)n_request + 1, sizeof *value);
+  int     answers = dup(STDOUT_FILENO); /* what a library prints must not mix with answers */
   dup2(STDERR_FILENO, STDOUT_FILENO);
   shb_status status = SHB_OK;
   while (status == SHB_OK && get_all(STDIN_FILENO, value, (size_t)n_request * sizeof *value)) {

@@ -28,8 +28,8 @@ typedef struct {
   int               to, from;
 } design_process;
 
-/* Compute one design in the child process shroudhb-design, which is started if it is not running.
- * If it dies, the message holds a failed design with the signal as its reason.
+/* Compute one design in a child process, the command design, started if it is not running. If it
+ * dies, the message holds a failed design with the signal as its reason.
  *
  *   value  in   [n_request]
  *   bytes  out  design_message; malloc'ed

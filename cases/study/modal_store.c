@@ -12,33 +12,24 @@
 
 #include "cases/commands/command.h"
 #include "cases/commands/modal_changes.h"
+#include "cases/commands/stage.h"
 #include "cases/commands/up_to_date.h"
 #include "cases/designs/digest.h"
 #include "cases/schema/case.h"
 #include "cases/schema/case_paths.h"
+#include "mesh/base/memory.h"
+#include "mesh/process/report.h"
 
 enum { MORE_WORDS = 12 };
 
 static const char modal_suffix[] = ".modal.h5";
 
-static char *text3(const char *a, const char *b, const char *c) {
-  size_t size = strlen(a) + strlen(b) + strlen(c) + 1;
-  char  *out  = malloc(size);
-  if (out) snprintf(out, size, "%s%s%s", a, b, c);
-  return out;
-}
-
 shb_status modal_store_open(const study_spec *spec, modal_store *s) {
-  char *stem = text3(spec->folder, "/", spec->name), number[32];
-  *s         = (modal_store){.spec = spec, .copy = -1};
-  s->folder  = stem ? text3(stem, ".study.d", "") : NULL;
-  free(stem);
-  snprintf(number, sizeof number, "/log.%ld", (long)getpid());
-  s->log = s->folder ? text3(s->folder, number, "") : NULL;
-  SHB_CHECK(s->log, SHB_ERR_IO, "out of memory");
+  *s        = (modal_store){.spec = spec, .copy = -1};
+  s->folder = shb_text_of("%s/%s.study.d", spec->folder, spec->name);
   SHB_CHECK(mkdir(s->folder, 0777) == 0 || errno == EEXIST, SHB_ERR_IO, "%s: cannot be made: %s",
             s->folder, strerror(errno));
-  return subprocess_copy(spec->base.text, &s->copy, s->copy_path);
+  return shb_child_text(spec->base.text, &s->copy, s->copy_path);
 }
 
 static void clear(modal_store *s, int at) {
@@ -50,71 +41,58 @@ static void clear(modal_store *s, int at) {
 
 void modal_store_close(modal_store *s) {
   for (int i = 0; i < STORE_MODELS; i++) clear(s, i);
-  if (s->log) unlink(s->log);
-  if (s->log && s->copy >= 0) close(s->copy);
+  if (s->folder && s->copy >= 0) close(s->copy);
   free(s->folder);
-  free(s->log);
   *s = (modal_store){0};
 }
 
 /* ---------------------------------------------------------------- making a file */
 
-/* The last error line in the log of the stages. */
-static void last_error(const char *path, char *out, size_t size) {
-  char  line[1024];
-  FILE *in = fopen(path, "r");
-  out[0]   = '\0';
-  while (in && fgets(line, sizeof line, in)) {
-    const char *error = strstr(line, "error: ");
-    if (error) snprintf(out, size, "%.*s", (int)strcspn(error + 7, "\n"), error + 7);
-  }
-  if (in) fclose(in);
+/* The last message that a stage has reported. */
+static void last_message(int report, char *out, size_t size) {
+  char *text = shb_report_read(report), *line = NULL, *rest = text;
+  for (char *next; (next = strtok_r(rest, "\n", &rest)) != NULL;) line = next;
+  const char *error = line ? strstr(line, ": error: ") : NULL; /* behind a place in a file */
+  snprintf(out, size, "%s", error ? error + strlen(": error: ") : line ? line : "");
+  free(text);
 }
 
-/* Run a stage with its messages in the log. */
-static shb_status run_logged(const modal_store *s, char *const words[], subprocess_result *result) {
-  int log = open(s->log, O_WRONLY | O_CREAT | O_TRUNC, 0666), before = dup(STDERR_FILENO);
-  if (log >= 0) dup2(log, STDERR_FILENO);
-  if (log >= 0) close(log);
-  shb_status status = subprocess_run(words, result);
-  if (before >= 0) dup2(before, STDERR_FILENO);
-  if (before >= 0) close(before);
+/* Run a stage whose messages are reported and not printed. */
+static shb_status run_unheard(char *const words[], shb_child_end *end, char *reason, size_t size) {
+  shb_child child         = shb_child_of(words);
+  child.report            = shb_report_open();
+  child.err               = open("/dev/null", O_WRONLY | O_CLOEXEC);
+  const shb_status status = shb_child_run(&child, end);
+  last_message(child.report, reason, size);
+  if (child.report >= 0) close(child.report);
+  if (child.err >= 0) close(child.err);
   return status;
 }
 
 /* Run "mesh" or "modal" for a design; the output is FOLDER/DIGEST. */
-static shb_status run_stage(const modal_store *s, const char *stage, const double *value,
+static shb_status run_stage(const modal_store *s, command_id stage, const double *value,
                             const char *digest) {
-  char *words[2 * STUDY_MAX_KEYS + MORE_WORDS] = {NULL};
-  char  program[32], name[64], quiet[] = "--quiet", into[] = "--into", set[] = "--set";
-  char  text[] = "--text", copy[SUBPROCESS_COPY];
-  int   n      = 0;
+  char       *words[2 * STUDY_MAX_KEYS + MORE_WORDS] = {NULL};
+  char        name[64], quiet[] = "--quiet", into[] = "--into", set[] = "--set", text[] = "--text";
+  char        copy[SHB_CHILD_TEXT], reason[512];
+  const char *what = command_row_of(stage)->name;
+  int         n    = stage_program(stage, (const char **)words);
   memcpy(copy, s->copy_path, sizeof copy);
-  snprintf(program, sizeof program, "shroudhb-%s", stage);
   snprintf(name, sizeof name, "name=%s", digest);
-  char *path               = subprocess_program(program);
-  words[n++]               = path;
-  words[n++]               = quiet;
-  words[n++]               = into;
-  words[n++]               = s->folder;
-  words[n++]               = text;
-  words[n++]               = copy;
-  words[n++]               = set;
-  words[n++]               = name;
-  int               sets   = study_spec_words(s->spec, value, words + n);
-  bool              good   = sets >= 0 && path;
-  subprocess_result result = {0};
-  if (good) words[n + sets] = s->spec->case_path;
-  shb_status status = good ? run_logged(s, words, &result)
-                           : shb_fail(SHB_ERR_IO, __FILE__, __LINE__, "out of memory");
+  char *const first[] = {quiet, into, s->folder, text, copy, set, name};
+  memcpy(words + n, first, sizeof first);
+  n += (int)(sizeof first / sizeof *first);
+  const int     sets   = study_spec_words(s->spec, value, words + n);
+  shb_child_end result = {0};
+  if (sets >= 0) words[n + sets] = s->spec->case_path;
+  shb_status status = sets >= 0 ? run_unheard(words, &result, reason, sizeof reason)
+                                : shb_fail(SHB_ERR_IO, __FILE__, __LINE__, "out of memory");
   for (int i = 0; i < sets; i++) free(words[n + i]);
-  free(path);
+  free(words[0]);
   if (status != SHB_OK)
-    return shb_fail(SHB_ERR_INPUT, __FILE__, __LINE__, "%s: %s", stage, shb_message());
-  char reason[512];
-  last_error(s->log, reason, sizeof reason);
+    return shb_fail(SHB_ERR_INPUT, __FILE__, __LINE__, "%s: %s", what, shb_message());
   SHB_CHECK(result.code != SHB_INTERRUPTED, SHB_INTERRUPTED, "interrupted");
-  SHB_CHECK(result.code == SHB_OK, SHB_ERR_INPUT, "%s: %s", stage,
+  SHB_CHECK(result.code == SHB_OK, SHB_ERR_INPUT, "%s: %s", what,
             reason[0] ? reason : "failed without a message");
   return SHB_OK;
 }
@@ -122,13 +100,11 @@ static shb_status run_stage(const modal_store *s, const char *stage, const doubl
 /* A modal file of this digest, of this study or of one beside it; malloc'ed, else NULL. */
 static char *find_file(const modal_store *s, const char *digest) {
   glob_t found   = {0};
-  char  *pattern = text3(s->spec->folder, "/*.study.d/", digest), *path = NULL;
-  char  *whole = pattern ? text3(pattern, modal_suffix, "") : NULL;
-  if (whole && glob(whole, 0, NULL, &found) == 0 && found.gl_pathc > 0)
-    path = strdup(found.gl_pathv[0]);
+  char  *pattern = shb_text_of("%s/*.study.d/%s%s", s->spec->folder, digest, modal_suffix);
+  char  *path    = NULL;
+  if (glob(pattern, 0, NULL, &found) == 0 && found.gl_pathc > 0) path = shb_text(found.gl_pathv[0]);
   globfree(&found);
   free(pattern);
-  free(whole);
   return path;
 }
 
@@ -162,14 +138,11 @@ static bool read_quietly(const modal_store *s, const double *value, case_file *f
 
 /* The text that the modal file at path would have as settings; malloc'ed. The mesh lies beside. */
 static shb_status settings_beside(const case_file *file, const char *path, char **settings) {
-  char      *stem   = strndup(path, strlen(path) - strlen(modal_suffix));
-  char      *made   = stem ? text3(stem, ".msh", "") : NULL;
-  const bool given  = file->mesh_file && !case_mesh_is_made(file);
-  shb_status status = made ? SHB_OK : shb_fail(SHB_ERR_IO, __FILE__, __LINE__, "out of memory");
-  *settings         = NULL;
-  if (status == SHB_OK)
-    status = up_to_date_settings(file, CASE_MODAL, given ? file->mesh_file : made, settings);
-  free(stem);
+  const int        length = (int)(strlen(path) - strlen(modal_suffix));
+  char            *made   = shb_text_of("%.*s.msh", length, path);
+  const bool       given  = file->mesh_file && !case_mesh_is_made(file);
+  const shb_status status =
+      up_to_date_settings(file, CASE_MODAL, given ? file->mesh_file : made, settings);
   free(made);
   return status;
 }
@@ -209,9 +182,8 @@ static shb_status make_from_common(const modal_store *s, const double *value, co
     status = make_file(s, value_of_common, &of_common, modes, &common);
   case_free(&of_common);
   if (status == SHB_OK && common) {
-    char *stem = text3(s->folder, "/", digest), *path = stem ? text3(stem, modal_suffix, "") : NULL;
-    *made = path && revise(file, common, path);
-    free(stem);
+    char *path = shb_text_of("%s/%s%s", s->folder, digest, modal_suffix);
+    *made      = revise(file, common, path);
     free(path);
   }
   free(common);
@@ -219,15 +191,15 @@ static shb_status make_from_common(const modal_store *s, const double *value, co
 }
 
 static shb_status run_stages(const modal_store *s, const double *value, const char *digest) {
-  SHB_TRY(run_stage(s, "mesh", value, digest));
-  return run_stage(s, "modal", value, digest);
+  SHB_TRY(run_stage(s, COMMAND_MESH, value, digest));
+  return run_stage(s, COMMAND_MODAL, value, digest);
 }
 
 /* The modal file of a design, made if it is not there, under the lock of its digest. */
 static shb_status make_file(const modal_store *s, const double *value, const case_file *file,
                             const char *digest, char **path) {
-  char *stem = text3(s->folder, "/", digest), *lock = stem ? text3(stem, ".lock", "") : NULL;
-  int   held = lock ? open(lock, O_RDWR | O_CREAT, 0666) : -1;
+  char *lock = shb_text_of("%s/%s.lock", s->folder, digest);
+  int   held = open(lock, O_RDWR | O_CREAT, 0666);
   if (held >= 0) flock(held, LOCK_EX); /* a dead process holds none */
   bool       made   = false;
   shb_status status = SHB_OK;
@@ -239,9 +211,8 @@ static shb_status make_file(const modal_store *s, const double *value, const cas
     if (status == SHB_OK && !*path)
       status = shb_fail(SHB_ERR_IO, __FILE__, __LINE__, "modal: left no file");
   }
-  if (lock) unlink(lock);
+  unlink(lock);
   if (held >= 0) close(held);
-  free(stem);
   free(lock);
   return status;
 }

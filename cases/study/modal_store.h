@@ -6,18 +6,17 @@
 #define CASES_STUDY_MODAL_STORE_H
 
 #include "cases/commands/load_model.h"
-#include "cases/commands/subprocess.h"
 #include "cases/designs/study_spec.h"
 #include "cases/peaks/peak_field.h"
+#include "mesh/process/child.h"
 
 enum { STORE_MODELS = 4 };
 
 typedef struct {
   const study_spec *spec;
   char             *folder; /* NAME.study.d beside the study file */
-  char             *log;    /* of this process: messages of the stages */
   int               copy;   /* text of the case for the stages, as it was when it was read */
-  char              copy_path[SUBPROCESS_COPY];
+  char              copy_path[SHB_CHILD_TEXT];
   struct {
     char        digest[17]; /* "": free */
     case_model  model;

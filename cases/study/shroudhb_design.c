@@ -1,5 +1,4 @@
-/* shroudhb-design: computes designs of a study, one after another, for a worker of shroudhb-study.
- * No MPI. */
+/* shroudhb-pool design: computes designs of a study, one after another, for its manager. */
 #include <cblas.h>
 #include <math.h>
 #include <omp.h>
@@ -15,17 +14,10 @@
 #include "cases/study/design_message.h"
 #include "cases/study/design_process.h"
 #include "cases/study/modal_store.h"
+#include "cases/study/shroudhb_study.h"
 #include "mesh/base/clock.h"
 #include "mesh/base/progress.h"
-
-static const char usage[] =
-    "usage: shroudhb-design STUDY.yaml [PROCESSES]\n"
-    "\n"
-    "Computes designs for `shroudhb study`, which starts it. What the study has read and values "
-    "of\n"
-    "the varied keys come from standard input, results go to standard output, in binary. PROCESSES "
-    "such programs share\n"
-    "the memory of this machine, else one.\n";
+#include "mesh/process/report.h"
 
 typedef struct {
   study_spec  spec;
@@ -92,16 +84,6 @@ static shb_status compute(void *context, const double *value, char **bytes, size
   return status;
 }
 
-/* Take the number behind the path off the words. Returns 1 without one, 0 if it is wrong. */
-static int take_sharing(int *argc, char **argv) {
-  char why[CASE_WHY];
-  int  n = 1;
-  if (*argc != 3 || argv[1][0] == '-' || argv[2][0] == '-') return n;
-  if (!case_integer(argv[2], &n, why) || n < 1) return 0;
-  argv[--*argc] = NULL;
-  return n;
-}
-
 /* Mesh and modes of a design have this process's share of the cores, unless the user has said how
  * many threads. With more than there are cores, threads wait for each other. */
 static void share_cores(int sharing) {
@@ -141,19 +123,17 @@ static shb_status serve(server *s, const char *path) {
   return status;
 }
 
-int main(int argc, char **argv) {
-  command_options options;
-  server          s = {.sharing = take_sharing(&argc, argv)};
-  if (s.sharing < 1) {
-    fputs("shroudhb: error: PROCESSES takes a number, from 1\n", stderr);
+int design_command(const command_options *options) {
+  char   why[CASE_WHY];
+  server s = {.sharing = 1};
+  if (options->other && (!case_integer(options->other, &s.sharing, why) || s.sharing < 1)) {
+    shb_error("PROCESSES takes a number, from 1");
     return SHB_ERR_INPUT;
   }
-  int code = command_parse(argc, argv, usage, &options);
-  if (code >= 0) return code;
   follow_manager();
   share_cores(s.sharing);
   openblas_set_num_threads(1);
   omp_set_num_threads(1); /* the designs run side by side */
-  const shb_status status = serve(&s, options.path);
+  const shb_status status = serve(&s, options->path);
   return status == SHB_INTERRUPTED ? SHB_INTERRUPTED : command_finish(status);
 }

@@ -1,4 +1,4 @@
-/* shroudhb-eval: one design for a driver such as Dakota: parameters file in, results file out. */
+/* shroudhb eval: one design for a driver such as Dakota: parameters file in, results file out. */
 #include <libgen.h>
 #include <limits.h>
 #include <math.h>
@@ -12,77 +12,41 @@
 #include "cases/schema/case.h"
 #include "cases/study/dakota_files.h"
 #include "cases/study/modal_store.h"
+#include "cases/study/shroudhb_study.h"
 #include "mesh/base/progress.h"
 #include "mesh/base/publish.h"
+#include "mesh/process/report.h"
 #include "postproc/draw/text_buffer.h"
 
-static const char usage[] =
-    "usage: shroudhb-eval [--set KEY=NUMBER]... [--into FOLDER] CASE.yaml --params IN --results "
-    "OUT\n"
-    "\n"
-    "Computes one design of a case for another program's driver. IN and OUT are the parameters "
-    "and\n"
-    "results files of Dakota, in its standard format or that of aprepro. Variables are named by "
-    "keys\n"
-    "of the case (contact.n0, or contact__n0), responses by outputs of studies (peak, frequency,\n"
-    "modes__1__frequency). The active set is heeded: 1 value, 2 gradient of the peak.\n"
-    "If the design has no result, OUT begins with FAIL.\n"
-    "--set gives a number of the case another value; modal files go to FOLDER, else beside the "
-    "case.\n"
-    "\n"
-    "Exit codes: 0 done, 2 bad input, 3 no result, 4 input/output.\n";
-
 typedef struct {
-  const char       *case_path, *params, *results, *into;
-  int               n_set;
-  const char       *set[STUDY_MAX_KEYS];
-  dakota_parameters p;
-  study_spec        spec;
-  char              text_path[PATH_MAX]; /* the design as a study, for the messages about it */
-  double            value[DAKOTA_MOST];
-  double            gradient[DAKOTA_MOST * DAKOTA_MOST];
+  const command_options *given;
+  dakota_parameters      p;
+  study_spec             spec;
+  char                   text_path[PATH_MAX]; /* the design as a study, for the messages about it */
+  double                 value[DAKOTA_MOST];
+  double                 gradient[DAKOTA_MOST * DAKOTA_MOST];
 } evaluation;
-
-static bool parse_words(int argc, char **argv, evaluation *e) {
-  for (int i = 1; i < argc; i++) {
-    bool more = i + 1 < argc;
-    if (strcmp(argv[i], "--params") == 0 && more)
-      e->params = argv[++i];
-    else if (strcmp(argv[i], "--results") == 0 && more)
-      e->results = argv[++i];
-    else if (strcmp(argv[i], "--into") == 0 && more)
-      e->into = argv[++i];
-    else if (strcmp(argv[i], "--set") == 0 && more && strchr(argv[i + 1], '=') &&
-             e->n_set < STUDY_MAX_KEYS)
-      e->set[e->n_set++] = argv[++i];
-    else if (argv[i][0] != '-' && !e->case_path)
-      e->case_path = argv[i];
-    else
-      return false;
-  }
-  return e->case_path && e->params && e->results;
-}
 
 /* The design as the text of a study with one value a key. */
 static shb_status write_study(evaluation *e) {
   char        path[2 * DAKOTA_TAG], real[PATH_MAX];
   post_buffer text = {0};
-  SHB_CHECK(realpath(e->case_path, real), SHB_ERR_IO, "%s: cannot be found", e->case_path);
+  SHB_CHECK(realpath(e->given->path, real), SHB_ERR_IO, "%s: cannot be found", e->given->path);
   post_put(&text, "case: '%s'\nvary:\n", real);
   for (int i = 0; i < e->p.n_variables; i++) {
     dakota_path(e->p.variable[i], path);
     post_put(&text, "  %s: [%.17g]\n", path, e->p.value[i]);
   }
-  for (int i = 0; i < e->n_set; i++) {
-    const int n = (int)strcspn(e->set[i], "=");
-    post_put(&text, "  %.*s: [%s]\n", n, e->set[i], e->set[i] + n + 1);
+  for (int i = 0; i < e->given->n_set; i++) {
+    const int n = (int)strcspn(e->given->set[i], "=");
+    post_put(&text, "  %.*s: [%s]\n", n, e->given->set[i], e->given->set[i] + n + 1);
   }
   post_put(&text, "outputs:\n");
   for (int i = 0; i < e->p.n_responses; i++) {
     dakota_path(e->p.response[i], path);
     post_put(&text, "  - '%s'\n", path);
   }
-  snprintf(e->text_path, sizeof e->text_path, "%s.study.yaml", e->results);
+  snprintf(e->text_path, sizeof e->text_path, "%s.study.yaml", e->given->results);
   shb_status status = post_buffer_publish(&text, e->text_path);
   post_buffer_free(&text);
   return status;
@@ -156,17 +120,17 @@ static shb_status beside_case(evaluation *e) {
   free(e->spec.name);
   name           = basename(leaf);
   e->spec.name   = strndup(name, strcspn(name, "."));
-  e->spec.folder = strdup(e->into ? e->into : dirname(folder));
+  e->spec.folder = strdup(e->given->into ? e->given->into : dirname(folder));
   SHB_CHECK(e->spec.name && e->spec.folder, SHB_ERR_IO, "out of memory");
-  return e->into ? shb_make_folder(e->into) : SHB_OK;
+  return e->given->into ? shb_make_folder(e->given->into) : SHB_OK;
 }
 
 static shb_status evaluate(evaluation *e) {
   design_study  one      = {0};
   study_design *design   = NULL;
   char          why[512] = "";
-  SHB_CHECK(dakota_read(e->params, &e->p, why, sizeof why), SHB_ERR_INPUT, "%s: %s", e->params,
-            why);
+  SHB_CHECK(dakota_read(e->given->params, &e->p, why, sizeof why), SHB_ERR_INPUT, "%s: %s",
+            e->given->params, why);
   SHB_TRY(write_study(e));
   SHB_TRY(study_spec_read(e->text_path, true, stderr, &e->spec));
   unlink(e->text_path);
@@ -176,33 +140,37 @@ static shb_status evaluate(evaluation *e) {
   design_study_free(&one);
   SHB_TRY(status);
   SHB_CHECK(good, SHB_NOT_CONVERGED, "%s", why);
-  SHB_CHECK(dakota_write(e->results, &e->p, e->value, e->gradient), SHB_ERR_IO,
-            "%s: cannot be written", e->results);
+  SHB_CHECK(dakota_write(e->given->results, &e->p, e->value, e->gradient), SHB_ERR_IO,
+            "%s: cannot be written", e->given->results);
   return SHB_OK;
 }
 
-int main(int argc, char **argv) {
-  static evaluation e;
-  if (argc == 2 && strcmp(argv[1], "--help") == 0) {
-    fputs(usage, stdout);
-    return SHB_OK;
-  }
-  if (!parse_words(argc, argv, &e)) {
-    fputs(
-        "shroudhb: error: expected [--set KEY=NUMBER] [--into FOLDER] CASE.yaml --params IN "
-        "--results OUT\n",
-        stderr);
+/* What is missing or wrong; NULL: nothing. */
+static const char *fault(const command_options *o) {
+  if (!o->params || !o->results) return "--params IN and --results OUT are needed";
+  for (int i = 0; i < o->n_set; i++)
+    if (!strchr(o->set[i], '=')) return "--set needs KEY=NUMBER";
+  return o->n_set > STUDY_MAX_KEYS ? "more --set than a study has keys" : NULL;
+}
+
+int eval_command(const command_options *options) {
+  const char *wrong = fault(options);
+  if (wrong) {
+    shb_error("%s; see --help", wrong);
     return SHB_ERR_INPUT;
   }
+  static evaluation e;
+  e.given = options;
   /* A crash leaves this behind, and the driver learns of it. */
-  if (!dakota_fail(e.results, "the program ended before it had a result")) {
-    fprintf(stderr, "shroudhb: error: %s: cannot be written\n", e.results);
+  if (!dakota_fail(options->results, "the program ended before it had a result")) {
+    shb_error("%s: cannot be written", options->results);
     return SHB_ERR_IO;
   }
   shb_interrupt_catch();
   shb_status status = evaluate(&e);
   if (status != SHB_OK)
-    dakota_fail(e.results, shb_message()[0] ? shb_message() : "the input is wrong; see its errors");
+    dakota_fail(options->results,
+                shb_message()[0] ? shb_message() : "the input is wrong; see its errors");
   study_spec_free(&e.spec);
   return command_finish(status);
 }

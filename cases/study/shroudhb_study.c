@@ -1,5 +1,5 @@
 #define _GNU_SOURCE /* sched_getaffinity */
-/* shroudhb-study: a design study on the cores of this machine, or over MPI on several machines; or
+/* shroudhb study: a design study on the cores of this machine, or over MPI on several machines; or
  * one design of it in full. */
 #include <glob.h>
 #include <mpi.h>
@@ -10,39 +10,18 @@
 #include <unistd.h>
 
 #include "cases/commands/command.h"
-#include "cases/commands/subprocess.h"
 #include "cases/designs/study_echo.h"
-#include "cases/parse/units.h"
 #include "cases/peaks/design_memory.h"
 #include "cases/peaks/own_run.h"
 #include "cases/study/design_process.h"
+#include "cases/study/shroudhb_study.h"
 #include "cases/study/study_run.h"
+#include "mesh/base/memory.h"
 #include "mesh/base/progress.h"
 #include "mesh/base/publish.h"
+#include "mesh/process/report.h"
 #include "postproc/study/study_file.h"
 #include "postproc/summary/summary.h"
-
-static const char usage[] =
-    "usage: shroudhb-study [--quiet] [--verbose] [--force] [--json] [--set KEY=VALUE]...\n"
-    "                      [--into FOLDER] STUDY.yaml\n"
-    "       mpiexec -n N shroudhb-study STUDY.yaml\n"
-    "       shroudhb-study --design=I STUDY.yaml\n"
-    "       shroudhb-study --check [--json] STUDY.yaml\n"
-    "\n"
-    "Runs the designs of STUDY.yaml and writes NAME.study.h5 and NAME.study.csv. A process for\n"
-    "every core computes designs. On several machines mpiexec starts N of this program: one\n"
-    "manages and the others compute.\n"
-    "A study that was stopped goes on where it was. Modal files stay in NAME.study.d.\n"
-    "\n"
-    "  --design=I  run design I alone, all stages, with a report of its own\n"
-    "  --check     check the study and all its designs, run nothing\n"
-    "  --force     compute all designs anew\n"
-    "  --set KEY=VALUE  instead of what STUDY.yaml says, such as --set samples=64 or\n"
-    "              --set vary.contact.mu=[0.2,0.3]; any number (`shroudhb keys study`)\n"
-    "  --into FOLDER  where the output files go; default: beside STUDY.yaml\n"
-    "\n"
-    "Exit codes: 0 done, 2 bad input, 3 some designs failed or did not converge, 4 input/output,\n"
-    "130 interrupted (results so far kept).\n";
 
 /* Cores that this process may use. */
 static int n_cores(void) {
@@ -67,13 +46,11 @@ static void add_cost(const study_spec *spec, const char *path, study_cost *cost,
 
 /* From all studies beside this one. */
 static study_cost cost_of(const study_spec *spec) {
-  study_cost   cost    = {0};
-  double       seconds = 0;
-  const size_t size    = strlen(spec->folder) + 32;
-  char        *pattern = malloc(size);
-  glob_t       found   = {0};
-  if (pattern) snprintf(pattern, size, "%s/*.study.h5", spec->folder);
-  if (pattern && glob(pattern, 0, NULL, &found) != 0) found.gl_pathc = 0;
+  study_cost cost    = {0};
+  double     seconds = 0;
+  char      *pattern = shb_text_of("%s/*.study.h5", spec->folder);
+  glob_t     found   = {0};
+  if (glob(pattern, 0, NULL, &found) != 0) found.gl_pathc = 0;
   for (size_t i = 0; i < found.gl_pathc; i++) add_cost(spec, found.gl_pathv[i], &cost, &seconds);
   globfree(&found);
   free(pattern);
@@ -102,8 +79,7 @@ static shb_status check(const study_spec *spec, const command_options *options) 
 static shb_status print_json(const study_spec *spec) {
   post_buffer text   = {0};
   char       *path   = study_path(spec, ".study.h5");
-  shb_status  status = path ? post_summary_of_file(path, &text)
-                            : shb_fail(SHB_ERR_IO, __FILE__, __LINE__, "out of memory");
+  shb_status  status = post_summary_of_file(path, &text);
   if (status == SHB_OK) fwrite(text.text, 1, text.length, stdout);
   post_buffer_free(&text);
   free(path);
@@ -269,7 +245,8 @@ static bool is_launched(void) {
 }
 
 /* --design=I and --check: without MPI. */
-static int work_alone(const command_options *options, int design) {
+static int work_alone(const command_options *options) {
+  const int  design = options->design > 0 ? options->design : 0;
   study_spec spec;
   shb_status status = read_spec(options, design == 0, &spec);
   if (status == SHB_OK && options->into && design > 0) status = shb_make_folder(options->into);
@@ -279,47 +256,19 @@ static int work_alone(const command_options *options, int design) {
   return command_finish(status);
 }
 
-/* Take --design=I or "--design I" out of the words. Returns the design, 0 without one, -1 if it is
- * wrong. */
-static int take_design(int *argc, char **argv) {
-  static const char option[] = "--design";
-  size_t            length   = strlen(option);
-  int               design   = 0;
-  for (int i = 1; i < *argc; i++) {
-    char why[CASE_WHY];
-    if (strncmp(argv[i], option, length) != 0) continue;
-    bool        joined = argv[i][length] == '=';
-    const char *text   = joined ? argv[i] + length + 1 : i + 1 < *argc ? argv[i + 1] : "";
-    if (!case_integer(text, &design, why) || design < 1) return -1;
-    int taken = joined ? 1 : 2;
-    for (int k = i; k + taken <= *argc; k++) argv[k] = argv[k + taken];
-    *argc -= taken;
-    i--;
-  }
-  return design;
-}
-
-int main(int argc, char **argv) {
-  command_options options;
-  int             design = take_design(&argc, argv);
-  if (design < 0) {
-    fputs("shroudhb: error: --design takes the number of a design, from 1\n", stderr);
-    return SHB_ERR_INPUT;
-  }
-  int code = command_parse(argc, argv, usage, &options);
-  if (code >= 0) return code;
-  if (design > 0 || options.mode) return work_alone(&options, design);
+int study_command(const command_options *options) {
+  if (options->design > 0 || options->mode) return work_alone(options);
   study_spec spec     = {0};
   const bool launched = is_launched();
   int        rank     = 0;
-  if (launched && MPI_Init(&argc, &argv) != MPI_SUCCESS) {
-    fputs("shroudhb: error: MPI cannot be started\n", stderr);
+  if (launched && MPI_Init(NULL, NULL) != MPI_SUCCESS) {
+    shb_error("MPI cannot be started");
     return SHB_ERR_IO;
   }
   if (launched) MPI_Comm_rank(MPI_COMM_WORLD, &rank);
   shb_interrupt_catch(); /* after MPI_Init, because the launcher sets handlers of its own */
-  shb_status status = launched ? work_over_mpi(&options, &spec) : work_here(&options, &spec);
-  code              = rank == 0 ? command_finish(status) : SHB_OK;
+  shb_status status = launched ? work_over_mpi(options, &spec) : work_here(options, &spec);
+  const int  code   = rank == 0 ? command_finish(status) : SHB_OK;
   study_spec_free(&spec);
   if (launched) MPI_Finalize();
   return code;

@@ -10,6 +10,7 @@
 #include "cases/study/nearest_design.h"
 #include "cases/study/optimisation.h"
 #include "cases/study/study_summary.h"
+#include "mesh/base/memory.h"
 #include "postproc/draw/text_buffer.h"
 #include "postproc/study/study_csv.h"
 #include "postproc/study/study_file.h"
@@ -35,12 +36,8 @@ typedef struct {
 } running;
 
 char *study_path(const study_spec *spec, const char *suffix) {
-  size_t size = strlen(spec->folder) + strlen(spec->name) + strlen(suffix) + 2;
-  char  *path = malloc(size);
-  bool   here = strcmp(spec->folder, ".") == 0;
-  if (path)
-    snprintf(path, size, "%s%s%s%s", here ? "" : spec->folder, here ? "" : "/", spec->name, suffix);
-  return path;
+  const bool here = strcmp(spec->folder, ".") == 0;
+  return shb_text_of("%s%s%s%s", here ? "" : spec->folder, here ? "" : "/", spec->name, suffix);
 }
 
 /* ---------------------------------------------------------------- the study before any run */
@@ -100,15 +97,14 @@ static int by_digest(const void *left, const void *right) {
 
 /* The digests of a study, sorted, equal ones by rising design; malloc'ed. */
 static digest_place *sorted(const design_study *s) {
-  digest_place *list = calloc((size_t)s->n + 1, sizeof *list);
-  for (int i = 0; list && i < s->n; i++) list[i] = (digest_place){s->design[i].digest, i};
-  if (list) qsort(list, (size_t)s->n, sizeof *list, by_digest);
+  digest_place *list = shb_alloc((size_t)s->n + 1, sizeof *list);
+  for (int i = 0; i < s->n; i++) list[i] = (digest_place){s->design[i].digest, i};
+  qsort(list, (size_t)s->n, sizeof *list, by_digest);
   return list;
 }
 
 static shb_status find_twins(running *r) {
   digest_place *list = sorted(r->study);
-  SHB_CHECK(list, SHB_ERR_IO, "out of memory");
   for (int i = 0; i < r->study->n; i++) {
     bool same               = i > 0 && strcmp(list[i].digest, list[i - 1].digest) == 0;
     int  first              = same ? list[i - 1].design : -1;
@@ -140,7 +136,7 @@ static shb_status take_known(running *r, const design_study *known) {
   if (known->n_outputs != s->n_outputs || known->n_derivatives != s->n_derivatives)
     return SHB_OK; /* other outputs, other digests */
   digest_place *list   = sorted(known);
-  shb_status    status = list ? SHB_OK : shb_fail(SHB_ERR_IO, __FILE__, __LINE__, "out of memory");
+  shb_status    status = SHB_OK;
   for (int i = 0; i < s->n && status == SHB_OK; i++) {
     const digest_place wanted = {s->design[i].digest, 0};
     size_t             low = 0, high = (size_t)known->n;
@@ -167,11 +163,9 @@ static shb_status take_known(running *r, const design_study *known) {
 
 /* This study's own file and all others beside it. Files that cannot be read hold nothing. */
 static shb_status take_all_known(running *r) {
-  char      *pattern = malloc(strlen(r->spec->folder) + 32);
+  char      *pattern = shb_text_of("%s/*.study.h5", r->spec->folder);
   glob_t     found   = {0};
   shb_status status  = SHB_OK;
-  SHB_CHECK(pattern, SHB_ERR_IO, "out of memory");
-  sprintf(pattern, "%s/*.study.h5", r->spec->folder);
   if (glob(pattern, 0, NULL, &found) != 0) found.gl_pathc = 0;
   for (size_t i = 0; i < found.gl_pathc && status == SHB_OK; i++) {
     design_study known;
@@ -194,8 +188,7 @@ static shb_status publish(running *r, bool finished) {
   post_buffer table  = {0};
   char       *csv    = study_path(r->spec, ".study.csv");
   r->study->finished = finished;
-  shb_status status  = csv ? study_file_write(r->study, r->path)
-                           : shb_fail(SHB_ERR_IO, __FILE__, __LINE__, "out of memory");
+  shb_status status  = study_file_write(r->study, r->path);
   if (status == SHB_OK) {
     study_csv(r->study, &table);
     status = post_buffer_publish(&table, csv);
@@ -419,12 +412,10 @@ shb_status study_run(const study_spec *spec, bool force, const crew_staff *worke
   running    r      = {.spec = spec, .study = s, .progress = progress};
   size_t     n      = (size_t)s->n + 1;
   r.path            = study_path(spec, ".study.h5");
-  r.twin            = malloc(n * sizeof *r.twin);
-  r.given           = calloc(n, sizeof *r.given);
-  r.tried           = calloc(n, sizeof *r.tried);
-  r.request         = calloc(2 * (size_t)spec->keys.n + 1, sizeof *r.request);
-  if (status == SHB_OK && !(r.path && r.twin && r.given && r.tried && r.request))
-    status = shb_fail(SHB_ERR_IO, __FILE__, __LINE__, "out of memory");
+  r.twin            = shb_alloc(n, sizeof *r.twin);
+  r.given           = shb_alloc_zeroed(n, sizeof *r.given);
+  r.tried           = shb_alloc_zeroed(n, sizeof *r.tried);
+  r.request         = shb_alloc_zeroed(2 * (size_t)spec->keys.n + 1, sizeof *r.request);
   if (status == SHB_OK && spec->optimise.wanted)
     status = search_all(&r, force, workers);
   else if (status == SHB_OK)
@@ -476,7 +467,7 @@ void study_run_summary(const study_spec *spec, const design_study *s, FILE *out)
     fprintf(out, "\n");
   }
   if (s->optimum.note) fprintf(out, "%s\n", s->optimum.note);
-  fprintf(out, "table     %s\nstudy     %s\n", csv ? csv : "", h5 ? h5 : "");
+  fprintf(out, "table     %s\nstudy     %s\n", csv, h5);
   free(h5);
   free(csv);
 }

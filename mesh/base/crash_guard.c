@@ -53,6 +53,12 @@ static struct {
   int   file; /* of the stream */
 } speech;
 
+static volatile sig_atomic_t report_of_end = -1;
+
+void shb_end_reports(int report) {
+  report_of_end = report;
+}
+
 void shb_end_at_once(const char *line, int code) {
   static atomic_flag ending = ATOMIC_FLAG_INIT;
   const int          where  = guard.muted ? speech.file : STDERR_FILENO;
@@ -60,6 +66,7 @@ void shb_end_at_once(const char *line, int code) {
     sleep(1); /* another thread ends the process meanwhile; or this one has crashed over it */
   } else {
     ssize_t done = write(where, line, strlen(line));
+    if (report_of_end >= 0) done = write(report_of_end, line, strlen(line));
     (void)done;
   }
   for (int i = 0; i < MAX_FILES; i++)

@@ -16,6 +16,9 @@ void shb_end_removes(const char *name);
  * handler. */
 _Noreturn void shb_end_at_once(const char *line, int code);
 
+/* The line also goes to this descriptor, for the program that started this one. Negative: none. */
+void shb_end_reports(int report);
+
 /* From here to the end of the guard a fatal signal prints "shroudhb: error: PATH: WHY" and ends the
  * process. Temporary files of results are removed. What the C library prints before it aborts leads
  * nowhere. Guards do not nest: a second one replaces the text of the first.

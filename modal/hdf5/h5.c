@@ -7,12 +7,11 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <sys/resource.h>
 #include <sys/stat.h>
-#include <sys/wait.h>
 #include <unistd.h>
 
 #include "mesh/base/crash_guard.h"
+#include "mesh/process/child.h"
 #include "modal/hdf5/h5_internal.h"
 #include "modal/hdf5/stamp.h"
 
@@ -329,32 +328,23 @@ static shb_status read_texts(const char *path) {
 /* Exit code of the child that read without a crash what is refused. */
 enum { REFUSED = 100 };
 
+/* In the child. */
+static int read_apart(void *path) {
+  const shb_status status = read_texts(path);
+  H5close(); /* a damaged heap is found when its blocks are given back */
+  return status == SHB_OK ? SHB_OK : REFUSED;
+}
+
 /* Let a child process read the texts of a file whose checksum says nothing. Over a damaged one HDF5
  * may crash, or go round for ever. */
-static shb_status try_texts(const char *path, rlim_t seconds) {
-  fflush(NULL);
-  const pid_t child = fork();
-  SHB_CHECK(child >= 0, SHB_ERR_IO, "%s: cannot be tried by another process: %s", path,
-            strerror(errno));
-  if (child == 0) {
-    const struct rlimit time = {seconds, seconds + 1};
-    const int           null = open("/dev/null", O_WRONLY);
-    if (null >= 0) dup2(null, STDERR_FILENO);
-    signal(SIGXCPU, SIG_DFL);
-    setrlimit(RLIMIT_CPU, &time);
-    const shb_status status = read_texts(path);
-    H5close(); /* a damaged heap is found when its blocks are given back */
-    _exit(status == SHB_OK ? SHB_OK : REFUSED);
-  }
-  int state = 0;
-  while (waitpid(child, &state, 0) < 0 && errno == EINTR) continue;
-  SHB_CHECK(!WIFSIGNALED(state) || (WTERMSIG(state) != SIGXCPU && WTERMSIG(state) != SIGKILL),
-            SHB_ERR_INPUT, "%s: is damaged: HDF5 reads it without an end; write or copy it again",
-            path);
-  const int code = WIFEXITED(state) ? WEXITSTATUS(state) : -1;
-  SHB_CHECK(code == SHB_OK || code == REFUSED, SHB_ERR_INPUT,
+static shb_status try_texts(const char *path, long seconds) {
+  shb_child_end end;
+  SHB_TRY(shb_child_try(read_apart, (void *)path, seconds, &end));
+  SHB_CHECK(end.signal != SIGXCPU && end.signal != SIGKILL, SHB_ERR_INPUT,
+            "%s: is damaged: HDF5 reads it without an end; write or copy it again", path);
+  SHB_CHECK(!end.signal && (end.code == SHB_OK || end.code == REFUSED), SHB_ERR_INPUT,
             "%s: is damaged: HDF5 crashed while it was read; write or copy it again", path);
-  if (code == SHB_OK) return SHB_OK;
+  if (end.code == SHB_OK) return SHB_OK;
   hid_t file; /* once more here, for the reason */
   SHB_TRY(open_guarded(path, &file));
   return h5_close(file);
@@ -373,7 +363,7 @@ static shb_status try_once(const char *path) {
   struct stat now;
   SHB_CHECK(stat(path, &now) == 0, SHB_ERR_IO, "%s: cannot be read: %s", path, strerror(errno));
   if (is_tried(&now)) return SHB_OK;
-  SHB_TRY(try_texts(path, TRIAL + (rlim_t)now.st_size / TRIAL_BYTES));
+  SHB_TRY(try_texts(path, TRIAL + (long)now.st_size / TRIAL_BYTES));
   tried = now;
   return SHB_OK;
 }

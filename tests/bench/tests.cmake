@@ -37,4 +37,4 @@ shb_bench(modal NIGHTLY LIBRARIES shb_modal tests_box
 shb_bench(cyclic NIGHTLY LIBRARIES shb_modal tests_box
   ARGUMENTS "$<$<BOOL:${SHROUDHB_CCX}>:${SHROUDHB_CCX}>")
 shb_python_test(bench.study_rates NIGHTLY bench/bench_study_rates.py
-  $<TARGET_FILE_DIR:shroudhb-study> --quick)
+  $<TARGET_FILE_DIR:shroudhb> --quick)

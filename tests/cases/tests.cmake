@@ -1,6 +1,7 @@
 set(PROGRAMS_FOLDER $<TARGET_FILE_DIR:shroudhb>)
 set(CASES ${PROJECT_SOURCE_DIR}/cases)
 
+shb_test(cases/options UNIT options command_table LIBRARIES shb_cases_options)
 shb_test(cases/parse UNIT units keys lists LIBRARIES shb_case)
 shb_test(cases/schema UNIT case faults stage_settings motion nodal_diameters LIBRARIES shb_case)
 shb_python_test(cases.schema.key_schema UNIT cases/schema/test_key_schema.py
@@ -23,7 +24,7 @@ shb_shell_test(cases.commands.modes_alone INTEGRATION cases/commands/test_modes_
 shb_shell_test(cases.commands.stale INTEGRATION cases/commands/test_stale.sh
   $<TARGET_FILE:shroudhb> ${CASES}/z_notch_blade/case.yaml)
 shb_shell_test(cases.commands.contact UNIT cases/commands/test_contact.sh
-  $<TARGET_FILE:shroudhb-mhb> ${CASES}/prescribed_motion "${SHROUDHB_PYTHON}")
+  $<TARGET_FILE:shroudhb> ${CASES}/prescribed_motion "${SHROUDHB_PYTHON}")
 shb_python_test(cases.commands.json INTEGRATION cases/commands/test_json.py
   $<TARGET_FILE:shroudhb> ${CASES}/bring_your_own ${PROJECT_SOURCE_DIR}/docs/user/summary.md)
 shb_python_test(cases.commands.revision INTEGRATION cases/commands/test_revision.py
@@ -40,8 +41,7 @@ shb_test(cases/peaks INTEGRATION design_run LIBRARIES shb_cases_peaks tests_mode
 shb_test(cases/designs UNIT design_table digest output_names refusals study_keys study_optimise
   study_plan study_schema study_spec study_table uncertain_keys LIBRARIES shb_cases_designs)
 shb_test(cases/study UNIT line_minimum optimiser optimisation dakota_files design_message
-  nearest_design crew study_summary study_run LIBRARIES shb_cases_study tests_studies MPI::MPI_C
-  SOURCES ../cases/study/crew.c ../cases/study/study_run.c ../cases/study/study_summary.c)
+  nearest_design crew study_summary study_run LIBRARIES shb_cases_study tests_studies)
 
 # What is installed, by `cmake --install` and as a Debian package, works on its own.
 shb_shell_test(cases.install.install NIGHTLY cases/install/test_install.sh ${CMAKE_COMMAND}
@@ -111,5 +111,5 @@ shb_python_test(cases.scenes.disc_vary NIGHTLY cases/scenes/test_disc_vary.py
 # The example of cases/bring_your_own; skipped where python3 has no h5py.
 if(SHROUDHB_PYTHON)
   shb_test(cases/scenes INTEGRATION bring_your_own LIBRARIES shb_mhb_response
-    ARGUMENTS ${SHROUDHB_PYTHON} ${CASES}/bring_your_own $<TARGET_FILE:shroudhb-mhb>)
+    ARGUMENTS ${SHROUDHB_PYTHON} ${CASES}/bring_your_own ${PROGRAMS_FOLDER}/shroudhb-mhb)
 endif()

@@ -1,5 +1,6 @@
 shb_test(mesh/base UNIT alloc arena axes crash_guard phases progress publish root shortest
   INTEGRATION memory LIBRARIES shb_mesh_base)
+shb_test(mesh/process UNIT child report LIBRARIES shb_mesh_process)
 shb_test(mesh/table UNIT csv LIBRARIES shb_mesh_table)
 shb_test(mesh/core UNIT face_match group_checks group_rules jacobian triangle face_pairing
   file_format cyclic_sides LIBRARIES tests_fem)
@@ -16,5 +17,5 @@ shb_test(mesh/blade UNIT airfoil section_smoothing INTEGRATION disc hex_sweep sh
 shb_test(mesh/blade UNIT scene LIBRARIES shb_case shb_mesh
   DEFINITIONS SCENE="${PROJECT_SOURCE_DIR}/cases/z_notch_blade/case.yaml")
 shb_shell_test(mesh.blade.command INTEGRATION mesh/blade/test_command.sh
-  $<TARGET_FILE:shroudhb-mesh> ${PROJECT_SOURCE_DIR}/cases/z_notch_blade/case.yaml
+  $<TARGET_FILE_DIR:shroudhb>/shroudhb-mesh ${PROJECT_SOURCE_DIR}/cases/z_notch_blade/case.yaml
   $<BOOL:${SHROUDHB_SANITIZE}>)

@@ -6,9 +6,9 @@ shb_test(postproc/report UNIT csv ring_data page_data tables picture safe_diagra
   LIBRARIES tests_responses tests_models tests_box)
 # The program itself: exit codes and the one line of an error.
 shb_test(postproc/report UNIT command LIBRARIES tests_responses tests_studies)
-add_dependencies(test_postproc_report shroudhb-post)
+add_dependencies(test_postproc_report shroudhb)
 set_property(TEST postproc.report.command APPEND PROPERTY ENVIRONMENT
-  "SHROUDHB_POST=$<TARGET_FILE:shroudhb-post>")
+  "SHROUDHB_POST=$<TARGET_FILE_DIR:shroudhb>/shroudhb-post")
 shb_test(postproc/inspect UNIT diameter_table inspect mac mode_table phase_table value_table
   INTEGRATION value_range LIBRARIES tests_responses)
 shb_test(postproc/field UNIT peak_stress whole_period stress_section strain_gauge

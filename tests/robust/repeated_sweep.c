@@ -14,7 +14,7 @@
 #include <stdlib.h>
 #include <unistd.h>
 
-int mhb_main(int argc, char **argv); /* of shroudhb-mhb */
+#include "cases/commands/stages.h"
 
 /* glibc's own functions, which the definitions below hide */
 void *__libc_malloc(size_t size);
@@ -90,10 +90,10 @@ int main(int argc, char **argv) {
   const size_t lost   = argc >= 4 ? strtoul(argv[3], NULL, 10) : 0;
   if (sweeps < 10) return 2;
   const int settled = sweeps / 10 > 3 ? sweeps / 10 : 3; /* threads and libraries have begun */
-  char     *word[]  = {"shroudhb-mhb", "--quiet", "--force", argv[2], NULL};
-  memory    early   = {0}, late;
+  const command_options options = {.quiet = true, .force = true, .path = argv[2]};
+  memory                early   = {0}, late;
   for (int i = 1; i <= sweeps; i++) {
-    if (mhb_main(4, word) != 0) {
+    if (mhb_command(&options) != 0) {
       fprintf(stderr, "sweep %d failed\n", i);
       return 1;
     }

@@ -10,24 +10,23 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
-/* The mains of the programs, renamed where they are compiled for this one. */
-int mesh_main(int argc, char **argv);
+#include "cases/commands/stages.h"
+#include "cases/options/command_table.h"
+
+/* The main of the program, renamed where it is compiled for this one. */
 int modal_main(int argc, char **argv);
-int mhb_main(int argc, char **argv);
-int post_main(int argc, char **argv);
-int integrate_main(int argc, char **argv);
 
 enum { MOST_WORDS = 16, LINE = 4096, SECONDS = 60 };
 static const rlim_t MOST_MEMORY = (rlim_t)4 << 30; /* bytes of address space; damaged sizes */
 
 static const struct {
-  const char *name;
-  int (*main)(int argc, char **argv);
-} stage[] = {{"mesh", mesh_main},
-             {"modal", modal_main},
-             {"mhb", mhb_main},
-             {"post", post_main},
-             {"integrate", integrate_main}};
+  command_id id;
+  int (*work)(const command_options *options);
+} stage[] = {{COMMAND_MESH, mesh_command},
+             {COMMAND_MHB, mhb_command},
+             {COMMAND_POST, post_command},
+             {COMMAND_INSPECT, inspect_command},
+             {COMMAND_INTEGRATE, integrate_command}};
 
 static void redirect(int target, const char *path) {
   const int file = open(path, O_WRONLY | O_CREAT | O_TRUNC, 0600);
@@ -43,8 +42,14 @@ static int run(int argc, char **argv) {
   setrlimit(RLIMIT_AS, &memory);
 #endif
   alarm(SECONDS); /* a stage that hangs ends by a signal, which is a fault */
-  for (size_t i = 0; i < sizeof stage / sizeof *stage; i++)
-    if (strcmp(stage[i].name, argv[0]) == 0) return stage[i].main(argc, argv);
+  const command_id id = command_find(argv[0]);
+  command_options  options;
+  if (id == COMMAND_MODAL) return modal_main(argc, argv);
+  for (size_t i = 0; i < sizeof stage / sizeof *stage; i++) {
+    if (stage[i].id != id) continue;
+    const int code = options_read(command_row_of(id), argc, argv, &options);
+    return code >= 0 ? code : stage[i].work(&options);
+  }
   return 98;
 }
 

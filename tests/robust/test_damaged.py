@@ -214,8 +214,8 @@ def inputs(stages):
     yield Input(response, ('post', '--quiet', 'one.yaml'),
                 [f'three_degree.{kind}' for kind in ('csv', 'svg', 'html', 'summary.json')],
                 read(modal), stamped=True)
-    yield Input(response, ('post', '--inspect', response), [], read(modal), stamped=True)
-    yield Input(modal, ('post', '--inspect', modal), [], own)
+    yield Input(response, ('inspect', response), [], read(modal), stamped=True)
+    yield Input(modal, ('inspect', modal), [], own)
     write('step.yaml', text + 'integrate: {frequencies: [0.2 Hz], tolerance: 1e-3}\n')
     yield Input(response, ('integrate', '--quiet', 'step.yaml'), [integration], read(modal),
                 stamped=True)

@@ -16,15 +16,12 @@ shb_robust_test(not_finite INTEGRATION not_finite ${SCENE})
 shb_robust_test(numbers INTEGRATION numbers ${SCENE} contact.mu contact.n0[0])
 shb_robust_test(numbers_all NIGHTLY numbers ${SCENE})
 
-# the programs of the stages in one, each main under a name of its own
+# the commands of the stages in one program, with the main of the modal stage under another name
 set(COMMANDS ${PROJECT_SOURCE_DIR}/cases/commands)
-add_executable(stage_server robust/stage_server.c)
-target_link_libraries(stage_server PRIVATE shb_cases_commands shb_mesh shb_modal)
-foreach(stage mesh modal mhb post integrate)
-  target_sources(stage_server PRIVATE ${COMMANDS}/shroudhb_${stage}.c)
-  set_property(SOURCE ${COMMANDS}/shroudhb_${stage}.c
-    APPEND PROPERTY COMPILE_OPTIONS -Dmain=${stage}_main -Wno-missing-prototypes)
-endforeach()
+add_executable(stage_server robust/stage_server.c ${COMMANDS}/shroudhb_modal.c)
+target_link_libraries(stage_server PRIVATE shb_cases_commands shb_modal)
+set_property(SOURCE ${COMMANDS}/shroudhb_modal.c
+  APPEND PROPERTY COMPILE_OPTIONS -Dmain=modal_main -Wno-missing-prototypes)
 shb_python_test(robust.damaged NIGHTLY robust/test_damaged.py $<TARGET_FILE:stage_server>
   ${SCENE} 12)
 shb_python_test(robust.damaged_many NIGHTLY robust/test_damaged.py $<TARGET_FILE:stage_server>
@@ -33,8 +30,7 @@ shb_python_test(robust.damaged_many NIGHTLY robust/test_damaged.py $<TARGET_FILE
 if(SHROUDHB_TSAN) # the target thread_test builds what the test needs
   add_executable(race robust/race.c)
   target_link_libraries(race PRIVATE OpenMP::OpenMP_C)
-  add_custom_target(thread_test DEPENDS race shroudhb-mesh shroudhb-modal shroudhb-mhb
-    shroudhb-integrate shroudhb-design shroudhb-study)
+  add_custom_target(thread_test DEPENDS race shroudhb)
   shb_robust_test(threads SLOW threads $<TARGET_FILE:race> ${SCENE})
 endif()
 if(SHROUDHB_INSTRUMENTED) # libraries come too early, the heap is another, the same functions
@@ -44,7 +40,7 @@ endif()
 add_library(locale MODULE robust/locale.c)
 shb_robust_test(surroundings NIGHTLY surroundings $<TARGET_FILE:locale> ${SCENE})
 
-add_executable(repeated_sweep robust/repeated_sweep.c ${COMMANDS}/shroudhb_mhb.c)
+add_executable(repeated_sweep robust/repeated_sweep.c)
 target_link_libraries(repeated_sweep PRIVATE shb_cases_commands)
 set(REPEATED $<TARGET_FILE:repeated_sweep> $<TARGET_FILE_DIR:shroudhb> ${SCENE})
 shb_python_test(robust.repeated INTEGRATION robust/test_repeated.py ${REPEATED} 20 3)

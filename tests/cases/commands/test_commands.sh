@@ -1,6 +1,6 @@
 #!/bin/sh
 # The front command: exit codes, messages, files left alone. The stages are scripts that log how
-# they were called, beside a copy of the front command, so only the front command is tested.
+# they were called, beside copies of shroudhb and of what does run, check and keys.
 # usage: test_commands.sh PATH_OF_SHROUDHB
 set -u
 front=$1
@@ -45,19 +45,27 @@ called() { # the log, on one line
   : >"$work/log"
 }
 
+script() { # NAME COMMANDS
+  printf '#!/bin/sh\n%s\n' "$2" >"$work/bin/$1"
+  chmod +x "$work/bin/$1"
+}
+
 stage() { # NAME COMMANDS: a stand-in
-  {
-    echo '#!/bin/sh'
-    echo "echo $1 \"\$@\" >>'$work/log'"
-    echo "$2"
-  } >"$work/bin/shroudhb-$1"
-  chmod +x "$work/bin/shroudhb-$1"
+  case $1 in
+  modal) script shroudhb-modal "echo modal \"\$@\" >>'$work/log'
+$2" ;;
+  *) script "stage-$1" "echo \"\$@\" >>'$work/log'
+$2" ;;
+  esac
 }
 
 mkdir "$work/bin" "$work/dir" "$work/dir/a b"
 cp "$front" "$work/bin/shroudhb"
+cp "$front-pool" "$work/bin/real"
+script shroudhb-pool "case \$1 in run|check|keys) exec '$work/bin/real' \"\$@\" ;; esac
+exec '$work/bin/stage-'\$1 \"\$@\""
 : >"$work/log"
-for name in mesh modal mhb post integrate; do stage $name 'exit 0'; done
+for name in mesh modal mhb post integrate inspect contact; do stage $name 'exit 0'; done
 
 cat >"$work/dir/good.yaml" <<'END'
 name: good
@@ -88,12 +96,12 @@ ls -l "$work/dir" >"$work/before"
 
 # help, version, nothing, nonsense
 run 0 --help; says out 'usage: shroudhb COMMAND'; silent err
-run 0 check --help; says out 'usage: shroudhb COMMAND'
-run 0 keys --help; says out 'usage: shroudhb COMMAND'
+run 0 check --help; says out 'usage: shroudhb check'
+run 0 keys --help; says out 'usage: shroudhb keys'
 run 0 help; says out 'usage: shroudhb COMMAND'; silent err
-run 0 help check; says out 'usage: shroudhb COMMAND'; silent err
-run 0 help mhb
-called 'mhb --help;'
+run 0 help check; says out 'usage: shroudhb check'; silent err
+run 0 help mhb; says out 'usage: shroudhb mhb'; says out '--set KEY=VALUE'; silent err
+called ''
 run 0 help --help; says out 'usage: shroudhb COMMAND'; silent err
 run 2 help chek; says err "unknown command 'chek'; did you mean 'check'?"; silent out
 run 2 help check more; says err "help takes one command; unexpected 'more'"; silent out
@@ -155,12 +163,24 @@ called ''
 # one stage, and the modes of stages
 run 0 modal --verbose good.yaml; called 'modal --verbose good.yaml;'
 run 0 integrate --force good.yaml; called 'integrate --force good.yaml;'
-run 0 inspect x.h5; called 'post --inspect x.h5;'
-run 0 contact x.yaml; called 'mhb --contact x.yaml;'
-run 0 contact x.yaml --svg x.svg; called 'mhb --contact x.yaml --svg x.svg;'
+run 0 inspect x.h5; called 'inspect x.h5;'
+run 0 contact x.yaml; called 'contact x.yaml;'
+run 0 contact x.yaml --svg x.svg; called 'contact x.yaml --svg x.svg;'
 run 2 check good.yaml --svg x.svg; says err '--svg goes with contact, not with check'
 run 2 run --svg x.svg good.yaml; says err '--svg goes with contact, not with run'
 called ''
+
+# former programs are links
+former() { # NAME WORD...
+  name=$1
+  shift
+  ln -sf shroudhb "$work/bin/shroudhb-$name"
+  (cd "$work/dir" && "$work/bin/shroudhb-$name" "$@") >"$work/out" 2>"$work/err"
+}
+former integrate --force good.yaml; called 'integrate --force good.yaml;'
+former mhb --contact x.yaml; called 'contact x.yaml;'
+former post --inspect x.h5; called 'inspect x.h5;'
+former mhb --help; says out 'usage: shroudhb mhb'; called ''
 
 # codes
 stage modal 'exit 2'
@@ -180,9 +200,10 @@ called 'mesh good.yaml;modal good.yaml;mhb good.yaml;post good.yaml;'
 stage post 'exit 4'
 run 4 run good.yaml
 stage post 'exit 0'
-rm "$work/bin/shroudhb-mhb"
-(PATH=/usr/bin:/bin; run 4 run good.yaml; says err 'shroudhb-mhb: cannot be started'
+rm "$work/bin/shroudhb-modal"
+(PATH=/usr/bin:/bin; run 4 run good.yaml; says err 'shroudhb-modal: cannot be started'
   exit $failed) || failed=$((failed + 1))
+stage modal 'exit 0'
 : >"$work/log"
 
 # results are named

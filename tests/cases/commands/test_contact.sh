@@ -1,6 +1,6 @@
 #!/bin/sh
-# shroudhb-mhb --contact as a program: its text, its picture, its errors.
-# usage: test_contact.sh PATH_OF_SHROUDHB-MHB SCENE PYTHON (or an empty word)
+# shroudhb-mhb contact as a program: its text, its picture, its errors.
+# usage: test_contact.sh PATH_OF_SHROUDHB SCENE PYTHON (or an empty word)
 set -u
 program=$1
 scene=$2
@@ -43,27 +43,27 @@ motion:
 END
 
 # what is printed does not depend on the picture
-run 0 --contact motion.yaml
+run 0 contact motion.yaml
 cp out plain
 grep -q '^dissipation: 0\.0' out || fail 'no dissipation is printed'
 grep -q '^error: ' out || fail 'no error estimate is printed'
 grep -q '^states: {stick: ' out || fail 'no states are printed'
-run 0 --contact motion.yaml --svg loops.svg
+run 0 contact motion.yaml --svg loops.svg
 cmp -s out plain || fail '--svg changes what is printed'
 [ -s err ] && fail 'something is said though all went well'
 [ -s loops.svg ] || fail 'no picture'
-run 0 --contact --svg again.svg motion.yaml
+run 0 contact --svg again.svg motion.yaml
 cmp -s loops.svg again.svg || fail 'the same motion gives another picture'
 ls | grep -q tmp && fail 'a temporary file is left'
 
 # a key from the command line is as one in the file, and the picture goes where it is told
 sed 's/mu: 0.4/mu: 0.2/' motion.yaml >other.yaml
-run 0 --contact other.yaml
+run 0 contact other.yaml
 cp out other
-run 0 --contact --set contact.mu=0.2 --into there motion.yaml --svg loops.svg
+run 0 contact --set contact.mu=0.2 --into there motion.yaml --svg loops.svg
 cmp -s out other || fail '--set contact.mu=0.2 is not as in the file'
 [ -s there/loops.svg ] || fail 'the picture is not in the folder of --into'
-run 2 --contact --set contact.mue=0.2 motion.yaml
+run 2 contact --set contact.mue=0.2 motion.yaml
 grep -qF "contact.mue: unknown key; did you mean 'mu'?" err || fail 'a wrong --set is not told'
 
 # the picture is XML with the dissipation in it
@@ -87,34 +87,34 @@ END
 fi
 
 # an earlier picture is replaced as a whole or left alone
-run 4 --contact motion.yaml --svg missing/loops.svg
+run 4 contact motion.yaml --svg missing/loops.svg
 one_line 'shroudhb: error: missing/loops.svg: cannot be written: No such file or directory'
 cmp -s out plain || fail 'an unwritable picture changes what is printed'
 mkdir folder
-run 4 --contact motion.yaml --svg folder
+run 4 contact motion.yaml --svg folder
 one_line 'shroudhb: error: folder: cannot be written: Is a directory'
 cp motion.yaml kept.yaml
-run 2 --contact motion.yaml --svg ./motion.yaml
+run 2 contact motion.yaml --svg ./motion.yaml
 one_line 'shroudhb: error: --svg ./motion.yaml would overwrite the motion file; name another file'
 cmp -s motion.yaml kept.yaml || fail 'the motion file was overwritten'
 ls . folder | grep -q tmp && fail 'a temporary file is left'
 
 # words on the command line
-run 2 --contact motion.yaml --svg
+run 2 contact motion.yaml --svg
 one_line 'shroudhb: error: --svg needs the name of a file to write; see --help'
-run 2 --contact --svg --quiet motion.yaml
+run 2 contact --svg --quiet motion.yaml
 one_line 'shroudhb: error: --svg needs the name of a file to write; see --help'
-run 2 --contact motion.yaml --svg a.svg --svg b.svg
+run 2 contact motion.yaml --svg a.svg --svg b.svg
 one_line "shroudhb: error: one --svg is enough; unexpected 'b.svg'; see --help"
-run 2 motion.yaml --svg a.svg
-one_line 'shroudhb: error: --svg goes with --contact; see --help'
+run 2 mhb motion.yaml --svg a.svg
+one_line 'shroudhb: error: --svg goes with contact, not with mhb; see --help'
 [ -e a.svg ] && fail 'a refused command wrote a picture'
 sed 's/mu: 0.4/mu: x/' motion.yaml >bad.yaml
-run 2 --contact bad.yaml --svg bad.svg
+run 2 contact bad.yaml --svg bad.svg
 [ -e bad.svg ] && fail 'a bad file gave a picture'
 
 # the scene's README tells what the scene gives
-run 0 --contact "$scene/motion.yaml" --svg scene.svg
+run 0 contact "$scene/motion.yaml" --svg scene.svg
 sed -n 's/\(0\.[0-9]\{4\}\)[0-9]*/\1/g; s/^transitions: //p' out >transitions
 [ "$(cat transitions)" = '[[0.2341, slip], [0.5007, open], [0.7214, slip], [0.9172, stick]]' ] ||
   fail 'other transitions than in README.md'

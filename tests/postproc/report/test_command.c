@@ -96,7 +96,7 @@ static void usage(void **state) {
   (void)state;
   static char out[65536], error[4096];
   assert_int_equal(run("--help", out, error), SHB_OK);
-  assert_has(out, "usage: shroudhb-post");
+  assert_has(out, "usage: shroudhb post");
   assert_int_equal(run("", out, error), SHB_ERR_INPUT);
   assert_int_equal(lines(error), 1);
   assert_int_equal(run("--colour x.yaml", out, error), SHB_ERR_INPUT);

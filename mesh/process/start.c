@@ -15,6 +15,7 @@
 #include <unistd.h>
 
 #include "mesh/base/status.h"
+#include "mesh/process/report.h"
 
 /* Measured with a balance of three degrees of freedom: 220 MB with one thread, 370 with two. Other
  * work needs more, and says so when it gets none. */
@@ -100,13 +101,15 @@ static void check_open_files(void) {
   _exit(SHB_ERR_IO);
 }
 
+#ifndef SHB_FRONT
 static bool starts_with(const char *text, const char *start) {
   return strncmp(text, start, strlen(start)) == 0;
 }
 
 /* A thread that waits for others sleeps. OpenMP's threads spin for milliseconds otherwise, and on a
  * busy machine that time is another program's. OpenMP reads its environment once, as its library
- * starts, so the program is started again with the variable. A user's choice is kept. */
+ * starts, so the program is started again with the variable. A user's choice is kept. The front
+ * command has no such threads; it sets the variable for the programs that it starts. */
 static void let_waiting_threads_sleep(char **argv, char **environment) {
   int n = 0;
   for (; environment[n]; n++)
@@ -121,6 +124,16 @@ static void let_waiting_threads_sleep(char **argv, char **environment) {
   more[n + 1] = NULL;
   if (program) (void)syscall(SYS_execve, program, argv, more); /* where it fails, threads spin */
 }
+#else
+static void let_waiting_threads_sleep(char **argv, char **environment) {
+  (void)argv;
+  (void)environment;
+}
+
+__attribute__((constructor)) static void let_threads_of_others_sleep(void) {
+  if (!getenv("GOMP_SPINCOUNT")) setenv("OMP_WAIT_POLICY", "passive", 0);
+}
+#endif
 
 static void start(int argc, char **argv, char **environment) {
   (void)argc;
@@ -147,4 +160,9 @@ __attribute__((constructor)) static void keep_size_limit(void) {
  * The daemon costs a third of a second, and outlives a program that is killed. */
 __attribute__((constructor)) static void start_no_daemon(void) {
   setenv("OMPI_MCA_ess_singleton_isolated", "1", 0);
+}
+
+/* What ends the program at once is told to the one that started it. */
+__attribute__((constructor)) static void join_report(void) {
+  shb_report_join();
 }
