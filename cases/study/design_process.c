@@ -271,8 +271,9 @@ shb_status design_process_texts(char **texts, study_texts *out) {
 }
 
 shb_status design_process_serve(int n_request, design_compute *compute, void *context) {
-  double *value   = shb_alloc((size_t)n_request + 1, sizeof *value);
-  int     answers = dup(STDOUT_FILENO); /* what a library prints must not mix with answers */
+  double *value = shb_alloc((size_t)n_request + 1, sizeof *value);
+  /* what a library prints must not mix with answers, and a stage must not hold their pipe */
+  int answers = fcntl(STDOUT_FILENO, F_DUPFD_CLOEXEC, 3);
   dup2(STDERR_FILENO, STDOUT_FILENO);
   shb_status status = SHB_OK;
   while (status == SHB_OK && get_all(STDIN_FILENO, value, (size_t)n_request * sizeof *value)) {

@@ -47,7 +47,12 @@ static shb_status open_set(const reader *r, const char *parameter, mesh_inp_kind
 static const mesh_inp_set *find_set(const reader *r, mesh_inp_kind kind, const char *name) {
   char whole[MESH_INP_NAME];
   snprintf(whole, sizeof whole, "%s.%s", r->of->name, name);
-  return mesh_inp_find(r->inp, kind, *r->of->name ? whole : name);
+  const mesh_inp_set *own = *r->of->name ? mesh_inp_find_whole(r->inp, kind, whole) : NULL;
+  if (own) return own;
+  /* one of several instances does not take the set of another one */
+  return r->model->n_instances > 1 && (*r->of->name || strchr(name, '.'))
+             ? mesh_inp_find_whole(r->inp, kind, name)
+             : mesh_inp_find(r->inp, kind, name);
 }
 
 /* A row (number, R, theta in degrees, z) in rectangular coordinates; spherical: theta, phi. */
@@ -68,7 +73,6 @@ static shb_status read_nodes(const reader *r) {
   SHB_TRY(open_set(r, "NSET", MESH_INP_NSET, true, &set));
   MESH_DECK_CHECK(!system[0] || (!system[1] && strchr("RrCcSs", system[0])), deck, r->card->line,
                   "*NODE: SYSTEM=%s; expected R, C or S", system);
-  if (mesh_card_has(r->card, "INPUT")) SHB_TRY(mesh_deck_include(deck, r->card));
   mesh_row row;
   for (bool more = true;;) {
     SHB_TRY(mesh_deck_row(deck, &row, &more));
@@ -80,6 +84,8 @@ static shb_status read_nodes(const reader *r) {
     for (int d = 0; d < 3; d++) SHB_TRY(mesh_deck_real(deck, row.field[1 + d], &node.at[d]));
     if (system[0] && !strchr("Rr", system[0])) from_polar(system, node.at);
     if (r->model->has_system) mesh_inp_map_point(&r->model->system, node.at);
+    if (r->model->inside >= 0)
+      mesh_inp_map_point(&r->model->instance[r->model->inside].map, node.at);
     node.id += r->of->node;
     mesh_inp_add_node(r->inp, &node);
     if (set >= 0)
@@ -132,7 +138,6 @@ static shb_status read_elements(const reader *r) {
   SHB_TRY(find_type(deck, r->card, &type));
   if (type->n == 0) return SHB_OK;
   SHB_TRY(open_set(r, "ELSET", MESH_INP_ELSET, false, &set));
-  if (mesh_card_has(r->card, "INPUT")) SHB_TRY(mesh_deck_include(deck, r->card));
   for (bool more = true;;) {
     mesh_inp_element element = {0};
     SHB_TRY(read_element(deck, type, &element, &more));
@@ -149,12 +154,13 @@ static shb_status read_elements(const reader *r) {
 /* Before n members join a set by a range or the name of a set. A set that names itself doubles each
  * time. Every node, element and name takes bytes of the file. */
 static shb_status admit(const mesh_deck *deck, mesh_inp *inp, int into, const char *what, long n) {
-  enum { MOST_IN_ALL = 16 }; /* a byte */
-  MESH_DECK_CHECK(n <= deck->bytes - inp->set[into].n, deck, deck->line,
+  enum { MOST_IN_ALL = 16 };                                           /* a byte */
+  const long long room = deck->bytes + inp->n_nodes + inp->n_elements; /* instances take no bytes */
+  MESH_DECK_CHECK(n <= room - inp->set[into].n, deck, deck->line,
                   "%s: %ld more members are too many for a file of %lld bytes", what, n,
                   deck->bytes);
   inp->referred += n;
-  MESH_DECK_CHECK(inp->referred <= MOST_IN_ALL * deck->bytes, deck, deck->line,
+  MESH_DECK_CHECK(inp->referred <= MOST_IN_ALL * room, deck, deck->line,
                   "%s: now sets have %lld members in all, too many for a file of %lld bytes", what,
                   inp->referred, deck->bytes);
   return SHB_OK;

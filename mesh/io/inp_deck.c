@@ -189,7 +189,7 @@ static shb_status next_line(mesh_deck *deck, bool *found) {
   return SHB_OK;
 }
 
-shb_status mesh_deck_card(mesh_deck *deck, mesh_card *card, bool *found) {
+static shb_status read_card(mesh_deck *deck, mesh_card *card, bool *found) {
   do SHB_TRY(next_line(deck, found));
   while (*found && deck->text[0] != '*');
   if (!*found) return SHB_OK;
@@ -210,6 +210,13 @@ shb_status mesh_deck_card(mesh_deck *deck, mesh_card *card, bool *found) {
     deck->pushed_back = deck->text[0] == '*';
     if (deck->pushed_back) return SHB_OK;
   }
+}
+
+shb_status mesh_deck_card(mesh_deck *deck, mesh_card *card, bool *found) {
+  SHB_TRY(read_card(deck, card, found));
+  const bool mesh =
+      *found && (strcmp(card->word, "NODE") == 0 || strcmp(card->word, "ELEMENT") == 0);
+  return mesh && mesh_card_has(card, "INPUT") ? mesh_deck_include(deck, card) : SHB_OK;
 }
 
 shb_status mesh_deck_row(mesh_deck *deck, mesh_row *row, bool *found) {
@@ -250,11 +257,12 @@ bool mesh_deck_numeric(const char *field) {
 }
 
 shb_status mesh_deck_number(const mesh_deck *deck, const char *field, long *number) {
+  enum { MOST = 999999999 }; /* as in Abaqus; instances raise numbers */
   char *end = NULL;
   errno     = 0;
   *number   = strtol(field, &end, 10);
-  MESH_DECK_CHECK(*field && !*end && errno == 0 && *number > 0, deck, deck->line,
-                  "'%.40s' is not a number of a node or an element (1, 2, ...)", field);
+  MESH_DECK_CHECK(*field && !*end && errno == 0 && *number > 0 && *number <= MOST, deck, deck->line,
+                  "'%.40s' is not a number of a node or an element (1 to %d)", field, MOST);
   return SHB_OK;
 }
 

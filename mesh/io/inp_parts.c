@@ -34,6 +34,7 @@ static shb_status begin_part(mesh_inp_model *m, const mesh_card *card) {
   m->part               = shb_realloc(m->part, (size_t)m->n_parts + 1, sizeof(mesh_inp_part *));
   m->part[m->n_parts++] = part;
   m->inp                = &part->table;
+  m->has_system         = false;
   SHB_TRY(mesh_card_value(m->deck, card, "NAME", part->name));
   for (int i = 0; i + 1 < m->n_parts; i++)
     MESH_DECK_CHECK(strcasecmp(m->part[i]->name, part->name) != 0, m->deck, card->line,
@@ -102,8 +103,12 @@ static shb_status begin_instance(mesh_inp_model *m, const mesh_card *card) {
     if (strcasecmp(m->part[i]->name, name) == 0) table = &m->part[i]->table;
   MESH_DECK_CHECK(table, m->deck, card->line, "*INSTANCE: there is no *PART '%s' before it", name);
   raise_numbers(m->whole, instance);
-  placement = (mesh_inp_placement){instance->name, instance->node, instance->element, identity};
-  SHB_TRY(read_placement(m, card, &placement.map));
+  for (int i = 0; i + 1 < m->n_instances; i++)
+    MESH_DECK_CHECK(strcasecmp(m->instance[i].name, instance->name) != 0, m->deck, card->line,
+                    "*INSTANCE: there are two of the name '%s'", instance->name);
+  SHB_TRY(read_placement(m, card, &instance->map));
+  placement =
+      (mesh_inp_placement){instance->name, instance->node, instance->element, instance->map};
   mesh_inp_append(m->whole, table, &placement);
   m->inside = m->n_instances - 1;
   return SHB_OK;
@@ -143,7 +148,8 @@ shb_status mesh_inp_parts_card(mesh_inp_model *m, const mesh_card *card, bool *k
   if (strcmp(card->word, "INSTANCE") == 0) return begin_instance(m, card);
   if (strcmp(card->word, "SYSTEM") == 0) return read_system(m, card);
   if (strcmp(card->word, "END INSTANCE") == 0) {
-    m->inside = -1;
+    m->inside     = -1;
+    m->has_system = false;
   } else if (strcmp(card->word, "END PART") == 0) {
     m->inp        = m->whole;
     m->has_system = false;
@@ -153,16 +159,22 @@ shb_status mesh_inp_parts_card(mesh_inp_model *m, const mesh_card *card, bool *k
   return SHB_OK;
 }
 
-shb_status mesh_inp_parts_of(const mesh_inp_model *m, const mesh_card *card,
+shb_status mesh_inp_parts_of(mesh_inp_model *m, const mesh_card *card,
                              const mesh_inp_instance **instance) {
+  const bool defines = strcmp(card->word, "NODE") == 0 || strcmp(card->word, "ELEMENT") == 0;
+  char       name[MESH_DECK_NAME];
+  if (defines && m->inp == m->whole && m->inside < 0 && m->n_raised < m->n_instances) {
+    raise_numbers(m->whole, &m->own);
+    m->n_raised = m->n_instances;
+  }
   static const mesh_inp_instance none = {0};
-  char                           name[MESH_DECK_NAME];
-  *instance = m->inside >= 0 ? &m->instance[m->inside] : &none;
+  const mesh_inp_instance       *own  = m->inp == m->whole ? &m->own : &none;
+  *instance                           = m->inside >= 0 ? &m->instance[m->inside] : own;
   SHB_TRY(mesh_card_value(m->deck, card, "INSTANCE", name));
   if (!name[0]) return SHB_OK;
   for (int i = 0; i < m->n_instances; i++)
     if (strcasecmp(m->instance[i].name, name) == 0) *instance = &m->instance[i];
-  MESH_DECK_CHECK(*instance != &none, m->deck, card->line,
+  MESH_DECK_CHECK((*instance)->name[0], m->deck, card->line,
                   "*%s: there is no *INSTANCE '%s' before it", card->word, name);
   return SHB_OK;
 }

@@ -12,8 +12,9 @@ typedef struct {
 } mesh_inp_part;
 
 typedef struct {
-  char name[MESH_DECK_NAME];
-  long node, element; /* by which its numbers are raised */
+  char         name[MESH_DECK_NAME];
+  long         node, element; /* by which its numbers are raised */
+  mesh_inp_map map;
 } mesh_inp_instance;
 
 typedef struct {
@@ -23,6 +24,8 @@ typedef struct {
   mesh_inp_part    **part;
   mesh_inp_instance *instance;
   int                inside;     /* the instance whose block is read, or -1 */
+  mesh_inp_instance  own;        /* of nodes and elements outside parts, beside instances */
+  int                n_raised;   /* instances that `own` follows */
   bool               has_system; /* *SYSTEM is on */
   mesh_inp_map       system;
 } mesh_inp_model;
@@ -31,9 +34,9 @@ typedef struct {
  *   known  out  false: the card is another one, and its rows are not read */
 shb_status mesh_inp_parts_card(mesh_inp_model *model, const mesh_card *card, bool *known);
 
-/* The instance whose numbers a card uses, by INSTANCE= or by its place; one that raises none
- * outside instances. */
-shb_status mesh_inp_parts_of(const mesh_inp_model *model, const mesh_card *card,
+/* The instance whose numbers a card uses, by INSTANCE= or by its place. Beside instances the whole
+ * has numbers of its own from its first node or element there on. */
+shb_status mesh_inp_parts_of(mesh_inp_model *model, const mesh_card *card,
                              const mesh_inp_instance **instance);
 
 /* At the end of the deck: a single part without an instance is the model. */

@@ -30,26 +30,26 @@ void mesh_inp_add_member(mesh_inp_set *set, const mesh_inp_member *member) {
   set->member[set->n++] = *member;
 }
 
-static mesh_inp_set *find_whole_name(const mesh_inp *inp, mesh_inp_kind kind, const char *name) {
+mesh_inp_set *mesh_inp_find_whole(const mesh_inp *inp, mesh_inp_kind kind, const char *name) {
   for (int i = 0; i < inp->n_sets; i++)
     if (inp->set[i].kind == kind && strcasecmp(inp->set[i].name, name) == 0) return &inp->set[i];
   return NULL;
 }
 
 mesh_inp_set *mesh_inp_find(const mesh_inp *inp, mesh_inp_kind kind, const char *name) {
-  mesh_inp_set *found = find_whole_name(inp, kind, name);
+  mesh_inp_set *found = mesh_inp_find_whole(inp, kind, name);
   const char   *dot   = strrchr(name, '.');
   return found || !dot ? found : mesh_inp_find(inp, kind, dot + 1);
 }
 
 int mesh_inp_open_set(mesh_inp *inp, mesh_inp_kind kind, const char *name, bool of_nodes,
                       mesh_place line) {
-  const mesh_inp_set *found = find_whole_name(inp, kind, name);
+  const mesh_inp_set *found = mesh_inp_find_whole(inp, kind, name);
   if (found) return (int)(found - inp->set);
   reserve((void **)&inp->set, inp->n_sets, &inp->set_room, sizeof *inp->set);
   mesh_inp_set *set = &inp->set[inp->n_sets];
   *set              = (mesh_inp_set){.kind = kind, .of_nodes = of_nodes, .line = line};
-  snprintf(set->name, sizeof set->name, "%s", name);
+  snprintf(set->name, sizeof set->name, "%.*s", MESH_INP_NAME - 1, name);
   return inp->n_sets++;
 }
 
@@ -95,7 +95,7 @@ void mesh_inp_share_names(mesh_inp *inp) {
   for (int i = 0, n = inp->n_sets; i < n; i++) {
     const mesh_inp_set  from = inp->set[i];
     const char         *dot  = strrchr(from.name, '.');
-    const mesh_inp_set *own  = dot ? find_whole_name(inp, from.kind, dot + 1) : NULL;
+    const mesh_inp_set *own  = dot ? mesh_inp_find_whole(inp, from.kind, dot + 1) : NULL;
     if (!dot || (own && own - inp->set < n)) continue;
     const int to = mesh_inp_open_set(inp, from.kind, dot + 1, from.of_nodes, from.line);
     append_set(&inp->set[to], &from, 0);

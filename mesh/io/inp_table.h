@@ -59,6 +59,7 @@ void mesh_inp_add_member(mesh_inp_set *set, const mesh_inp_member *member);
 /* Set of that kind and name, or NULL. Case is ignored. The name of an instance before a dot may be
  * missing. */
 mesh_inp_set *mesh_inp_find(const mesh_inp *inp, mesh_inp_kind kind, const char *name);
+mesh_inp_set *mesh_inp_find_whole(const mesh_inp *inp, mesh_inp_kind kind, const char *name);
 
 /* Index in inp->set of the set of that kind and name, made if absent. */
 int mesh_inp_open_set(mesh_inp *inp, mesh_inp_kind kind, const char *name, bool of_nodes,

@@ -11,9 +11,11 @@
 #include <sys/mman.h>
 #include <sys/resource.h>
 #include <sys/wait.h>
+#include <time.h>
 #include <unistd.h>
 
 #include "mesh/base/clock.h"
+#include "mesh/base/crash_guard.h"
 #include "mesh/base/memory.h"
 #include "mesh/process/report.h"
 
@@ -123,8 +125,10 @@ static bool wait_for(pid_t child, const sigset_t *signals, int *status, struct r
   bool  interrupted = false;
   pid_t ended;
   while ((ended = wait4(child, status, WNOHANG, usage)) == 0) {
-    siginfo_t info;
-    int       number = sigwaitinfo(signals, &info);
+    /* in a program with threads another one may take the signal of the end: look again */
+    const struct timespec pause = {.tv_nsec = 200000000};
+    siginfo_t             info;
+    int                   number = sigtimedwait(signals, &info, &pause);
     if (number != SIGINT && number != SIGTERM && number != SIGHUP) continue;
     interrupted = true;
     if (info.si_code != SI_KERNEL) kill(child, number);
@@ -183,6 +187,7 @@ shb_status shb_child_run(const shb_child *child, shb_child_end *end) {
 static _Noreturn void work_apart(int (*work)(void *), void *context, long seconds) {
   const struct rlimit time = {(rlim_t)seconds, (rlim_t)seconds + 1};
   const int           null = open("/dev/null", O_WRONLY);
+  shb_end_reports(-1); /* the parent tells */
   if (null >= 0) dup2(null, STDERR_FILENO);
   signal(SIGXCPU, SIG_DFL);
   setrlimit(RLIMIT_CPU, &time);

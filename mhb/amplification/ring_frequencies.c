@@ -22,9 +22,18 @@ static const modal_model *model_at(const modal_model *model, const mhb_settings 
   return at < 0 ? NULL : &disc->model[at];
 }
 
-/* The wave in which an excitation of engine order n meets the rotor. */
-static int driven_by(const mhb_settings *settings, int n) {
-  return mhb_driven_wave_of(n, settings->turns_right, settings->blades, 1).order;
+/* The wave at a nodal diameter in which the load meets the rotor: that of the first harmonic that
+ * does, or else of the engine order of that number. */
+static int driven_at(const modal_model *model, const mhb_settings *settings, int diameter) {
+  long order = diameter;
+  for (int h = model->n_load; h >= 1; h--) {
+    const long own = (long)h * settings->engine_order;
+    if (modal_model_is_driven(model, h) && modal_nodal_diameter(own, settings->blades) == diameter)
+      order = own;
+  }
+  order %= settings->blades;
+  return mhb_driven_wave_order(
+      mhb_driven_wave_of((int)order, settings->turns_right, settings->blades, 1));
 }
 
 /* Frequencies of the open families at a nodal diameter, Hz. With Coriolis terms they are those of
@@ -37,8 +46,8 @@ static shb_status find_open(const modal_model *own, const mhb_settings *settings
   for (int i = 0; i < n; i++) open[i] = own->frequency[i];
   if (!own->coriolis) return SHB_OK;
   if (!settings->nodal_diameters ||
-      !modal_nodal_diameters_wave(settings->nodal_diameters, driven_by(settings, diameter), &wave,
-                                  &missing))
+      !modal_nodal_diameters_wave(settings->nodal_diameters, driven_at(own, settings, diameter),
+                                  &wave, &missing))
     wave = modal_wave_real(own);
   SHB_TRY(mhb_gyroscopic_of_wave(&wave, &g));
   for (int i = 0; i < n; i++) open[i] = g.omega[g.n + i] / SHB_TWO_PI;
@@ -69,7 +78,7 @@ shb_status mhb_families_over_diameters(const modal_model *model, const mhb_setti
     if (!own) continue;
     d->diameter[d->n_diameters++] = i;
     SHB_TRY(find_open(own, settings, i, n, d->open + at));
-    SHB_TRY(mhb_stuck_frequencies(own, settings, driven_by(settings, i), n, d->stuck + at));
+    SHB_TRY(mhb_stuck_frequencies(own, settings, driven_at(model, settings, i), n, d->stuck + at));
   }
   return SHB_OK;
 }
@@ -116,12 +125,13 @@ static shb_status over_speeds(const modal_speeds *s, const mhb_settings *setting
   mhb_settings here = *settings;
   if (s->n < 2 || !has_stuck(&s->model[0], settings)) return SHB_OK;
   make_room(s, 1, d);
+  const int order = settings->blades > 0 ? mhb_driven_wave_order(mhb_settings_wave(settings)) : 0;
   if (settings->blades > 0)
     d->wave[0] = modal_nodal_diameter(settings->engine_order, settings->blades);
   here.nodal_diameters = NULL;
   for (int i = 0; i < s->n; i++)
-    SHB_TRY(mhb_stuck_frequencies(&s->model[i], &here, driven_by(settings, settings->engine_order),
-                                  d->n_stuck, d->over + i * d->n_stuck));
+    SHB_TRY(
+        mhb_stuck_frequencies(&s->model[i], &here, order, d->n_stuck, d->over + i * d->n_stuck));
   return SHB_OK;
 }
 
@@ -134,8 +144,9 @@ static shb_status disc_at_speed(const modal_sector_speeds *all, int speed,
   at_speed(all, speed, &models);
   here.nodal_diameters = &models;
   for (int w = 0; w < d->n_waves && status == SHB_OK; w++)
-    status = mhb_stuck_frequencies(&all->at[0].model[speed], &here, driven_by(settings, d->wave[w]),
-                                   d->n_stuck, d->over + (w * d->n_speeds + speed) * d->n_stuck);
+    status = mhb_stuck_frequencies(&all->at[0].model[speed], &here,
+                                   driven_at(&all->at[0].model[0], &here, d->wave[w]), d->n_stuck,
+                                   d->over + (w * d->n_speeds + speed) * d->n_stuck);
   release(&models);
   return status;
 }

@@ -37,10 +37,9 @@ static shb_status create_contacts(mhb_balance *b) {
 /* Each contact of a ring is evaluated in the time of its own blade. So the tuned wave has the same
  * numbers in all of them, whatever the tolerance of the law. */
 static void set_lags(mhb_balance *b) {
-  const mhb_driven_wave wave  = mhb_settings_wave(b->settings);
-  const int             N     = b->receptance->ring->blades;
-  const double          shift = fmax(mhb_driven_wave_shift(wave), 0);
-  const double step = SHB_TWO_PI / wave.periods * ((double)wave.order / wave.blades + shift);
+  const mhb_driven_wave wave = mhb_settings_wave(b->settings);
+  const int             N = b->receptance->ring->blades, shift = mhb_driven_wave_shift(wave);
+  const double          step = mhb_driven_wave_lag_of(wave, shift > 0 ? shift : 0);
   for (int i = 0; i < N; i++)
     for (int k = 0; k <= b->m; k++)
       b->lag[i * (b->m + 1) + k] = cexp(-I * fmod(fmod(i * step, SHB_TWO_PI) * k, SHB_TWO_PI));

@@ -116,6 +116,8 @@ void mhb_branch_floquet_judge(mhb_floquet *floquet, mhb_balance *b, mhb_truncati
     return;
   }
   mhb_balance_linearise(b, at->x, at->value, t->r, NULL);
+  /* the step of GMRES depends on them a little, so the point alone must decide on them */
+  if (t->factors) mhb_ring_system_factor(t->factors, NULL, NULL);
   if (!mhb_truncation_correct(t, at->x, at->value)) {
     mhb_floquet_set_error(INFINITY, out);
     return;

@@ -292,8 +292,8 @@ static double remaining_error(const mhb_contact_evaluator *c, newton_progress *a
 
 /* Newton's method on P(z) = z. 0: not reached. A plain iteration z <- P(z), which never expands,
  * replaces it where it does not gain. At a double root, where slip just begins, the step is
- * extrapolated. Each lap is as accurate as its step requires. After a recorded lap that did not
- * close it has the same panels. Longer ones miss a reversal of small harmonics, and close
+ * extrapolated. Each lap is as accurate as its step requires. After a recorded lap that Newton's
+ * method had led to and that did not close, laps have its panels. Longer ones miss a reversal of small harmonics, and close
  * elsewhere. */
 static int iterate_slider(mhb_contact_evaluator *c, newton_progress *a, double z[2]) {
   double before = INFINITY, left = a->last_step < 1 ? a->last_step : a->left, P[2], step[2];
@@ -301,8 +301,9 @@ static int iterate_slider(mhb_contact_evaluator *c, newton_progress *a, double z
   c->record = 0;
   c->mode   = MHB_SLIDER_COLUMN;
   for (; c->info->laps < MAX_LAPS; c->info->laps++) {
-    double accuracy = mhb_most(a->tolerance, mhb_least(1e-2, .3 * left));
-    set_panels_of(c, a->resolved ? c->tolerance : accuracy, a->resolved);
+    double accuracy =
+        a->resolved ? c->tolerance : mhb_most(a->tolerance, mhb_least(1e-2, .3 * left));
+    set_panels_of(c, accuracy, a->resolved);
     if (!run_lap(c, z, P)) return 0;
     double r[2] = {P[0] - z[0], P[1] - z[1]}, size = length_of(r[0], r[1]);
     if (newton && size > .9 * before) plain = 2;

@@ -75,7 +75,8 @@ static void set_whole(mhb_mistuned_ring *ring) {
 
 static shb_status fill(mhb_mistuned_ring *ring, const mhb_settings *settings,
                        const double *deviation, int columns) {
-  const int m = ring->n_modes, N = ring->blades, order = mhb_settings_wave(settings).order;
+  const int m = ring->n_modes, N = ring->blades,
+            order = mhb_driven_wave_order(mhb_settings_wave(settings));
   ring->deviation = shb_alloc_zeroed((size_t)N * (size_t)m, sizeof(double));
   ring->blade     = shb_alloc_zeroed((size_t)N, sizeof *ring->blade);
   for (int b = 0; b < N; b++) {

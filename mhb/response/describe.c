@@ -27,8 +27,9 @@ static const modal_model *shown(const modal_model *model, const mhb_settings *se
   modal_wave wave;
   int        missing;
   if (settings->nodal_diameters &&
-      modal_nodal_diameters_wave(settings->nodal_diameters, mhb_settings_wave(settings).order,
-                                 &wave, &missing))
+      modal_nodal_diameters_wave(settings->nodal_diameters,
+                                 mhb_driven_wave_order(mhb_settings_wave(settings)), &wave,
+                                 &missing))
     return wave.model;
   return model;
 }

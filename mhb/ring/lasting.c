@@ -117,8 +117,9 @@ static void leave_wave(const mhb_ring_model *m, double *y) {
   const double size = sqrt(2 * square * 3 / n);
   for (int i = 0; i < n * MHB_START_LINES; i++) {
     const int    b = i % m->blades, axis = i / m->blades % 3, at = i % n / (3 * m->blades);
-    const double phase = SHB_TWO_PI * (at + 1) / MHB_SIDE_SAMPLES -
-                         SHB_TWO_PI * mhb_settings_wave(&m->settings).order * b / m->blades;
+    const double phase =
+        SHB_TWO_PI * (at + 1) / MHB_SIDE_SAMPLES -
+        SHB_TWO_PI * mhb_driven_wave_order(mhb_settings_wave(&m->settings)) * b / m->blades;
     y[i] += (axis ? 0 : size * cos(phase)) - mean[i % n];
   }
 }
@@ -135,8 +136,9 @@ static void find_side_wave(const mhb_ring_model *m, const mhb_start *s, mhb_last
   memcpy(y, x + (size_t)now * part, sizeof *y * (size - (size_t)now * part));
   memcpy(y + size - (size_t)now * part, x, sizeof *y * (size_t)now * part);
   if (m->ring) leave_wave(m, y);
-  mhb_side_waves_find(y, periods, m->blades,
-                      m->settings.to_ground ? 0 : mhb_settings_wave(&m->settings).order, &found);
+  mhb_side_waves_find(
+      y, periods, m->blades,
+      m->settings.to_ground ? 0 : mhb_driven_wave_order(mhb_settings_wave(&m->settings)), &found);
   shb_arena_free(&arena);
   result->diameter = found.wave[0].diameter;
   result->offset   = found.wave[0].offset;

@@ -18,9 +18,8 @@ static const double MOST = 0.9, HALF = 0.5;
 static int load_wave(const mhb_balance *b, int k) {
   const mhb_driven_wave wave = mhb_settings_wave(b->settings);
   const int             N = b->receptance->ring->blades, shift = mhb_driven_wave_shift(wave);
-  const long            waves = wave.order + (shift > 0 ? (long)N * shift : 0);
-  const long            d     = k * waves / b->receptance->nu % N;
-  return (int)(d < 0 ? d + N : d);
+  const long            waves = wave.engine_order + (shift > 0 ? (long)N * shift : 0);
+  return (int)mhb_driven_wave_turned(wave, k * waves / b->receptance->nu % N);
 }
 
 /* e[N] <- energies of the waves of one harmonic, from the amplitudes q[N][modes]. */

@@ -264,12 +264,13 @@ shb_status mhb_dense_disc(const mhb_settings *s, modal_model *model) {
             .first = one,
             .to    = model,
             .N     = d->blades,
-            .order = mhb_driven_wave_of(s->engine_order, s->turns_right, d->blades, 1).order,
-            .n     = n,
-            .c     = one->has_left ? 2 * n : n,
-            .q     = 3 * (size_t)one->n_probes,
-            .m     = (size_t)one->n_modes,
-            .K     = (size_t)one->n_load + 1};
+            .order = mhb_driven_wave_order(
+                mhb_driven_wave_of(s->engine_order, s->turns_right, d->blades, 1)),
+            .n = n,
+            .c = one->has_left ? 2 * n : n,
+            .q = 3 * (size_t)one->n_probes,
+            .m = (size_t)one->n_modes,
+            .K = (size_t)one->n_load + 1};
   w.rank = shb_alloc_zeroed(N * w.m, sizeof *w.rank);
   make_names(&w);
   make_modes(&w);

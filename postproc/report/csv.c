@@ -102,7 +102,7 @@ static void put_stability(const mhb_response *response, const mhb_branch *branch
     return;
   }
   int  how      = branch->judged[point];
-  bool computed = kept > 0 && (how == MHB_BY_MULTIPLIERS || how == MHB_JUDGED_MARGINAL);
+  bool computed = kept > 0 && cabs(branch->multipliers[(size_t)point * (size_t)kept]) > 0;
   post_put(out, ",%s,%s", judged[how], loss[branch->loss[point]]);
   put_number(out, computed ? cabs(branch->multipliers[(size_t)point * (size_t)kept]) : NAN);
 }

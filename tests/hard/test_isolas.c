@@ -52,11 +52,15 @@ static void check_isola(const modal_model *model, const mhb_settings *s, const i
                         const mhb_branch *b) {
   double lo = INFINITY, hi = 0, far[2] = {INFINITY, INFINITY};
   int    judged = 0, n = b->n_points, folds = count_special(b, MHB_FOLD), changes = 0;
+  int    before = -1; /* the last verdict */
   for (int i = 0; i < n; i++) {
     double here = SHB_TWO_PI * b->frequency[i], next = SHB_TWO_PI * b->frequency[(i + 1) % n];
     lo = fmin(lo, here);
     hi = fmax(hi, here);
-    changes += i > 0 && b->stable[i] != b->stable[i - 1];
+    if (b->stable[i] >= 0) { /* beside a fold the verdict may lie within its error */
+      changes += before >= 0 && b->stable[i] != before;
+      before = b->stable[i];
+    }
     if (i + 1 == n || (here < row->w) == (next < row->w)) continue;
     int    stable;
     double a = solved(model, s, row, b, i, (row->w - here) / (next - here), &stable);

@@ -42,7 +42,7 @@ def workers_of(parent):
 
 
 def has_answered(worker):
-    """Whether a worker has written a design to its manager. Before, it writes a copy of the case."""
+    """Whether a worker has written a design to its manager; it copies the case before."""
     try:
         with open(f'/proc/{worker}/io', encoding='utf-8') as source:
             written = int(dict(line.split(': ') for line in source)['wchar'])

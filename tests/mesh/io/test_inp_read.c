@@ -342,15 +342,16 @@ static void faults_are_named_with_their_line(void **state) {
       {NODES ELEMENT "*NSET, NSET=root\n1, 2, 3, 5, 6, 7, 11\n", 15, "node 11 is not in the file"},
       {NODES ELEMENT "*NSET, NSET=root, GENERATE\n5, 1, 1\n", 15, "5 to 1 counts down"},
       {NODES ELEMENT "*NSET, NSET=root, GENERATE\n5\n", 15, "expected first, last, step"},
-      {NODES ELEMENT "*NSET, NSET=root, GENERATE\n1, 999999999999\n", 15, "are too many"},
-      {NODES ELEMENT "*NSET, NSET=root, GENERATE\n1, 1000000000\n", 15,
-       "GENERATE: 1000000000 more members are too many for a file of "},
+      {NODES ELEMENT "*NSET, NSET=root, GENERATE\n1, 999999999999\n", 15,
+       "'999999999999' is not a number of a node or an element (1 to 999999999)"},
+      {NODES ELEMENT "*NSET, NSET=root, GENERATE\n1, 100000000\n", 15,
+       "GENERATE: 100000000 more members are too many for a file of "},
       {NODES ELEMENT "*NSET, NSET=top\n1\ntop,top,top,top\ntop,top,top,top\ntop,top,top,top\n", 17,
        "top: 128 more members are too many for a file of "},
       {NODES ELEMENT "*NSET, NSET=a, GENERATE\n1, 480\n" A("b") A("c") A("d") A("e") A("f") A("g")
            A("h") A("i") A("j") A("k") A("l") A("m") A("n") A("o") A("p") A("q") A("r") A("s")
                A("t") A("u"),
-       47, "now sets have 8160 members in all, too many for a file of "},
+       49, "now sets have 8640 members in all, too many for a file of "},
       {NODES ELEMENT "*NSET, NSET=root\n", 14, "group root is empty"},
       {NODES ELEMENT "*SURFACE, NAME=root\n1\n", 15, "'1 alone'; expected"},
       {NODES ELEMENT "*SURFACE, NAME=root\n1, S7\n", 15, "expected an element or element set"},
@@ -463,6 +464,30 @@ static void instances_are_moved_and_then_turned(void **state) {
   mesh_fe_free(&mesh);
 }
 
+/* An instance may have nodes of its own, which move with it. Nodes of the assembly have numbers of
+ * their own, and a set of one instance is not that of another one. */
+static void assemblies_have_numbers_of_their_own(void **state) {
+  (void)state;
+  static const char head[] = "*PART, NAME=P\n" NODES ELEMENT
+                             "*END PART\n*PART, NAME=Q\n*END PART\n"
+                             "*INSTANCE, NAME=A, PART=P\n*END INSTANCE\n"
+                             "*INSTANCE, NAME=B, PART=Q\n0, 0, 5\n" NODES ELEMENT
+                             "*NSET, NSET=foot\n1,2,3,5,6,7\n*END INSTANCE\n*NODE\n1, 9, 9, 9\n";
+  char    text[2048];
+  mesh_fe mesh;
+  snprintf(text, sizeof text, "%s*NSET, NSET=root\nB.foot\n*NSET, NSET=point\n1\n", head);
+  read_text_mesh(text, &mesh);
+  assert_int_equal(mesh.n_nodes, 20);
+  assert_point(node_of(&mesh, 14), 0, 0, 6);
+  assert_int_equal(mesh.set[MESH_ROOT].n, 1);
+  for (int i = 0; i < 6; i++) assert_true(mesh.node_tag[mesh.set[MESH_ROOT].nodes[i]] > 10);
+  mesh_fe_free(&mesh);
+  snprintf(text, sizeof text, "%s*NSET, NSET=root\nA.foot\n", head);
+  put(text);
+  assert_int_equal(read_mesh(path, &mesh), SHB_ERR_INPUT);
+  assert_non_null(strstr(shb_message(), "node set 'A.foot' is not defined"));
+}
+
 static void systems_turn_and_move_nodes(void **state) {
   (void)state;
   mesh_fe mesh;
@@ -551,6 +576,7 @@ int main(void) {
       cmocka_unit_test(faults_are_named_with_their_line),
       cmocka_unit_test(included_text_stands_in_its_place),
       cmocka_unit_test(instances_are_moved_and_then_turned),
+      cmocka_unit_test(assemblies_have_numbers_of_their_own),
       cmocka_unit_test(systems_turn_and_move_nodes),
       cmocka_unit_test(second_order_types_are_read_whatever_their_suffix),
       cmocka_unit_test(face_inside_is_refused),

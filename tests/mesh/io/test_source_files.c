@@ -88,6 +88,9 @@ static void what_a_deck_includes_counts(void **state) {
   assert_true(watches("deck.inp", "rest.nam", "2, 1, 0, 0\n", "2, 1, 0, 5\n"));
   assert_true(watches("deck.inp", "faces.inc", "1, S1\n", "1, S2\n"));
   assert_false(watches("deck.inp", "comment.inc", "1\n", "2\n"));
+  write_text("rows.csv", "1, 0, 0, 0\n");
+  write_text("rows.inp", "*NODE, INPUT=rows.csv\n*ELSET, ELSET=e\n1\n");
+  assert_true(watches("rows.inp", "rows.csv", "1, 0, 0, 0\n", "1, 0, 0, 1\n"));
 }
 
 int main(void) {

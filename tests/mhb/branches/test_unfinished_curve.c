@@ -39,7 +39,9 @@ static int differences(const mhb_response *a, const mhb_response *b) {
       const mhb_field *f = &mhb_fields[k];
       if (!mhb_field_kept(a, p, f) || strcmp(f->name, "seconds") == 0) continue;
       size_t size = mhb_field_row(a, p, f) * (size_t)p->n_points;
-      n += memcmp(mhb_field_get(p, f), mhb_field_get(q, f), size) != 0;
+      const int differs = memcmp(mhb_field_get(p, f), mhb_field_get(q, f), size) != 0;
+      if (differs) printf("%s differs\n", f->name);
+      n += differs;
     }
   }
   return n;

@@ -410,7 +410,7 @@ static void test_described(void **state) {
   (void)state;
   mhb_response *response = sample(PROBES, 5);
   assert_ok(mhb_response_write(response, scratch("described.h5"), &from));
-  assert_int_equal(assert_described(scratch("described.h5")), 3 * 16 + 3 + 5 + 9 + 15);
+  assert_int_equal(assert_described(scratch("described.h5")), 3 * 16 + 3 + 5 + 9 + 16);
   hid_t file;
   char *text;
   assert_ok(h5_open(scratch("described.h5"), &file));
