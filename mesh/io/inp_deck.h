@@ -55,8 +55,8 @@ void       mesh_deck_close(mesh_deck *deck); /* also on a zeroed struct */
 
 /* Read the next card; the remaining rows of the current card are skipped. A keyword line that ends
  * with a comma continues on the next line. Lines that begin with two asterisks are comments. The
- * text of a file that is included stands in place of its *INCLUDE, and that of the INPUT of *NODE
- * and *ELEMENT in place of their rows.
+ * text of a file that is included stands in place of its *INCLUDE. The INPUT of *NODE and *ELEMENT
+ * stands in place of their rows.
  *   found  out  false at the end of the file */
 shb_status mesh_deck_card(mesh_deck *deck, mesh_card *card, bool *found);
 

@@ -22,8 +22,8 @@ static const modal_model *model_at(const modal_model *model, const mhb_settings 
   return at < 0 ? NULL : &disc->model[at];
 }
 
-/* The wave at a nodal diameter in which the load meets the rotor: that of the first harmonic that
- * does, or else of the engine order of that number. */
+/* The wave at a nodal diameter in which the load meets the rotor. It is that of the first harmonic
+ * that does, or else of the engine order of that number. */
 static int driven_at(const modal_model *model, const mhb_settings *settings, int diameter) {
   long order = diameter;
   for (int h = model->n_load; h >= 1; h--) {

@@ -293,8 +293,8 @@ static double remaining_error(const mhb_contact_evaluator *c, newton_progress *a
 /* Newton's method on P(z) = z. 0: not reached. A plain iteration z <- P(z), which never expands,
  * replaces it where it does not gain. At a double root, where slip just begins, the step is
  * extrapolated. Each lap is as accurate as its step requires. After a recorded lap that Newton's
- * method had led to and that did not close, laps have its panels. Longer ones miss a reversal of small harmonics, and close
- * elsewhere. */
+ * method had led to and that did not close, laps have its panels. Longer ones miss a reversal of
+ * small harmonics, and close elsewhere. */
 static int iterate_slider(mhb_contact_evaluator *c, newton_progress *a, double z[2]) {
   double before = INFINITY, left = a->last_step < 1 ? a->last_step : a->left, P[2], step[2];
   int    plain = 0, newton = 0;

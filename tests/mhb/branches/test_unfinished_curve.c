@@ -38,7 +38,7 @@ static int differences(const mhb_response *a, const mhb_response *b) {
     for (int k = 0; k < MHB_N_FIELDS; k++) {
       const mhb_field *f = &mhb_fields[k];
       if (!mhb_field_kept(a, p, f) || strcmp(f->name, "seconds") == 0) continue;
-      size_t size = mhb_field_row(a, p, f) * (size_t)p->n_points;
+      size_t    size    = mhb_field_row(a, p, f) * (size_t)p->n_points;
       const int differs = memcmp(mhb_field_get(p, f), mhb_field_get(q, f), size) != 0;
       if (differs) printf("%s differs\n", f->name);
       n += differs;
