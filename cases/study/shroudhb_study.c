@@ -247,8 +247,13 @@ static bool is_launched(void) {
 /* --design=I and --check: without MPI. */
 static int work_alone(const command_options *options) {
   const int  design = options->design > 0 ? options->design : 0;
-  study_spec spec;
-  shb_status status = read_spec(options, design == 0, &spec);
+  study_spec spec   = {0};
+  shb_status status = SHB_OK;
+  if (design > 0 && options->json)
+    status = shb_fail(SHB_ERR_INPUT, __FILE__, __LINE__,
+                      "--design does not go with --json; the run of a design writes "
+                      "NAME_I.summary.json");
+  if (status == SHB_OK) status = read_spec(options, design == 0, &spec);
   if (status == SHB_OK && options->into && design > 0) status = shb_make_folder(options->into);
   if (status == SHB_OK)
     status = design > 0 ? own_run(&spec, design, options->quiet) : check(&spec, options);

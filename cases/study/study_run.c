@@ -152,8 +152,9 @@ static shb_status take_known(running *r, const design_study *known) {
     const study_design *from = &known->design[list[low].design];
     int                 tried_from;
     if (!holds(s, known, from, &tried_from)) continue;
-    status      = design_message_copy(from, s->n_outputs, s->n_derivatives, &s->design[i]);
-    r->given[i] = true;
+    status               = design_message_copy(from, s->n_outputs, s->n_derivatives, &s->design[i]);
+    r->given[i]          = true;
+    s->design[i].seconds = from->seconds;
     s->design[i].tried_from = tried_from;
     r->n_done++;
   }

@@ -19,7 +19,20 @@ static void join(int *parent, const int *nodes, int n) {
   for (int i = 1; i < n; i++) parent[find(parent, nodes[i])] = head;
 }
 
-shb_status fem_clamp_check(const mesh_fe *mesh) {
+/* Trees of the forest that have an element. */
+static int count_bodies(const mesh_fe *mesh, int nodes, int *parent) {
+  char *seen = shb_alloc_zeroed((size_t)mesh->n_nodes, 1);
+  int   n    = 0;
+  for (int e = 0; e < mesh->n_elements; e++) {
+    char *here = &seen[find(parent, mesh->connectivity[nodes * (size_t)e])];
+    n += !*here;
+    *here = 1;
+  }
+  free(seen);
+  return n;
+}
+
+shb_status fem_clamp_check(const mesh_fe *mesh, int *bodies) {
   const mesh_topology *topology = mesh_topology_of(mesh->kind);
   const int            nodes    = topology->nodes;
   const mesh_face_set *root     = &mesh->set[MESH_ROOT];
@@ -27,6 +40,7 @@ shb_status fem_clamp_check(const mesh_fe *mesh) {
   for (int i = 0; i < mesh->n_nodes; i++) parent[i] = i;
   for (int e = 0; e < mesh->n_elements; e++)
     join(parent, mesh->connectivity + nodes * (size_t)e, nodes);
+  *bodies = count_bodies(mesh, nodes, parent);
   for (int f = 1; f < root->n; f++) {
     int ends[2] = {root->nodes[0], root->nodes[topology->face_nodes * (size_t)f]};
     join(parent, ends, 2);

@@ -6,7 +6,8 @@
 
 /* SHB_ERR_INPUT if a part of the mesh is not connected by nodes to the faces of group root. It
  * would float and K would be singular. The message gives the number of such elements and one
- * tag. */
-shb_status fem_clamp_check(const mesh_fe *mesh);
+ * tag.
+ *   bodies  out  parts that share no node */
+shb_status fem_clamp_check(const mesh_fe *mesh, int *bodies);
 
 #endif

@@ -105,9 +105,15 @@ static void name_interfaces(const modal_settings *settings, const modal_patches 
 
 /* Check the input before any lengthy computation, and create patches, probes and load patterns. */
 static shb_status prepare(const mesh_fe *mesh, const modal_settings *settings,
-                          modal_patches *patches, modal_condensation *to) {
+                          shb_progress *progress, modal_patches *patches, modal_condensation *to) {
   char found[MESH_FOUND + 40];
-  SHB_TRY(fem_clamp_check(mesh));
+  int  bodies;
+  SHB_TRY(fem_clamp_check(mesh, &bodies));
+  if (bodies > 1)
+    shb_progress_warn(progress,
+                      "the mesh has %d bodies that share no nodes; the modes are those of all of "
+                      "them, and one blade is expected",
+                      bodies);
   if (!settings->full_integration) SHB_TRY(fem_hourglass_check(mesh));
   SHB_CHECK(settings->pressure == 0 || mesh->set[MESH_LOAD].n > 0, SHB_ERR_INPUT,
             "the mesh has no group \"%s\" for rotor.pressure; name the loaded faces so; %s",
@@ -308,7 +314,7 @@ static shb_status solve_body(MPI_Comm comm, const mesh_fe *mesh, const modal_set
 shb_status modal_solve(MPI_Comm comm, const mesh_fe *mesh, const modal_settings *settings,
                        shb_progress *progress, modal_result *result) {
   memset(result, 0, sizeof *result);
-  SHB_TRY(modal_agree(comm, prepare(mesh, settings, &result->patches, &result->to)));
+  SHB_TRY(modal_agree(comm, prepare(mesh, settings, progress, &result->patches, &result->to)));
   return solve_body(comm, mesh, settings, &result->to, progress, result);
 }
 

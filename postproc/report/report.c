@@ -41,6 +41,7 @@ static void put_lede(const post_analysis *analysis, const post_origin *source, p
            x->unit.name, post_frequency_text(analysis, frequency));
   if (r->engine_order > 0) post_put(out, ", engine order %d", r->engine_order);
   if (r->blades > 0) post_put(out, " on %d blades", r->blades);
+  if (r->turns_right) post_put(out, " of a rotor that turns right");
   post_put(out, ", ");
   post_put_harmonics(r, out);
   if (r->subharmonics > 1) post_put(out, " of ω/%d", r->subharmonics);

@@ -41,7 +41,7 @@ typedef struct {
   double     *derivative;           /* [n_derivatives] d peak / d parameter; NAN: not judged */
   char       *reason;               /* NULL if there is none */
   char        digest[STUDY_DIGEST]; /* of everything that the outputs depend on; "": not computed */
-  double      seconds;              /* CPU; 0 if the design was taken from a former one */
+  double      seconds;              /* CPU, when it was computed; 0: it is equal to another */
   int         tried_from; /* design from whose peak this one was tried again; -1: it was not */
   study_curve curve;
 } study_design;

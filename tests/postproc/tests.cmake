@@ -35,9 +35,12 @@ endif()
 shb_python_test(postproc.script.schema INTEGRATION postproc/script/test_schema.py
   $<TARGET_FILE:test_postproc_report> $<TARGET_FILE:test_postproc_study>)
 foreach(room study report)
-  shb_tool_test(postproc.${room}.page_script INTEGRATION chromium "${SHROUDHB_CHROMIUM}"
-    ${SHROUDHB_PYTHON} -B ${CMAKE_CURRENT_SOURCE_DIR}/postproc/${room}/test_page_script.py
+  set(script ${SHROUDHB_PYTHON} -B
+    ${CMAKE_CURRENT_SOURCE_DIR}/postproc/${room}/test_page_script.py
     $<TARGET_FILE:test_postproc_${room}> ${SHROUDHB_CHROMIUM})
+  shb_tool_test(postproc.${room}.page_script INTEGRATION chromium "${SHROUDHB_CHROMIUM}" ${script})
+  shb_tool_test(postproc.${room}.page_script_all NIGHTLY chromium "${SHROUDHB_CHROMIUM}" ${script}
+    all)
 endforeach()
 if(NOT SHROUDHB_CHROMIUM)
   set(SHROUDHB_CHROMIUM)

@@ -232,7 +232,9 @@ static void partition_is_balanced(void **state) {
 static void floating_part_is_named(void **state) {
   (void)state;
   mesh_fe one = make_box(size, cells), two = make_box(size, cells);
-  assert_int_equal(fem_clamp_check(&one), SHB_OK);
+  int     bodies;
+  assert_int_equal(fem_clamp_check(&one, &bodies), SHB_OK);
+  assert_int_equal(bodies, 1);
   mesh_fe both  = one;
   int     nodes = one.n_nodes, elements = one.n_elements;
   both.n_nodes      = 2 * nodes;
@@ -245,7 +247,8 @@ static void floating_part_is_named(void **state) {
     both.connectivity[each + i] = two.connectivity[i] + nodes;
   }
   for (int e = 0; e < 2 * elements; e++) both.element_tag[e] = 1000 + e;
-  assert_int_equal(fem_clamp_check(&both), SHB_ERR_INPUT);
+  assert_int_equal(fem_clamp_check(&both, &bodies), SHB_ERR_INPUT);
+  assert_int_equal(bodies, 2);
   assert_non_null(strstr(shb_message(), one.kind == MESH_HEX20
                                             ? "24 elements (the first has tag 1024)"
                                             : "144 elements (the first has tag 1144)"));

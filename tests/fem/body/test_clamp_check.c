@@ -15,9 +15,10 @@ static mesh_fe box(void) {
 static void one_body_is_held(void **state) {
   (void)state;
   mesh_fe mesh = box();
-  assert_ok(fem_clamp_check(&mesh));
+  int     bodies;
+  assert_ok(fem_clamp_check(&mesh, &bodies));
   mesh.set[MESH_ROOT].n = 0;
-  assert_int_equal(fem_clamp_check(&mesh), SHB_ERR_INPUT);
+  assert_int_equal(fem_clamp_check(&mesh, &bodies), SHB_ERR_INPUT);
   assert_has(shb_message(), "4 elements (the first has tag 1)");
   mesh_fe_free(&mesh);
 }
@@ -26,11 +27,13 @@ static void one_body_is_held(void **state) {
 static void parts_that_float_are_counted(void **state) {
   (void)state;
   mesh_fe mesh = box();
+  int     bodies;
   memmove(mesh.connectivity + 20, mesh.connectivity + 40, 2 * 20 * sizeof(int));
   memmove(mesh.element_tag + 1, mesh.element_tag + 2, 2 * sizeof(long));
   mesh.n_elements = 3;
-  assert_int_equal(fem_clamp_check(&mesh), SHB_ERR_INPUT);
+  assert_int_equal(fem_clamp_check(&mesh, &bodies), SHB_ERR_INPUT);
   assert_has(shb_message(), "2 elements (the first has tag 3) are not connected to group root");
+  assert_int_equal(bodies, 2);
   mesh_fe_free(&mesh);
 }
 
