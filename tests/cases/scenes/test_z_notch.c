@@ -136,8 +136,9 @@ static void some_points_are_judged(void **state) {
       int           how       = b->judged[p];
       bool          undecided = how == MHB_JUDGED_UNDECIDED; /* within the multiplier's error */
       assert_int_equal(b->stable[p] < 0, how == MHB_NOT_JUDGED || undecided);
-      if (!undecided)
-        assert_int_equal(size == 0, how != MHB_BY_MULTIPLIERS && how != MHB_JUDGED_MARGINAL);
+      /* neighbours and folds decide where the multiplier is within its error, too */
+      if (how == MHB_BY_MULTIPLIERS || how == MHB_JUDGED_MARGINAL) assert_true(size > 0);
+      if (how == MHB_NOT_JUDGED) assert_true(size == 0);
       if (how == MHB_BY_MULTIPLIERS) assert_int_equal(b->stable[p], size < 1.0005);
       if (how == MHB_BY_FOLDS) assert_int_equal(b->stable[p], 0);
       if (linear) assert_true(how == MHB_BY_MULTIPLIERS && b->stable[p] == 1 && size < 1);
