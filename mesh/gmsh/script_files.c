@@ -53,7 +53,8 @@ shb_status mesh_files_add(mesh_file_list *list, const char *from, const char *na
   return SHB_OK;
 }
 
-char *mesh_files_text(const char *path) {
+/* The text of a file; malloc'ed. NULL: it cannot be read. */
+static char *text_of(const char *path) {
   struct stat about;
   FILE       *file = stat(path, &about) == 0 && S_ISREG(about.st_mode) ? fopen(path, "rb") : NULL;
   char       *text = file ? shb_alloc((size_t)about.st_size + 1, 1) : NULL;
@@ -82,7 +83,7 @@ shb_status mesh_script_files(const char *path, mesh_file_list *list) {
   for (int i = 0; i < list->n; i++) {
     const mesh_format format = mesh_format_of(list->path[i]);
     if (format != MESH_FORMAT_GEO && format != MESH_FORMAT_UNKNOWN) continue;
-    char            *text   = mesh_files_text(list->path[i]);
+    char            *text   = text_of(list->path[i]);
     const shb_status status = text ? add_quoted(list, list->path[i], text) : SHB_OK;
     free(text);
     SHB_TRY(status);

@@ -27,9 +27,6 @@ void mesh_files_free(mesh_file_list *list);
 shb_status mesh_files_add(mesh_file_list *list, const char *from, const char *name, size_t n,
                           int *at);
 
-/* The text of a file; malloc'ed. NULL: it cannot be read. */
-char *mesh_files_text(const char *path);
-
 /* A list of a script and of all files that it reads, at any depth: those whose name stands in it in
  * quotes (Include, Merge, ShapeFromFile). Names are taken from the folder of the file that has
  * them. Errors: as mesh_files_add; free the list in any case. */

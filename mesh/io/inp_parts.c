@@ -83,15 +83,12 @@ static shb_status read_placement(mesh_inp_model *m, const mesh_card *card, mesh_
 
 /* Numbers of an instance go on after those that are there. */
 static void raise_numbers(const mesh_inp *whole, mesh_inp_instance *instance) {
-  for (int i = 0; i < whole->n_nodes; i++)
-    if (whole->node[i].id > instance->node) instance->node = whole->node[i].id;
-  for (int i = 0; i < whole->n_elements; i++)
-    if (whole->element[i].id > instance->element) instance->element = whole->element[i].id;
+  instance->node    = whole->top_node;
+  instance->element = whole->top_element;
 }
 
 static shb_status begin_instance(mesh_inp_model *m, const mesh_card *card) {
   mesh_inp_instance *instance;
-  mesh_inp_placement placement;
   char               name[MESH_DECK_NAME];
   const mesh_inp    *table = NULL;
   m->instance = shb_realloc(m->instance, (size_t)m->n_instances + 1, sizeof *m->instance);
@@ -107,9 +104,7 @@ static shb_status begin_instance(mesh_inp_model *m, const mesh_card *card) {
     MESH_DECK_CHECK(strcasecmp(m->instance[i].name, instance->name) != 0, m->deck, card->line,
                     "*INSTANCE: there are two of the name '%s'", instance->name);
   SHB_TRY(read_placement(m, card, &instance->map));
-  placement =
-      (mesh_inp_placement){instance->name, instance->node, instance->element, instance->map};
-  mesh_inp_append(m->whole, table, &placement);
+  mesh_inp_append(m->whole, table, instance);
   m->inside = m->n_instances - 1;
   return SHB_OK;
 }
@@ -183,7 +178,7 @@ shb_status mesh_inp_parts_end(mesh_inp_model *m) {
   SHB_CHECK(m->n_parts < 2 || m->n_instances > 0, SHB_ERR_INPUT,
             "%s: has %d parts, but no *INSTANCE that places them", m->deck->path, m->n_parts);
   if (m->n_parts == 1 && m->n_instances == 0)
-    mesh_inp_append(m->whole, &m->part[0]->table, &(mesh_inp_placement){"", 0, 0, identity});
+    mesh_inp_append(m->whole, &m->part[0]->table, &(mesh_inp_instance){.map = identity});
   mesh_inp_share_names(m->whole);
   return SHB_OK;
 }

@@ -12,12 +12,6 @@ typedef struct {
 } mesh_inp_part;
 
 typedef struct {
-  char         name[MESH_DECK_NAME];
-  long         node, element; /* by which its numbers are raised */
-  mesh_inp_map map;
-} mesh_inp_instance;
-
-typedef struct {
   mesh_deck         *deck;
   mesh_inp          *whole, *inp; /* inp: into which cards go */
   int                n_parts, part_room, n_instances, instance_room;

@@ -18,11 +18,13 @@ static void reserve(void **array, int n, int *room, size_t size) {
 void mesh_inp_add_node(mesh_inp *inp, const mesh_inp_node *node) {
   reserve((void **)&inp->node, inp->n_nodes, &inp->node_room, sizeof *node);
   inp->node[inp->n_nodes++] = *node;
+  if (node->id > inp->top_node) inp->top_node = node->id;
 }
 
 void mesh_inp_add_element(mesh_inp *inp, const mesh_inp_element *element) {
   reserve((void **)&inp->element, inp->n_elements, &inp->element_room, sizeof *element);
   inp->element[inp->n_elements++] = *element;
+  if (element->id > inp->top_element) inp->top_element = element->id;
 }
 
 void mesh_inp_add_member(mesh_inp_set *set, const mesh_inp_member *member) {
@@ -69,25 +71,25 @@ static void append_set(mesh_inp_set *to, const mesh_inp_set *from, long raise) {
   }
 }
 
-void mesh_inp_append(mesh_inp *inp, const mesh_inp *part, const mesh_inp_placement *placement) {
+void mesh_inp_append(mesh_inp *inp, const mesh_inp *part, const mesh_inp_instance *as) {
   for (int i = 0; i < part->n_nodes; i++) {
     mesh_inp_node node = part->node[i];
-    node.id += placement->node;
-    mesh_inp_map_point(&placement->map, node.at);
+    node.id += as->node;
+    mesh_inp_map_point(&as->map, node.at);
     mesh_inp_add_node(inp, &node);
   }
   for (int i = 0; i < part->n_elements; i++) {
     mesh_inp_element element = part->element[i];
-    element.id += placement->element;
-    for (int j = 0; j < element.n; j++) element.node[j] += placement->node;
+    element.id += as->element;
+    for (int j = 0; j < element.n; j++) element.node[j] += as->node;
     mesh_inp_add_element(inp, &element);
   }
   for (int i = 0; i < part->n_sets; i++) {
     const mesh_inp_set *from = &part->set[i];
     char                name[MESH_DECK_NAME + MESH_INP_NAME];
-    snprintf(name, sizeof name, "%s%s%s", placement->name, *placement->name ? "." : "", from->name);
+    snprintf(name, sizeof name, "%s%s%s", as->name, *as->name ? "." : "", from->name);
     const int to = mesh_inp_open_set(inp, from->kind, name, from->of_nodes, from->line);
-    append_set(&inp->set[to], from, from->of_nodes ? placement->node : placement->element);
+    append_set(&inp->set[to], from, from->of_nodes ? as->node : as->element);
   }
 }
 

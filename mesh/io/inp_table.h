@@ -48,6 +48,7 @@ typedef struct {
   mesh_inp_element *element;
   mesh_inp_set     *set;
   int               n_nodes, node_room, n_elements, element_room, n_sets, set_room;
+  long              top_node, top_element; /* the greatest numbers */
   long long         referred; /* members that sets have by ranges and names of other sets */
 } mesh_inp;
 
@@ -73,13 +74,13 @@ typedef struct {
 /* Where a part is put: its numbers of nodes and elements are raised, its nodes mapped, its sets
  * named "name.set"; name "": as they are. */
 typedef struct {
-  const char  *name;
+  char         name[MESH_DECK_NAME];
   long         node, element;
   mesh_inp_map map;
-} mesh_inp_placement;
+} mesh_inp_instance;
 
 /* Put the table of a part behind this one. */
-void mesh_inp_append(mesh_inp *inp, const mesh_inp *part, const mesh_inp_placement *placement);
+void mesh_inp_append(mesh_inp *inp, const mesh_inp *part, const mesh_inp_instance *as);
 
 void mesh_inp_map_point(const mesh_inp_map *map, double at[3]);
 
