@@ -264,10 +264,10 @@ static void put_waves(const post_blade_field *f, const mhb_branch *b, const wave
   post_put(out, "]");
 }
 
-/* rad, by which the right neighbour lags at the fundamental. */
-static double lag_of(const mhb_response *r, const mhb_branch *b) {
+/* rad, by which the right neighbour lags at the fundamental of so many periods. */
+static double lag_of(const mhb_response *r, int periods) {
   const mhb_driven_wave wave =
-      mhb_driven_wave_of(r->engine_order, r->turns_right, r->blades, b->order);
+      mhb_driven_wave_of(r->engine_order, r->turns_right, r->blades, periods);
   return r->blades > 0 && mhb_driven_wave_shift(wave) >= 0 ? mhb_driven_wave_lag(wave) : 0;
 }
 
@@ -283,7 +283,7 @@ static void put_point(const post_analysis *analysis, const post_blade_field *f, 
   float *to = data;
   post_put(out, "{\"b\":%d,\"x\":%.9g,\"a\":%.7g,\"order\":%d,\"lag\":%.9g,\"k\":[", b,
            post_abscissa_values(r, branch)[point], analysis->curve[b].amplitude[point],
-           branch->order, lag_of(r, branch));
+           branch->order, lag_of(r, branch->order));
   for (int i = 0; i < n; i++) {
     post_put(out, i ? ",%d" : "%d", k[i]);
     for (int m = 0; m < modes; m++) {
@@ -378,10 +378,7 @@ shb_status post_blade_data(const post_analysis *analysis, const post_blade_view 
     post_put(out, ",\"points\":[");
     put_points(analysis, f, &w, modes, out);
     post_put(out, "],\"axis\":[%g,%g,%g],\"blades\":%d,\"lag\":%.9g}", axis[0], axis[1], axis[2],
-             r->blades,
-             r->blades > 0 ? mhb_driven_wave_lag(
-                                 mhb_driven_wave_of(r->engine_order, r->turns_right, r->blades, 1))
-                           : 0);
+             r->blades, lag_of(r, 1));
   }
   free(data);
   post_skin_free(&skin);
